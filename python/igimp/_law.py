@@ -10,6 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
+# Entries across the diagonal of a tangent that differ by more than this share of the largest one are no round-off.
+_SKEW = 1e-6
+
 
 @dataclass(frozen=True)
 class Elasticity:
@@ -107,10 +110,24 @@ class Law:
     def _answer(self, strain: Array, eps_p_eq: Array, young: float, poisson: float) -> tuple[Array, Array]:
         n = len(strain)
         answer: Any = self.return_map(strain, eps_p_eq, Elasticity(young, poisson))
-        tau, tangent = (np.asarray(own, dtype=float) for own in answer)
+        whose = f"return_map of {type(self).__name__}"
+        try:
+            tau, tangent = (np.asarray(own, dtype=float) for own in answer)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"{whose} must answer stress and tangent, two arrays of numbers: {error}") from error
         if tau.shape != (n, 3) or tangent.shape != (n, 3, 3):
             raise ValueError(
-                f"return_map of {type(self).__name__} must answer arrays of shape ({n}, 3) and ({n}, 3, 3), "
+                f"{whose} must answer arrays of shape ({n}, 3) and ({n}, 3, 3), "
                 f"not {tau.shape} and {tangent.shape}"
             )
+        if self.symmetric:
+            # NaN is no answer, and compares as symmetric.
+            skew = np.abs(tangent - tangent.transpose(0, 2, 1)).reshape(n, 9)
+            size = np.abs(tangent).reshape(n, 9).max(axis=1, initial=0.0)
+            wrong = np.flatnonzero((skew > _SKEW * size[:, None]).any(axis=1))
+            if wrong.size:
+                raise ValueError(
+                    f"{whose} says symmetric = True, and its tangent at the strain {strain[wrong[0]].tolist()} is not: "
+                    f"write symmetric = False in the class, or mend the tangent"
+                )
         return np.ascontiguousarray(tau).reshape(-1), np.ascontiguousarray(tangent).reshape(-1)

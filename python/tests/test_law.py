@@ -86,7 +86,24 @@ def test_what_a_law_raises_is_raised(column):
         def return_map(self, strain, eps_p_eq, elastic):
             return strain[:, :2], np.zeros((len(strain), 3, 3))
 
+    class Alone(Elastic):
+        def return_map(self, strain, eps_p_eq, elastic):
+            return elastic.stress(strain)
+
+    class Skew(Elastic):
+        symmetric = True
+
+        def return_map(self, strain, eps_p_eq, elastic):
+            tau, tangent = super().return_map(strain, eps_p_eq, elastic)
+            tangent = np.array(tangent)
+            tangent[:, 0, 1] *= 1.1
+            return tau, tangent
+
     name = column.materials[0]
+    with pytest.raises(ValueError, match="return_map of Alone must answer stress and tangent"):
+        column.with_laws({name: Alone()}).run(progress=False)
+    with pytest.raises(ValueError, match="return_map of Skew says symmetric = True"):
+        column.with_laws({name: Skew()}).run(progress=False)
     with pytest.raises(ZeroDivisionError, match="in the law"):
         column.with_laws({name: Broken()}).run(progress=False)
     with pytest.raises(ValueError, match="must answer arrays of shape"):

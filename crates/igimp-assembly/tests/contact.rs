@@ -424,3 +424,118 @@ fn poses_turn_rigidly() {
     assert!(x.abs() < 1e-15 && (y - 2.0_f64.sqrt()).abs() < 1e-15);
     assert!((plane.angle[0] - FRAC_PI_4).abs() < 1e-15);
 }
+
+/// What a step with displacements `u` leaves of contact between soil at rest and a body that is held, by knot.
+fn left_of(
+    (grid, soil): (&Grid<2>, &Particles<2>),
+    body: &RigidBody<2>,
+    u: &[[f64; 2]],
+) -> Vec<ContactNode> {
+    let (_, law) = laws().remove(0);
+    let method = Method::igimp_bbar();
+    let conditions = conditions(grid, &law, RigidMotion::held());
+    let stencils = Stencils::build(soil, &method, &conditions).unwrap();
+    let bodies = std::slice::from_ref(body);
+    let system = System::with_rigid_bodies(soil, bodies, &stencils, &conditions, &method).unwrap();
+    let moved = system.bodies_at(u).unwrap();
+    moved.bodies[0].contact.knots.clone()
+}
+
+/// A wide plate, parallel to the upper side of the soil and off it by a gap \[length\]; soil and grid.
+fn plate(interface: &Interface, gap: f64) -> (Grid<2>, Particles<2>, RigidBody<2>) {
+    let grid = grid::<2>(6);
+    let soil = particles(&grid, 0.0, &mut Random(3));
+    let nodes = grid.axes[1].nodes();
+    let top = nodes[nodes.len() - 2];
+    let surface = rectangle([6.0, 1.0], 0.7);
+    let sides = vec![interface.clone(); surface.side_count()];
+    let middle = 0.5 * grid.bounds().1[0];
+    let body = RigidBody::new(surface, sides, [middle, top + 1.0 + gap]);
+    (grid, soil, body)
+}
+
+/// Displacements of all nodes of a grid alike, and none of the body.
+fn all_by(grid: &Grid<2>, by: [f64; 2]) -> Vec<[f64; 2]> {
+    let mut u = vec![by; grid.node_count()];
+    u.extend([[0.0; 2]; 2]);
+    u
+}
+
+// GOAL: soil that left a rough side takes no shear along.
+// CASE: a rough plate that carried shear, and soil that goes down from it.
+// ORACLE: no traction across a gap.
+#[test]
+fn what_let_go_keeps_no_shear() {
+    let (grid, soil, mut body) = plate(&Interface::rough(), 0.0);
+    for knot in &mut body.contact.knots {
+        *knot = ContactNode {
+            pressure: 0.1,
+            shear: [0.5, 0.0],
+            area: 1.0,
+            is_closed: true,
+            ..ContactNode::default()
+        };
+    }
+    let stays = left_of((&grid, &soil), &body, &all_by(&grid, [0.0; 2]));
+    assert!(
+        stays
+            .iter()
+            .any(|knot| knot.is_closed && knot.shear[0] > 0.1)
+    );
+    let left = left_of((&grid, &soil), &body, &all_by(&grid, [0.0, -0.1]));
+    for knot in left {
+        assert!(!knot.is_closed && knot.gap >= 0.0, "{knot:?}");
+        assert!(knot.shear[0].abs() < 1e-15, "{knot:?}");
+    }
+}
+
+// GOAL: a bond that broke is broken for good: where soil touches, where none is near, and where it breaks in this step.
+// CASE: a plate whose bonds are broken at some knots, with soil at it, far off, and torn away.
+// ORACLE: a crack does not heal.
+#[test]
+fn broken_bonds_do_not_heal() {
+    let interface = Interface {
+        tension: Tension::Limit(2.0),
+        ..Interface::rough()
+    };
+    for gap in [0.0, 3.0] {
+        let (grid, soil, mut body) = plate(&interface, gap);
+        for knot in body.contact.knots.iter_mut().step_by(2) {
+            knot.is_broken = true;
+        }
+        let left = left_of((&grid, &soil), &body, &all_by(&grid, [0.0; 2]));
+        for (knot, before) in left.iter().zip(&body.contact.knots) {
+            assert_eq!(knot.is_broken, before.is_broken, "{gap}: {knot:?}");
+        }
+    }
+    let (grid, soil, body) = plate(&interface, 0.0);
+    let mut torn = body;
+    torn.contact.knots = left_of((&grid, &soil), &torn, &all_by(&grid, [0.0, -1e-4]));
+    assert!(
+        !torn.contact.knots.iter().any(|knot| knot.is_broken),
+        "held"
+    );
+    torn.contact.knots = left_of((&grid, &soil), &torn, &all_by(&grid, [0.0, -0.1]));
+    let touched = torn.contact.knots.iter().filter(|knot| knot.area > 0.0);
+    assert!(touched.clone().count() > 2);
+    assert!(touched.clone().all(|knot| knot.is_broken), "torn");
+}
+
+// GOAL: soil that comes near a knot later is as far off as it stands, whatever came near before.
+// CASE: knots that a little soil had come near, closer than what is there now.
+// ORACLE: the distance between a plate and a level surface.
+#[test]
+fn soil_that_comes_near_later_is_as_far_off_as_it_stands() {
+    let (grid, soil, mut body) = plate(&Interface::smooth(), 0.06);
+    let fresh = left_of((&grid, &soil), &body, &all_by(&grid, [0.0; 2]));
+    for knot in &mut body.contact.knots {
+        (knot.area, knot.gap) = (1e-3, 0.01);
+    }
+    let later = left_of((&grid, &soil), &body, &all_by(&grid, [0.0; 2]));
+    let near = std::iter::zip(&fresh, &later).filter(|(knot, _)| knot.area > 1e-2);
+    assert!(near.clone().count() > 2);
+    for (fresh, later) in near {
+        assert!((fresh.gap - 0.06).abs() < 1e-12, "{fresh:?}");
+        assert!((later.gap - 0.06).abs() < 1e-12, "{later:?}");
+    }
+}

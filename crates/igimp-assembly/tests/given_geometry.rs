@@ -256,3 +256,64 @@ fn weight_acts_at_the_centroid_of_the_soil() {
     assert!(apart([3, 3]) < 1e-14, "{}", apart([3, 3]));
     assert!(apart([5, 3]) > 1e-3, "{}", apart([5, 3]));
 }
+
+// GOAL: particles of a cell share the mean of its soil, also where soil fills a part of the cell.
+// CASE: a block whose uppermost cells are filled to their lower half, each particle within one cell.
+// ORACLE: the mean of the gradients of the particles in the cell, which without sharing are those of their places.
+#[test]
+fn what_is_shared_is_the_mean_over_the_soil_of_a_cell() {
+    let conditions = conditions(1);
+    let whole = block(0.0);
+    let body = whole.keeping(|p| whole.x[p][1] < 4.5).unwrap();
+    let of = |locking| Stencils::build(&body, &given(locking), &conditions).unwrap();
+    let (own, shared) = (of(Locking::None), of(Locking::SharedStrain));
+    let cell = |particle: usize| body.x[particle].map(|x| x.floor() as i64);
+    for particle in 0..body.len() {
+        let beside: Vec<usize> = (0..body.len())
+            .filter(|&p| cell(p) == cell(particle))
+            .collect();
+        for support in shared.of(particle) {
+            for axis in 0..2 {
+                let slopes = beside.iter().map(|&other| {
+                    let mut own = own.of(other).iter().filter(|s| s.node == support.node);
+                    own.next().map_or(0.0, |s| s.grad[axis])
+                });
+                let mean = slopes.sum::<f64>() / beside.len() as f64;
+                let found = support.grad_bar[axis];
+                assert!((found - mean).abs() < 1e-13, "{found} {mean}");
+            }
+        }
+    }
+}
+
+// GOAL: a particle that is in slivers for the most part keeps them, and one that is not gives them up.
+// CASE: a small particle across a line beside a block, four and six tenths of it in the empty cell beyond.
+// ORACLE: the rule of eq. 8d; what is kept of either has weights that sum to one.
+#[test]
+fn a_particle_keeps_the_slivers_that_it_is_mostly_in() {
+    let conditions = conditions(0);
+    for (x, keeps) in [(4.992, false), (5.008, true)] {
+        let small = Particles::new(&[igimp_assembly::ParticleSeed {
+            x: [x, 3.5],
+            half_length: [0.04; 2],
+            volume: 0.08 * 0.08,
+            density: 1.0,
+            law: 0,
+            centroid: [0.0; _],
+        }])
+        .unwrap();
+        let body = block(0.0).joined_by(&small);
+        let mut method = given(Locking::BBar);
+        // Nodes beyond are small cuts: they would be those of the block.
+        method.small_cuts.below = 0.0;
+        let stencils = Stencils::build(&body, &method, &conditions).unwrap();
+        let own = stencils.of(body.len() - 1);
+        let sum: f64 = own.iter().map(|support| support.value).sum();
+        assert!((sum - 1.0).abs() < 1e-14, "{sum}");
+        let beyond = |support: &igimp_shape::Support<2>| {
+            let [column, _] = conditions.grid.node_place(support.node);
+            column == 6 && support.value > 0.0
+        };
+        assert_eq!(own.iter().any(beyond), keeps, "{x}");
+    }
+}

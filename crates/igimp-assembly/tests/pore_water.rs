@@ -1,6 +1,6 @@
 //! GOAL: water in the pores acts as it must: hydrostatic pressure leaves buoyant weight; the tangent of undrained soil and
 //! of soil under a pressure of its own is the derivative of the internal force; water that cannot leave takes its share.
-//! ORACLE: Archimedes; central differences; Skempton's B.
+//! ORACLE: Archimedes; central differences; Skempton's B; bulk modulus of water in closed form; work of a pressure.
 
 mod common;
 
@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use common::{Random, conditions, displacements, grid, laws, methods, particles};
 use igimp_assembly::{
-    Method, ParticleFields, Particles, PoreSite, PoreState, PoreWater, SharedLaw, Stencils,
-    StepConditions, System, Water,
+    Kinematics, Method, ParticleFields, Particles, PoreSite, PoreState, PoreWater, SharedLaw,
+    Stencils, StepConditions, System, Water,
 };
 use igimp_material::TangentKind;
 
@@ -194,5 +194,106 @@ fn water_takes_the_share_of_skempton() {
                 assert!((b / share - 1.0).abs() < 1e-6, "{b} for {share}");
             }
         }
+    }
+}
+
+/// Accepts a uniform stretch of everything by a factor, as if nothing resisted it.
+fn stretch<const D: usize>(
+    body: &mut Particles<D>,
+    conditions: &StepConditions<D>,
+    method: &Method,
+    factor: f64,
+) {
+    let grid = &conditions.grid;
+    let stencils = Stencils::build(body, method, conditions).unwrap();
+    let system = System::new(body, &stencils, conditions, method).unwrap();
+    let u: Vec<[f64; D]> = (0..grid.node_count())
+        .map(|node| grid.node_position(node).map(|x| (factor - 1.0) * x))
+        .collect();
+    let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
+    body.commit(&stencils, method, &trial, &u);
+}
+
+// GOAL: excess pore pressure of one step is where the next begins, whatever the volume has become; soil of other
+// stiffness has water of other stiffness.
+// CASE: two uniform squeezes by a tenth and more, particles at ratios of stiffness 1 and 2.5.
+// ORACLE: J u = −r K_w/n ln J in finite strain, u = −r K_w/n times the sum of volume strains in small strain.
+#[test]
+fn excess_pressure_goes_on_from_step_to_step() {
+    fn squeezed<const D: usize>() {
+        let grid = grid::<D>(4);
+        let (_, law) = laws().swap_remove(0);
+        for mut method in methods() {
+            method.small_cuts.below = 0.0;
+            let mut fields = (*particles(&grid, 0.0, &mut Random(3))).clone();
+            for ratios in fields.ratios.iter_mut().step_by(2) {
+                ratios.stiffness = 2.5;
+            }
+            let mut body = Particles::from_fields(fields).unwrap();
+            let mut conditions = conditions(&grid, &law);
+            conditions.water.stiffness = vec![300.0];
+            let (factors, dimension) = ([0.9, 0.85], D as f64);
+            for factor in factors {
+                stretch(&mut body, &conditions, &method, factor);
+            }
+            let volume = (factors[0] * factors[1]).powf(dimension);
+            let unit = match method.kinematics {
+                Kinematics::FiniteStrain => -300.0 * volume.ln() / volume,
+                Kinematics::SmallStrain => -300.0 * dimension * (factors[0] + factors[1] - 2.0),
+            };
+            for particle in 0..body.len() {
+                let expected = body.ratios[particle].stiffness * unit;
+                let found = body.excess[particle];
+                assert!(
+                    (found / expected - 1.0).abs() < 1e-9,
+                    "{} {:?}: {found} for {expected}",
+                    method.label(),
+                    method.kinematics
+                );
+            }
+        }
+    }
+    squeezed::<2>();
+    squeezed::<3>();
+}
+
+// GOAL: given pressure acts on the soil as it is now, in both kinematics.
+// CASE: pressure beyond the reference in a body that was stretched.
+// ORACLE: the work of a pressure on a uniform dilation, D Σ V (u − u_r), with the volumes of now.
+#[test]
+fn given_pressure_acts_on_the_volume_of_now() {
+    let grid = grid::<2>(6);
+    let (_, law) = laws().swap_remove(0);
+    for mut method in methods() {
+        method.small_cuts.below = 0.0;
+        method.small_cuts.ghost_penalty = 0.0;
+        let mut body = particles(&grid, 0.0, &mut Random(3));
+        let dry = conditions(&grid, &law);
+        stretch(&mut body, &dry, &method, 0.9);
+        let work = |conditions: &StepConditions<2>| -> f64 {
+            let stencils = Stencils::build(&body, &method, conditions).unwrap();
+            let system = System::new(&body, &stencils, conditions, &method).unwrap();
+            let still = vec![[0.0; 2]; grid.node_count()];
+            let trial = system.evaluate(&still, TangentKind::Consistent).unwrap();
+            (trial.f_int.iter().enumerate())
+                .map(|(node, force)| {
+                    let x = grid.node_position(node);
+                    x[0] * force[0] + x[1] * force[1]
+                })
+                .sum()
+        };
+        let wet = with_water(dry.clone(), 1.4, 0.0);
+        let expected: f64 = (0..body.len())
+            .map(|particle| {
+                let reference = 3.0 * (20.0 - body.x[particle][1]);
+                -2.0 * body.volume(particle) * 0.4 * reference
+            })
+            .sum();
+        let found = work(&wet) - work(&dry);
+        let label = (method.label(), method.kinematics);
+        assert!(
+            (found / expected - 1.0).abs() < 1e-10,
+            "{label:?}: {found} {expected}"
+        );
     }
 }

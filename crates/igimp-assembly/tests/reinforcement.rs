@@ -361,3 +361,43 @@ fn members_without_soil_are_named() {
     let refused = scene.conditions.clone().with_reinforcement(vec![jack]);
     assert!(refused.is_err());
 }
+
+// GOAL: a station beneath a plate moves as the mean of its points, and its force spreads over them.
+// CASE: a member with a head of two points, and the same with four, in a body that all moves, and that stretches.
+// ORACLE: a rigid translation strains nothing; the forces of a member sum to nothing; the strain of a uniform stretch.
+#[test]
+fn points_beneath_a_plate_share_what_one_would_carry() {
+    fn compare<const D: usize>() {
+        let mut scene = scene::<D>();
+        for twice in [false, true] {
+            if twice {
+                let points = &mut scene.member.stations[0].points;
+                points.extend(points.clone());
+            }
+            let nodes = scene.grid.node_count();
+            let moved = vec![[0.05; D]; nodes];
+            let method = Method {
+                kinematics: Kinematics::SmallStrain,
+                ..Method::igimp()
+            };
+            let (still, _) = accepted(&scene, &scene.member, &method, None, &moved);
+            for segment in &still.segments {
+                assert!(segment.state.strain.abs() < 1e-13, "{segment:?}");
+            }
+            let stretched: Vec<[f64; D]> = (0..nodes)
+                .map(|node| scene.grid.node_position(node).map(|x| 0.01 * x))
+                .collect();
+            let (pulled, force) = accepted(&scene, &scene.member, &method, None, &stretched);
+            for segment in &pulled.segments {
+                assert!((segment.state.strain - 0.01).abs() < 1e-12, "{segment:?}");
+                assert!((segment.state.force - 0.01 * STIFFNESS).abs() < 1e-10);
+            }
+            for axis in 0..D {
+                let sum: f64 = force.iter().map(|force| force[axis]).sum();
+                assert!(sum.abs() < 1e-12, "{sum:e}");
+            }
+        }
+    }
+    compare::<2>();
+    compare::<3>();
+}

@@ -6,10 +6,12 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use common::{Random, by_particle, displacements, laws, methods};
 use igimp_assembly::{
     Constraints, Kinematics, LoadPoint, Method, ParticleSeed, Particles, Remedy, SharedLaw,
-    Stencils, StepConditions, StepLoads, System, Trial,
+    Stencils, StepConditions, StepLoads, System, Trial, UnbalancedForces,
 };
 use igimp_linear::TangentMatrix;
 use igimp_material::TangentKind;
@@ -615,5 +617,44 @@ fn the_ghost_penalty_holds_nodes_that_a_single_domain_reaches() {
         let eigenvalues = matrix.symmetric_eigenvalues();
         let condition = eigenvalues.max() / eigenvalues.min();
         assert!(condition > 0.0 && condition < 1e6, "{condition:e}");
+    }
+}
+
+// GOAL: forces that hold a body act on it whole, also where a small cut has no displacement of its own.
+// CASE: a block with tied nodes, and forces on all of its nodes.
+// ORACLE: their resultant acts on nodes that take part, and nothing on the tied ones.
+#[test]
+fn forces_that_hold_tied_nodes_act_on_their_masters() {
+    let grid = unit_grid([6, 6]);
+    let law = elastic();
+    let method = Method::igimp_bbar();
+    let body = body(&cells([1, 1], [4, 4]), [SLIVER; 2]);
+    let free = free(&grid, &law);
+    let stencils = Stencils::build(&body, &method, &free).unwrap();
+    let is_tied = |&node: &usize| stencils.master(node) != node;
+    let tied: Vec<usize> = (0..grid.node_count()).filter(is_tied).collect();
+    assert!(!tied.is_empty());
+    let mut random = Random(9);
+    let held: Vec<[f64; 2]> = (0..grid.node_count())
+        .map(|node| {
+            let touched = stencils.node_volume(stencils.master(node)) > 0.0;
+            [0, 1].map(|_| if touched { random.symmetric() } else { 0.0 })
+        })
+        .collect();
+    let share = 0.3;
+    let conditions = free
+        .with_unbalanced(Some(UnbalancedForces {
+            forces: Arc::new(held.clone()),
+            share,
+        }))
+        .unwrap();
+    let system = System::new(&body, &stencils, &conditions, &method).unwrap();
+    let f_ext = system.f_ext();
+    for node in tied {
+        assert!(f_ext[node].iter().all(|force| *force == 0.0), "{node}");
+    }
+    for axis in 0..2 {
+        let sum = |forces: &[[f64; 2]]| forces.iter().map(|force| force[axis]).sum::<f64>();
+        assert!((sum(f_ext) - share * sum(&held)).abs() < 1e-13);
     }
 }

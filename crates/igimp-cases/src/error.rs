@@ -13,6 +13,7 @@ use igimp_report::ReportError;
 use igimp_results::ResultsError;
 use igimp_results::checkpoint::CheckpointError;
 use igimp_shape::ShapeError;
+use igimp_text::NoAmount;
 
 /// Errors of stating or running a case.
 #[derive(Debug, thiserror::Error)]
@@ -83,6 +84,16 @@ pub enum CaseError {
     /// The elimination of the unknowns cannot be planned.
     #[error(transparent)]
     LinearSolver(#[from] LinearSolverError),
+    /// A variable of the environment is not what it should be.
+    #[error("{name} is \"{value}\": {expected}")]
+    Variable {
+        /// Its name.
+        name: &'static str,
+        /// Its value.
+        value: String,
+        /// What it should be.
+        expected: NoAmount,
+    },
     /// The run cannot have the memory that it needs.
     #[error(
         "the run is thought to need {needed} of memory, and {limit} can be had, {by}; a larger cell, \

@@ -9,6 +9,7 @@
 //! reduction of strength keeps several states.
 
 mod couplings;
+pub mod factor_memory;
 pub mod room;
 pub mod speed;
 mod systems;

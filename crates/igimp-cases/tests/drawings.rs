@@ -134,6 +134,8 @@ fn an_outline_is_the_same_whichever_file_it_comes_from() {
         r#"{ file = "header.csv" }"#,
         r#"{ file = "feet.csv", unit = "ft" }"#,
         r#"{ file = "r2000.dxf", layer = "clay", unit = "m" }"#,
+        // Its header says that it is drawn in metres.
+        r#"{ file = "r2000.dxf", layer = "clay" }"#,
         r#"{ file = "r12.dxf", layer = "CLAY", unit = "m" }"#,
     ] {
         close(&folder.outline(polygon), &SLOPE);
@@ -229,7 +231,7 @@ fn what_cannot_be_read_is_named() {
         r#"{ file = "plain.csv", top = { file = "plain.csv" } }"#,
         r#"{ top = { file = "short.csv", unit = "m" }, bottom = [["0 m", "0 m"], ["60 m", "0 m"]] }"#,
         r#"{ file = "r2000.dxf", unit = "m" }"#,
-        r#"{ file = "r2000.dxf", layer = "clay" }"#,
+        r#"{ file = "r12.dxf", layer = "clay" }"#,
         r#"{ file = "r2000.dxf", layer = "gravel", unit = "m" }"#,
         r#"{ file = "r2000.dxf", layer = "arcs", unit = "m" }"#,
         r#"{ file = "r2000.dxf", layer = "notes", unit = "m" }"#,

@@ -30,8 +30,8 @@ const INEXACT: f64 = 0.1;
 const PATIENCE: usize = 300;
 /// Iterations that are tried at least where one was asked for.
 const TRIED: usize = 300;
-/// Default limit of the memory for factors \[bytes\].
-const FACTOR_BYTES: usize = 8 << 30;
+/// Memory allowed for factors where nobody knows the machine \[bytes\]: a choice. A run asks the machine instead.
+pub(crate) const FACTOR_BYTES: usize = 8 << 30;
 
 /// Chooses between a multifrontal factorisation and an iteration with multigrid.
 ///

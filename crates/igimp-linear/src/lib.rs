@@ -38,6 +38,7 @@ mod refine;
 use std::sync::Arc;
 
 pub use auto::AutoSolver;
+use auto::FACTOR_BYTES;
 pub use border::Border;
 pub use bordered::Bordered;
 pub use choice::{Forecast, LinearEffort, Reason};
@@ -190,10 +191,16 @@ impl SolverKind {
 
     /// A fresh solver of this kind with its default accuracy.
     pub fn build(self) -> Box<dyn LinearSolver> {
+        self.build_within(FACTOR_BYTES)
+    }
+
+    /// The same where no more memory is allowed for factors \[bytes\]; kinds that know one method only know no limit.
+    pub fn build_within(self, factor_bytes: usize) -> Box<dyn LinearSolver> {
+        let within = |solver: AutoSolver| Box::new(solver.with_factor_bytes(factor_bytes));
         match self {
-            Self::Auto => Box::new(AutoSolver::default()),
-            Self::Multigrid => Box::new(AutoSolver::by_iteration()),
-            Self::Single => Box::new(AutoSolver::in_single()),
+            Self::Auto => within(AutoSolver::default()),
+            Self::Multigrid => within(AutoSolver::by_iteration()),
+            Self::Single => within(AutoSolver::in_single()),
             Self::FaerCholesky => Box::new(FaerCholesky::default()),
             Self::MultifrontalCholesky => Box::new(MultifrontalCholesky::default()),
             Self::Multifrontal => Box::new(MultifrontalLu::default()),

@@ -52,6 +52,7 @@ pub use stage::{
 pub use water::{Construction, Drainage, Drained, PoreSource, WaterCondition, table_level};
 
 use igimp_geometry::region::Region;
+use igimp_text::MemoryLimit;
 
 /// A problem in plane strain (D = 2) or in space (D = 3), and how it is solved.
 #[derive(Clone, Debug)]
@@ -298,6 +299,8 @@ pub struct SolverSettings {
     pub cut_factor: f64,
     /// Linear solver.
     pub linear: SolverKind,
+    /// Memory for its factors; none: what the environment says, or else a share of what the computer has.
+    pub memory: Option<MemoryLimit>,
 }
 
 impl Default for SolverSettings {
@@ -308,6 +311,7 @@ impl Default for SolverSettings {
             cuts: 5,
             cut_factor: 0.5,
             linear: SolverKind::Auto,
+            memory: None,
         }
     }
 }

@@ -257,6 +257,25 @@ pub struct EnergySummary {
 }
 
 impl EnergySummary {
+    /// Its parts, as `energy.csv` names them.
+    pub fn parts(&self) -> [(&'static str, f64); 13] {
+        [
+            ("kinetic", self.kinetic),
+            ("kinetic_gain", self.kinetic_gain),
+            ("elastic_gain", self.elastic),
+            ("plastic_work", self.plastic),
+            ("contact", self.contact),
+            ("reinforcement", self.reinforcement),
+            ("pore_water", self.water),
+            ("damping", self.damping),
+            ("loads", self.loads),
+            ("supports", self.supports),
+            ("scheme", self.scheme),
+            ("map", self.map),
+            ("integration", self.integration),
+        ]
+    }
+
     /// In a sentence.
     pub fn sentence(&self) -> String {
         let mut text = format!(

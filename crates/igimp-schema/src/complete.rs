@@ -2,6 +2,7 @@
 //!
 //! What is wrong becomes [`Value::Invalid`], so that one slip is reported once.
 
+mod retired;
 pub(crate) mod value;
 
 use toml::de::DeValue;
@@ -268,6 +269,10 @@ impl Completer<'_> {
             let are_many = self.problems.are_many();
             let problem = self.problems.error(entry.key_place, message);
             if are_many {
+                continue;
+            }
+            if let Some(help) = retired::remedy(name, &entry.key) {
+                problem.help(help);
                 continue;
             }
             if let Some(help) = elsewhere(&entry.key) {

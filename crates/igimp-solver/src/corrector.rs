@@ -509,3 +509,40 @@ fn timed<T>(total: &mut Duration, phase: impl FnOnce() -> T) -> T {
     *total += clock.elapsed();
     result
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Guard;
+
+    // GOAL: a correction that was halved is followed by a stiffer tangent, one that was taken whole by a softer one.
+    // ORACLE: eq. 25e by hand: twice with every halving, half after a whole correction, between bounds; where corrections
+    // converge as much less as the residual.
+    #[test]
+    fn tangents_stiffen_where_corrections_are_halved() {
+        let after = |mut guard: Guard, halvings: u32, left: f64| {
+            guard.adapt(halvings, left);
+            guard.share
+        };
+        let near = |found: f64, expected: f64| {
+            assert!((found - expected).abs() < 1e-15, "{found} {expected}");
+        };
+        let at = |share| Guard {
+            share,
+            ..Guard::IN_SPACE
+        };
+        near(after(at(0.02), 1, 2.0), 0.04);
+        near(after(at(0.02), 3, 2.0), 0.16);
+        near(after(at(0.5), 4, 2.0), 1.0);
+        near(after(at(0.02), 0, 0.8), 0.01);
+        near(after(at(0.006), 0, 0.8), 0.005);
+        near(after(at(0.02), 0, 0.05), 0.001);
+        // On a path there is none until a correction is halved, and none again once it has faded.
+        near(after(Guard::ON_PATH, 0, 0.8), 0.0);
+        near(after(Guard::ON_PATH, 1, 2.0), 1e-3);
+        let faded = Guard {
+            share: 9e-4,
+            ..Guard::ON_PATH
+        };
+        near(after(faded, 0, 0.8), 0.0);
+    }
+}

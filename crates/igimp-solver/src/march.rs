@@ -345,3 +345,31 @@ fn conditions_at<const D: usize>(
         failure: Box::new(StepFailure::Assembly(source)),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::next_factor;
+
+    // GOAL: a step that was cut however often ends beyond where it began, and not on the multiple of the first size that it
+    // stands at.
+    // CASE: steps of a millionth of the first size and less, at such multiples and beside them.
+    // ORACLE: the sum of place and size; whole steps end on multiples, and the last one on 1.
+    #[test]
+    fn a_step_that_was_cut_often_ends_beyond_its_start() {
+        let nominal = 0.1;
+        for at in [0.0, 0.1, 0.300_000_000_000_000_04, 0.35] {
+            for size in [1e-7, 1e-8, 1e-10] {
+                let to = next_factor(at, size, nominal);
+                assert!(((to - at) / size - 1.0).abs() < 1e-4, "{at} {size:e}: {to}");
+            }
+        }
+        assert_eq!(
+            next_factor(0.2, nominal, nominal).to_bits(),
+            0.300_000_000_000_000_04_f64.to_bits()
+        );
+        assert_eq!(
+            next_factor(1.0 - 1e-9, 1e-9, nominal).to_bits(),
+            1.0_f64.to_bits()
+        );
+    }
+}

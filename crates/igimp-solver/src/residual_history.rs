@@ -199,4 +199,39 @@ mod tests {
         assert!(creeps(22, 0.99));
         assert!(!creeps(23, 0.99));
     }
+
+    /// How well the next system is solved after these residuals, the last of them at hand.
+    fn forcing(residuals: &[f64], tolerance: f64) -> f64 {
+        let (&now, _) = residuals.split_last().unwrap();
+        let history = ResidualHistory {
+            residuals: residuals.to_vec(),
+            ..ResidualHistory::default()
+        };
+        let at_hand = OutOfBalance {
+            relative_norm: now,
+            ..OutOfBalance::default()
+        };
+        history.forcing(&at_hand, tolerance)
+    }
+
+    // GOAL: a linear system is solved as well as the next residual deserves, no better and no worse.
+    // ORACLE: eq. 25a by hand.
+    #[test]
+    fn a_system_is_solved_to_a_tenth_of_what_the_next_residual_will_be() {
+        let near = |found: f64, expected: f64| {
+            assert!(
+                (found / expected - 1.0).abs() < 1e-12,
+                "{found:e} {expected:e}"
+            );
+        };
+        // Nothing is known of the pace yet.
+        near(forcing(&[1.0], 1e-6), 1e-4);
+        near(forcing(&[1.0, 0.5], 1e-6), 1e-2);
+        // The ratio of the last two residuals, squared.
+        near(forcing(&[1.0, 0.5, 0.05], 1e-6), 0.1 * 0.01);
+        near(forcing(&[1.0, 0.1, 1e-3], 1e-12), 0.1 * 1e-4);
+        // No more than the largest, and no less than what the tolerance asks for.
+        near(forcing(&[1.0, 0.5, 0.45], 1e-6), 1e-2);
+        near(forcing(&[1.0, 1e-2, 1e-5], 1e-7), 0.1 * 1e-2);
+    }
 }

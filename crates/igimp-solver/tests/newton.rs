@@ -570,3 +570,71 @@ fn the_report_tells_of_false_supports() {
         assert_eq!(missing > 1e-9, takes, "{missing}");
     }
 }
+
+/// A solver that answers four times the solution.
+struct Fourfold(Box<dyn LinearSolver>);
+
+impl LinearSolver for Fourfold {
+    fn name(&self) -> &'static str {
+        "fourfold"
+    }
+
+    fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), LinearSolverError> {
+        self.0.analyse(pattern)
+    }
+
+    fn factor(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
+        self.0.factor(matrix)
+    }
+
+    fn solve(
+        &mut self,
+        matrix: &TangentMatrix,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<SolveReport, LinearSolverError> {
+        let report = self.0.solve(matrix, rhs, solution)?;
+        for x in solution.iter_mut() {
+            *x *= 4.0;
+        }
+        Ok(report)
+    }
+
+    fn analyses(&self) -> usize {
+        self.0.analyses()
+    }
+}
+
+// GOAL: a correction is halved again from where it was halved before.
+// CASE: an elastic column in small strain whose base strains by more than a half, and corrections four times as long as they
+// should be: the whole of one turns its base inside out, and half of it too.
+// ORACLE: a quarter of it is the solution of a linear problem, which is found by one correction.
+#[test]
+fn two_halvings_leave_a_quarter_of_a_correction() {
+    let cells = 16;
+    let grid = unit_grid([1, cells]);
+    let mut constraints = standing(&grid);
+    constraints.fix_wall(&grid, 0, true, 0).unwrap();
+    let law: SharedLaw = Arc::new(HenckyElastic::new(Elasticity::new(YOUNG, 0.0).unwrap()));
+    let conditions = conditions(&grid, &constraints, &law, 0.7 * YOUNG / cells as f64);
+    let method = Method {
+        kinematics: Kinematics::SmallStrain,
+        ..Method::igimp()
+    };
+    let mut body = block(&grid, [0, 0], [1, cells]);
+    let mut workspace = Workspace::new(Box::new(Fourfold(SolverKind::Auto.build())));
+    let (from_to, settings) = ((0.0, 1.0), NewtonSettings::default());
+    let done = step(
+        &mut body,
+        &method,
+        &conditions,
+        from_to,
+        &settings,
+        &mut workspace,
+    );
+    let (report, _) = done.unwrap();
+    assert_eq!(report.iterations, 1, "{:?}", report.residuals);
+    // From its middle height on the lowest particle carries what lies above: a strain of 0.7 less its own share.
+    let strain = 1.0 - body.particles.def_grad[0][1][1];
+    assert!((strain - 0.7).abs() < 0.05, "{strain}");
+}

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use igimp_text::{MemoryLimit, NoAmount};
 
 const EXIT_CODES: &str = "Exit codes: 0 done, references met; 1 a reference missed; 2 bad input; \
                           3 not converged or interrupted; 4 input or output failed.";
@@ -66,26 +67,35 @@ pub(crate) struct CaseArguments {
     /// Compute the case on so many meshes, of h, h/2 and h/4, for the error of the mesh.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=3))]
     pub(crate) meshes: Option<u8>,
+    /// Most memory for factors in space, as "12 GiB" or "25 %" of what the computer has; without it that of the case,
+    /// that of the environment (IGIMP_MEMORY), or half of what the computer has.
+    #[arg(long, value_name = "AMOUNT", value_parser = amount_of_memory)]
+    pub(crate) memory: Option<String>,
 }
 
 impl CaseArguments {
     /// All that replaces values of the file.
     pub(crate) fn settings(&self) -> Vec<String> {
-        with_meshes(&self.set, self.meshes)
+        with_short_ways(&self.set, self.meshes, self.memory.as_deref())
     }
 }
 
 impl RunArguments {
     /// All that replaces values of the file.
     pub(crate) fn settings(&self) -> Vec<String> {
-        with_meshes(&self.set, self.meshes)
+        with_short_ways(&self.set, self.meshes, self.memory.as_deref())
     }
 }
 
-/// `--meshes` is a short way to set a value.
-fn with_meshes(set: &[String], meshes: Option<u8>) -> Vec<String> {
+/// `--meshes` and `--memory` are short ways to set a value.
+fn with_short_ways(set: &[String], meshes: Option<u8>, memory: Option<&str>) -> Vec<String> {
     let study = meshes.map(|meshes| format!("mesh_study.meshes={meshes}"));
-    set.iter().cloned().chain(study).collect()
+    let memory = memory.map(|memory| format!("solver.memory={memory}"));
+    set.iter().cloned().chain(study).chain(memory).collect()
+}
+
+fn amount_of_memory(text: &str) -> Result<String, NoAmount> {
+    text.parse().map(|_: MemoryLimit| text.to_owned())
 }
 
 // Each switch is its own flag on the command line.
@@ -103,6 +113,10 @@ pub(crate) struct RunArguments {
     /// Compute the case on so many meshes, of h, h/2 and h/4, for the error of the mesh.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=3), conflicts_with = "task")]
     pub(crate) meshes: Option<u8>,
+    /// Most memory for factors in space, as "12 GiB" or "25 %" of what the computer has; without it that of the case,
+    /// that of the environment (IGIMP_MEMORY), or half of what the computer has.
+    #[arg(long, value_name = "AMOUNT", value_parser = amount_of_memory, conflicts_with = "task")]
+    pub(crate) memory: Option<String>,
     /// Threads to use; all cores when not given.
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     pub(crate) threads: Option<usize>,

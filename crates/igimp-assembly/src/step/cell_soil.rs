@@ -13,7 +13,8 @@ use crate::method::{Geometry, Locking, Method};
 use crate::step::domain::{capped_half_length, merge_equal_nodes, off_grid};
 
 /// A cell that is filled to less than this share holds a sliver of soil that reached over its face
-/// \[-\].
+/// \[-\]. A choice: less leaves nodes with so little soil that they climb without end at a limit load, more takes weight
+/// and strength off the body (docs/src/comparisons.md, offsets of a vertical cut).
 const SLIVER: f64 = 0.02;
 
 /// Share β of its own distortion that a particle keeps where plastic flow is associated, on a given
@@ -23,7 +24,8 @@ const OWN_GIVEN: f64 = 0.02;
 /// The same on a moving one: what the mean does not see is held in every step \[-\].
 const OWN_MOVING: f64 = 0.1;
 
-/// The same where plastic flow keeps volume although the law has friction, on both \[-\].
+/// The same where plastic flow keeps volume although the law has friction, on both \[-\]: with less Newton's method loses its way
+/// where equilibrium is not unique, with more factors of safety rise (docs/src/comparisons.md: slopes with ψ = 0 at 0.3 and 1).
 const OWN_ISOCHORIC: f64 = 0.3;
 
 /// The soil of every cell, and the parts of every particle.
@@ -151,6 +153,7 @@ impl<const D: usize> CellSoil<D> {
         let share: f64 = (parts.iter().filter(|part| kept(part)))
             .map(|part| part.share)
             .sum();
+        // A choice: which half a particle lies in says whether it belongs to the body or stands beside it.
         let all = share <= 0.5;
         let whole = if all { 1.0 } else { share };
         (parts.iter().filter(move |part| all || kept(part)))

@@ -11,9 +11,9 @@ const TRUST: f64 = 1.5;
 
 /// A bound of the memory of this process, and who sets it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Limit {
-    bytes: f64,
-    by: &'static str,
+pub(crate) struct Limit {
+    pub(crate) bytes: f64,
+    pub(crate) by: &'static str,
 }
 
 /// Refuses a run that cannot have the memory that it needs; of a study of the mesh error, its largest
@@ -42,21 +42,29 @@ fn check(needed: f64, limit: Limit) -> Result<(), CaseError> {
     })
 }
 
+/// The smallest bound that the system tells of and that stays as long as the program runs, without swap.
+pub(crate) fn lasting_limit() -> Option<Limit> {
+    let space = || {
+        let bytes = soft_limit(&read("/proc/self/limits")?, "Max address space")?;
+        let by = "the limit of the address space (ulimit -v)";
+        Some(Limit { bytes, by })
+    };
+    let computer = || {
+        let bytes = kibibytes(&read("/proc/meminfo")?, "MemTotal:")?;
+        let by = "what the computer has";
+        Some(Limit { bytes, by })
+    };
+    smallest([space(), of_group(), computer()])
+}
+
 /// The smallest bound that the system tells of.
 fn limit() -> Option<Limit> {
-    let read = |path: &str| std::fs::read_to_string(path).ok();
     let space = || {
         let all = soft_limit(&read("/proc/self/limits")?, "Max address space")?;
         let used = kibibytes(&read("/proc/self/status")?, "VmSize:")?;
         Some(Limit {
             bytes: (all - used).max(0.0),
             by: "the limit of the address space (ulimit -v)",
-        })
-    };
-    let group = || {
-        Some(Limit {
-            bytes: read("/sys/fs/cgroup/memory.max")?.trim().parse().ok()?,
-            by: "the limit of the control group",
         })
     };
     let computer = || {
@@ -67,9 +75,24 @@ fn limit() -> Option<Limit> {
             by: "all that the computer has",
         })
     };
-    let limits = [space(), group(), computer()];
+    smallest([space(), of_group(), computer()])
+}
+
+/// That of the control group.
+fn of_group() -> Option<Limit> {
+    Some(Limit {
+        bytes: read("/sys/fs/cgroup/memory.max")?.trim().parse().ok()?,
+        by: "the limit of the control group",
+    })
+}
+
+fn smallest(limits: [Option<Limit>; 3]) -> Option<Limit> {
     let smaller = |a: &Limit, b: &Limit| a.bytes.total_cmp(&b.bytes);
     limits.into_iter().flatten().min_by(smaller)
+}
+
+fn read(path: &str) -> Option<String> {
+    std::fs::read_to_string(path).ok()
 }
 
 /// The soft limit of a name in `/proc/self/limits` \[bytes\]; none when it is unlimited.

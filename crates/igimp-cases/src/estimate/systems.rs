@@ -6,8 +6,11 @@
 
 use std::sync::Arc;
 
-use igimp_linear::{AutoSolver, Forecast, LinearSolverError, Pattern, Reason, SolverKind};
+use igimp_linear::{AutoSolver, Forecast, Pattern, Reason, SolverKind};
 use igimp_model::Case;
+
+use super::factor_memory::FactorMemory;
+use crate::error::CaseError;
 
 /// Factors in the plane, for each unknown and each doubling of the unknowns \[bytes\].
 const PER_FILL: f64 = 1.5e2;
@@ -33,6 +36,8 @@ const ITERATED: f64 = 6e-5;
 pub struct Systems {
     /// The method, and why it will be taken.
     pub method: String,
+    /// Memory allowed for factors, where it decides on the method.
+    pub allowed: Option<FactorMemory>,
     /// Memory of the solver \[bytes\].
     pub bytes: f64,
     /// Additional memory where an iteration is abandoned for a factorisation \[bytes\]; zero where none is, or could be.
@@ -55,6 +60,7 @@ impl Systems {
         let more = if symmetric { 1.0 } else { UNSYMMETRIC };
         Self {
             method: method(case.solver.linear, symmetric, iterated),
+            allowed: None,
             bytes: share * PER_FILL * n * n.max(2.0).log2(),
             fallback_bytes: 0.0,
             seconds: if iterated {
@@ -68,11 +74,11 @@ impl Systems {
     /// Those of a case in space whose nodes will be coupled like this.
     ///
     /// # Errors
-    /// [`LinearSolverError`] where no elimination can be planned.
+    /// [`CaseError`] where no elimination can be planned, or the environment allows no amount of memory.
     pub(super) fn in_space<const D: usize>(
         case: &Case<D>,
         pattern: &Arc<Pattern>,
-    ) -> Result<Self, LinearSolverError> {
+    ) -> Result<Self, CaseError> {
         let symmetric = is_symmetric(case);
         let kind = case.solver.linear;
         let mut solver = match kind {
@@ -80,6 +86,8 @@ impl Systems {
             SolverKind::Single => AutoSolver::in_single(),
             _ => AutoSolver::default(),
         };
+        let allowed = FactorMemory::of(case)?;
+        solver = solver.with_factor_bytes(allowed.bytes);
         let Forecast {
             iterates,
             reason,
@@ -92,10 +100,11 @@ impl Systems {
         let factors = factor_bytes as f64;
         let mut words = method(kind, symmetric, iterated);
         if kind == SolverKind::Auto && reason != Reason::Asked {
-            words = format!("{words}: {reason}");
+            words = format!("{words}: {}", allowed.explain(&reason));
         }
         Ok(Self {
             method: words,
+            allowed: matches!(kind, SolverKind::Auto | SolverKind::Multigrid).then_some(allowed),
             bytes: if iterated {
                 PER_ITERATED * n
             } else if kind == SolverKind::Single {

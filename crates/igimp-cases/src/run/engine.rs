@@ -21,7 +21,7 @@ use super::resources::memory::{self, Before};
 use super::resources::processor;
 use super::resume::{ResumePoint, Resumption, Search};
 use super::session::{Session, StageEnd};
-use super::stages::{construction, dynamic, initial, loading, run_out, safety};
+use super::stages::{construction, dynamic, fallen, initial, loading, run_out, safety};
 use super::state::State;
 use super::water::pores;
 use super::{Event, Failure, Listener, Run, Start, Target, failure, reinforcement};
@@ -69,6 +69,7 @@ pub(super) fn one_mesh<const D: usize>(
         },
         last_resistance: 0.0,
         ends: HashMap::new(),
+        warned_of_memory: false,
     };
     let mut stages = Stages::begin(&mut session, target, start, before)?;
     let size = session.summary.size;
@@ -234,8 +235,13 @@ impl<const D: usize> Stages<D> {
             StageEnd::Stopped(reason) => (StageOutcome::Stopped, reason, None),
             StageEnd::Interrupted => (StageOutcome::Interrupted, EndReason::Interrupted, None),
             StageEnd::NotConverged(error)
-                if stage.stop_when.no_equilibrium && error.failure.is_want_of_equilibrium() =>
+                if error.failure.is_want_of_equilibrium()
+                    && (stage.stop_when.no_equilibrium
+                        || fallen::is_answered(session.model.case, number)) =>
             {
+                if fallen::is_answered(session.model.case, number) {
+                    session.warn_of_stage(number, &fallen::remark(&summary));
+                }
                 let failure = &error.failure;
                 summary.lost = failure::tells_no_limit(&stage.kind, failure, &summary);
                 let reason = EndReason::NoEquilibrium {
@@ -417,7 +423,19 @@ fn dispatch<const D: usize>(
         | StageKind::Displacement { .. }
         | StageKind::Rigid(_) => loading::load(session, state, number, summary, resumption),
         StageKind::StrengthReduction(reduction) => {
-            safety::reduce_strength(session, state, number, reduction, summary, search)
+            match fallen::anew(session, number, reduction, state) {
+                None => safety::reduce_strength(session, state, number, reduction, summary, search),
+                Some((reduction, found)) => {
+                    let ended = safety::reduce_strength(
+                        session, &found, number, &reduction, summary, search,
+                    );
+                    let found = summary.safety.as_ref().and_then(fallen::stands_after_all);
+                    if let Some(text) = found {
+                        session.warn_of_stage(number, &text);
+                    }
+                    ended
+                }
+            }
         }
         StageKind::Construction(_) => {
             construction::build(session, (start, state), number, summary, resumption)

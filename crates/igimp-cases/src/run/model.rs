@@ -19,6 +19,7 @@ use super::footing::{self, Footing};
 use super::state::{Controls, State};
 use super::water::{GroundWater, Seeded};
 use crate::error::CaseError;
+use crate::estimate::factor_memory::FactorMemory;
 use crate::run::state::gravity_of_weights;
 
 /// Load points per cell along a loaded segment.
@@ -43,6 +44,8 @@ pub struct Model<'c, const D: usize> {
     pub(crate) seeded: Arc<Seeded<D>>,
     /// The particles of bodies that stages place.
     pub(crate) later: Option<Particles<D>>,
+    /// Memory allowed for the factors of its linear systems.
+    pub(crate) factors: FactorMemory,
 }
 
 impl<'c, const D: usize> Model<'c, D> {
@@ -60,6 +63,7 @@ impl<'c, const D: usize> Model<'c, D> {
             water: Vec::new(),
             seeded: Arc::default(),
             later: None,
+            factors: FactorMemory::of(case)?,
         };
         let grid = model.grid(0.0)?;
         let cell = model.cell_height()?;
@@ -344,7 +348,7 @@ impl<'c, const D: usize> Model<'c, D> {
     pub fn solver(&self) -> Box<dyn LinearSolver> {
         match &self.case.given_solver {
             Some(given) => (given.make)(),
-            None => self.case.solver.linear.build(),
+            None => self.case.solver.linear.build_within(self.factors.bytes),
         }
     }
 }

@@ -28,6 +28,7 @@ use crate::run::output::records::AcceptedStep;
 use records::{Records, Rows};
 
 pub(crate) mod checks;
+mod difference;
 mod drawn;
 pub(crate) mod entry;
 pub(crate) mod export;
@@ -234,21 +235,8 @@ impl<const D: usize> Output<D> {
         run: &Summary,
     ) -> Result<(), CaseError> {
         let clock = Instant::now();
-        self.steps += 1;
+        self.frame_of_step(stage, model, summary, taken)?;
         let body = taken.accepted.body;
-        if let Every::Steps(every) = self.every
-            && summary.steps.is_multiple_of(every.max(1))
-        {
-            let conditions = &taken.accepted.conditions;
-            let scene = Scene {
-                particles: &body.particles,
-                laws: &conditions.laws,
-                structures: &outlines::structures(model.case, taken.controls, body),
-            };
-            let name = &model.case.stages[stage].name;
-            self.frames
-                .add(self.steps as f64, name, &scene, &conditions.grid)?;
-        }
         let due = self.checkpoint_every > 0 && summary.steps.is_multiple_of(self.checkpoint_every);
         if due || taken.interrupted {
             let notes = Notes {
@@ -259,6 +247,32 @@ impl<const D: usize> Output<D> {
             self.save(&[("current", body)], &notes)?;
         }
         self.seconds += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// Counts a step, and writes a frame when one is due: all that there is to write after a step that no march goes on from.
+    pub(crate) fn frame_of_step(
+        &mut self,
+        stage: usize,
+        model: &Model<'_, D>,
+        summary: &StageSummary,
+        taken: &AcceptedStep<'_, D>,
+    ) -> Result<(), CaseError> {
+        self.steps += 1;
+        let stage = &model.case.stages[stage];
+        if let Every::Steps(every) = self.every
+            && frame_number(stage, summary, taken)
+                .is_some_and(|own| own.is_multiple_of(every.max(1)))
+        {
+            let (body, conditions) = (taken.accepted.body, &taken.accepted.conditions);
+            let scene = Scene {
+                particles: &body.particles,
+                laws: &conditions.laws,
+                structures: &outlines::structures(model.case, taken.controls, body),
+            };
+            self.frames
+                .add(self.steps as f64, &stage.name, &scene, &conditions.grid)?;
+        }
         Ok(())
     }
 
@@ -458,6 +472,22 @@ impl<const D: usize> Output<D> {
     fn write_summary(&self, summary: &Summary) -> Result<(), CaseError> {
         Ok(write_summary(self.folder.root(), summary)?)
     }
+}
+
+/// The number of an accepted step among those that frames are counted by: of a stage that takes time the parts of its duration
+/// that steps land on, else all.
+fn frame_number<const D: usize>(
+    stage: &Stage,
+    summary: &StageSummary,
+    taken: &AcceptedStep<'_, D>,
+) -> Option<usize> {
+    let report = taken.accepted.report;
+    if report.energy.is_none() {
+        return Some(summary.steps);
+    }
+    let part = report.to * stage.steps as f64;
+    let lands = (part - part.round()).abs() < 1e-6;
+    lands.then_some(part.round() as usize)
 }
 
 /// The pictures of curves and monitors.

@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use igimp_assembly::{
     Geometry, MassMatrix, Method, Particles, StepEnergy, TimeScheme, TimeStep, UnbalancedForces,
 };
+use igimp_linear::LinearEffort;
 use igimp_results::ending::EndReason;
 use igimp_results::fields;
 use igimp_results::summary::{StageSummary, Summary};
@@ -26,6 +27,7 @@ use super::resume::Resumption;
 use super::state::{Controls, RigidTrack, State};
 use super::{Event, Listener, rigid};
 use crate::error::CaseError;
+use crate::estimate::factor_memory::decides;
 use crate::run::output::records::AcceptedStep;
 
 /// Share of the load from which on a false support at dropped nodes is worth a warning \[-\].
@@ -45,6 +47,8 @@ pub(crate) struct Session<'a, const D: usize> {
     pub(crate) last_resistance: f64,
     /// Ends of stages that ran, by number.
     pub(crate) ends: HashMap<usize, State<D>>,
+    /// Whether it was said that memory decided on the linear solver.
+    pub(crate) warned_of_memory: bool,
 }
 
 impl<const D: usize> Session<'_, D> {
@@ -53,10 +57,19 @@ impl<const D: usize> Session<'_, D> {
         self.listener.on_event(event);
     }
 
-    /// Tells the listener of something that the user should know, and keeps it for the summary.
+    /// Tells the listener once of something that the user should know, and keeps it for the summary.
     pub(crate) fn warn(&mut self, text: String) {
+        if self.summary.warnings.contains(&text) {
+            return;
+        }
         self.tell(&Event::Warning { text: &text });
         self.summary.warnings.push(text);
+    }
+
+    /// The same of a stage, by its number.
+    pub(crate) fn warn_of_stage(&mut self, number: usize, text: &str) {
+        let name = &self.model.case.stages[number].name;
+        self.warn(format!("stage \"{name}\": {text}"));
     }
 
     /// What a march needs besides the body.
@@ -134,9 +147,10 @@ impl<const D: usize> Session<'_, D> {
         }
         let own = &report.linear;
         if D == 3 && own.solutions > 0 {
+            self.warn_of_memory(&stage.name, own);
             let linear = stage.linear.get_or_insert_default();
             own.method.clone_into(&mut linear.method);
-            linear.reason = own.reason.to_string();
+            linear.reason = self.model.factors.explain(&own.reason);
             linear.solutions += own.solutions;
             linear.iterations += own.iterations;
             linear.most_iterations = linear.most_iterations.max(own.most_iterations);
@@ -157,6 +171,22 @@ impl<const D: usize> Session<'_, D> {
         *unknowns = report.unknowns.max(*unknowns);
         let course = (report.from, report.to, &report.residuals[..]);
         self.write_convergence(stage, course, true)
+    }
+
+    /// Says once that the memory of this machine decided how systems are solved: another one comes to other last digits.
+    fn warn_of_memory(&mut self, stage: &str, own: &LinearEffort) {
+        let factors = &self.model.factors;
+        if !(factors.is_of_machine && decides(&own.reason)) || self.warned_of_memory {
+            return;
+        }
+        let text = format!(
+            "stage \"{stage}\": the memory for factors, {}, decides that systems are solved by {}; a machine with more comes to \
+             other last digits, and memory = \"...\" in [solver] makes all alike",
+            factors.words(),
+            own.method
+        );
+        self.warned_of_memory = true;
+        self.warn(text);
     }
 
     /// Adds a step that was not accepted.

@@ -20,7 +20,21 @@ use igimp_schema::tree::read::{At, Either};
 
 use super::AllNames;
 use super::bodies::site::Soil;
+use igimp_text::{MemoryLimit, NoAmount};
 use quantities::fields;
+
+/// Most memory for factors, if the case states it.
+fn memory(stated: Option<&At<String>>, problems: &mut Problems) -> Option<MemoryLimit> {
+    let stated = stated?;
+    match stated.value.parse() {
+        Ok(limit) => Some(limit),
+        Err(wrong) => {
+            let wrong: NoAmount = wrong;
+            problems.error(stated.place, wrong.to_string());
+            None
+        }
+    }
+}
 
 /// Newton's method, step cutting, linear solver.
 pub(super) fn solver(
@@ -66,6 +80,7 @@ pub(super) fn solver(
         cuts: *own.step_cutting.times as u32,
         cut_factor: *own.step_cutting.factor,
         linear,
+        memory: memory(own.memory.as_ref(), problems),
     }
 }
 

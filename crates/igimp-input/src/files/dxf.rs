@@ -149,6 +149,23 @@ pub(super) fn line_on(text: &str, layer: Option<&str>) -> Result<Line, Trouble> 
     })
 }
 
+/// The unit that a drawing says of itself, `$INSUNITS` in its header, if it is one of length that case files know.
+pub(super) fn unit_of_header(text: &str) -> Option<&'static str> {
+    let mut lines = text.lines().map(str::trim);
+    lines.find(|line| *line == "$INSUNITS")?;
+    // Group 70, then the code (AutoCAD DXF reference, "header group codes").
+    lines.next().filter(|group| *group == "70")?;
+    match lines.next()? {
+        "1" => Some("in"),
+        "2" => Some("ft"),
+        "4" => Some("mm"),
+        "5" => Some("cm"),
+        "6" => Some("m"),
+        "7" => Some("km"),
+        _ => None,
+    }
+}
+
 /// Names of layers are the same in capitals.
 fn is_same(a: &str, b: &str) -> bool {
     a.to_lowercase() == b.to_lowercase()
@@ -290,7 +307,7 @@ fn joined(mut pieces: Vec<Line>) -> Result<Line, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::line_on;
+    use super::{line_on, unit_of_header};
 
     fn drawn(entities: &str) -> String {
         format!("0\nSECTION\n2\nENTITIES\n{entities}0\nENDSEC\n0\nEOF\n")
@@ -345,6 +362,32 @@ mod tests {
             .unwrap();
         assert_eq!(found.points, [[0.0, 2.0], [1.0, 2.0]]);
         assert!(!found.is_closed);
+    }
+
+    // GOAL: the unit of a drawing is that of its header, and nothing where the header names none.
+    // ORACLE: the codes of the AutoCAD DXF reference; a drawing of ezdxf, in metres.
+    #[test]
+    fn the_header_names_the_unit() {
+        let drawing = include_str!("../../../igimp-cases/tests/data/drawings/r2000.dxf");
+        assert_eq!(unit_of_header(drawing), Some("m"));
+        let header =
+            |code: &str| format!("0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n 70\n{code}\n0\nENDSEC\n");
+        for (code, unit) in [
+            ("1", "in"),
+            ("2", "ft"),
+            ("4", "mm"),
+            ("5", "cm"),
+            ("6", "m"),
+            ("7", "km"),
+        ] {
+            assert_eq!(unit_of_header(&header(code)), Some(unit));
+        }
+        for code in ["0", "3", "21", "", "m"] {
+            assert_eq!(unit_of_header(&header(code)), None);
+        }
+        assert_eq!(unit_of_header("9\n$INSUNITS\n"), None);
+        let old = include_str!("../../../igimp-cases/tests/data/drawings/r12.dxf");
+        assert_eq!(unit_of_header(old), None);
     }
 
     /// GOAL: a damaged drawing is read or refused, and nothing else.

@@ -105,7 +105,12 @@ fn corners(
     let value = table.get("file").ok_or(Wrong)?;
     let file = Named::new(value, folder).ok_or(Wrong)?;
     match points(&file, table, closed) {
-        Ok(points) => Ok(points),
+        Ok((points, note)) => {
+            if let Some(Trouble { message, help }) = note {
+                problems.warning(value.place, message).help(help);
+            }
+            Ok(points)
+        }
         Err(trouble) => {
             file.report(value, trouble, problems);
             Err(Wrong)
@@ -113,7 +118,23 @@ fn corners(
     }
 }
 
-fn points(file: &Named, table: &Node, closed: bool) -> Result<Vec<Node>, Trouble> {
+/// What is said where a drawing and the case name different units.
+fn other_unit(unit: &str, header: &str) -> Trouble {
+    Trouble::new(
+        format_args!(
+            "the drawing says that it is drawn in {header} ($INSUNITS), and counts as drawn in {unit}"
+        ),
+        "drawing programs set $INSUNITS unasked; unit in the case file counts",
+    )
+}
+
+/// The corners that a file has, and what is to be said of them.
+fn points(
+    file: &Named,
+    table: &Node,
+    closed: bool,
+) -> Result<(Vec<Node>, Option<Trouble>), Trouble> {
+    let mut note = None;
     let (unit, layer) = (table.text_at("unit"), table.text_at("layer"));
     let text = text_of(&file.path, LARGEST)
         .map_err(|error| Trouble::new(error, "its path starts from the case file"))?;
@@ -136,12 +157,17 @@ fn points(file: &Named, table: &Node, closed: bool) -> Result<Vec<Node>, Trouble
                 needed,
             ));
         }
-        if unit.is_none() {
+        let header = dxf::unit_of_header(&text);
+        let Some(unit) = unit.or(header) else {
             return Err(Trouble::new(
                 "nothing says in which unit it is drawn",
                 "add unit = \"m\", or what it is drawn in",
             ));
-        }
+        };
+        note = header
+            .filter(|header| *header != unit)
+            .map(|header| other_unit(unit, header));
+        let unit = Some(unit);
         let unit = unit_of(("unit", unit), ("x", None), Dimension::Length)?;
         (points, [unit.clone(), unit])
     } else {
@@ -173,5 +199,6 @@ fn points(file: &Named, table: &Node, closed: bool) -> Result<Vec<Node>, Trouble
         let [x, y] = pair;
         Ok(Node::written(Value::List(vec![x?, y?]), table.place))
     };
-    points.into_iter().map(node).collect()
+    let points = points.into_iter().map(node).collect::<Result<_, _>>()?;
+    Ok((points, note))
 }

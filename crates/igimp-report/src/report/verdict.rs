@@ -40,9 +40,14 @@ pub(super) fn verdict(summary: &Summary) -> Verdict {
     };
     let mut sentences = vec![ending(summary)];
     sentences.extend(on_checks(summary, &missed));
-    for stage in &summary.stages {
+    let searches = || summary.stages.iter().filter(|stage| stage.safety.is_some());
+    for stage in searches() {
         if let Some(safety) = &stage.safety {
-            sentences.extend(on_safety(safety));
+            let mut own = on_safety(safety);
+            if let (Some(first), true) = (own.first_mut(), searches().count() > 1) {
+                *first = format!("Stage “{}”: {first}", stage.name);
+            }
+            sentences.extend(own);
         }
     }
     Verdict {
@@ -205,5 +210,39 @@ fn list(names: &[String]) -> String {
         [] => String::new(),
         [one] => one.clone(),
         [some @ .., last] => format!("{} and {last}", some.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // GOAL: several factors of safety are told apart by their stages, and one alone needs no name.
+    // ORACLE: by hand.
+    #[test]
+    fn several_factors_name_their_stages() {
+        let stage = |name: &str, stable: f64| StageSummary {
+            name: name.to_owned(),
+            safety: Some(SafetySummary {
+                stable: Some(stable),
+                failed: Some(stable + 0.01),
+                ..SafetySummary::default()
+            }),
+            ..StageSummary::default()
+        };
+        let text = |stages: Vec<StageSummary>| {
+            let summary = Summary {
+                stages,
+                ..Summary::default()
+            };
+            verdict(&summary).text
+        };
+        let both = text(vec![stage("dry", 1.5), stage("full pool", 1.2)]);
+        for (name, factor) in [("dry", "1.5"), ("full pool", "1.2")] {
+            let told = format!("Stage “{name}”: The factor of safety lies between {factor}");
+            assert!(both.contains(&told), "{both}");
+        }
+        let one = text(vec![stage("dry", 1.5)]);
+        assert!(!one.contains("Stage “dry”: The"), "{one}");
     }
 }

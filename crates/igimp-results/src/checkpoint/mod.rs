@@ -210,7 +210,10 @@ fn accepted(
     expected_fingerprint: Option<&str>,
 ) -> Result<Manifest, CheckpointError> {
     if expected_fingerprint.is_some_and(|expected| expected != manifest.fingerprint) {
-        return Err(CheckpointError::OtherCase { path: path.into() });
+        return Err(CheckpointError::OtherCase {
+            path: path.into(),
+            differs: None,
+        });
     }
     if manifest.program != PROGRAM {
         return Err(CheckpointError::OtherProgram {

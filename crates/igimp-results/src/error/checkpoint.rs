@@ -29,13 +29,15 @@ pub enum CheckpointError {
     },
     /// The checkpoint has another fingerprint.
     #[error(
-        "the checkpoint in {} belongs to another case or to other input; run without --resume \
+        "the checkpoint in {} belongs to another case or to other input{}; run without --resume \
          and --from-stage to begin afresh",
-        path.display()
+        path.display(), in_parentheses(differs.as_deref())
     )]
     OtherCase {
         /// The folder.
         path: PathBuf,
+        /// A key that differs, with both values, where it is known.
+        differs: Option<String>,
     },
     /// The checkpoint comes from another version of the program.
     #[error(
@@ -89,3 +91,7 @@ pub const FORMAT_VERSION: u64 = 5;
 
 /// The program and its version, as written into checkpoints.
 pub const PROGRAM: &str = concat!("igimp ", env!("CARGO_PKG_VERSION"));
+
+fn in_parentheses(what: Option<&str>) -> String {
+    what.map_or_else(String::new, |what| format!(" ({what})"))
+}

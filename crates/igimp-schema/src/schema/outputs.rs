@@ -10,6 +10,8 @@ table! {
     max_iterations: whole(1, 1000), default "25", "most corrections per step";
     step_cutting: table(STEP_CUTTING: StepCutting), default "{}", "what happens to a step that does not converge";
     linear: choice(LinearSolver), default "\"auto\"", "linear solver";
+    memory: text, optional "that of --memory or IGIMP_MEMORY, or half of what the computer has",
+        "most memory for its factors in space, as \"12 GiB\", or \"25 %\" of what the computer has";
 }
 
 table! {

@@ -158,12 +158,14 @@ fn end(summary: &StageSummary) -> String {
     let mut line = outcome(summary);
     let _ = write!(
         line,
-        "; {} steps, {} iterations, {} cuts, largest displacement {} m",
-        summary.steps,
-        summary.iterations,
-        summary.cuts,
-        short(summary.largest_displacement)
+        "; {} steps, {} iterations, {} cuts",
+        summary.steps, summary.iterations, summary.cuts
     );
+    // A search leaves the body as it was found: how far it moved is told of every trial and equilibrium.
+    if summary.safety.is_none() {
+        let largest = short(summary.largest_displacement);
+        let _ = write!(line, ", largest displacement {largest} m");
+    }
     let path = summary
         .safety
         .as_ref()
@@ -413,7 +415,7 @@ mod tests {
         stage 1/3 "initial stresses" (strength-reduction)
           SRF 1.375   stands  0.0213 m  5 steps
           SRF 1.5     fails   0.0213 m  5 steps  (no equilibrium)
-          1.375 <= F < 1.500; 0 steps, 0 iterations, 0 cuts, largest displacement 0 m
+          1.375 <= F < 1.500; 0 steps, 0 iterations, 0 cuts
         "#);
     }
 }

@@ -36,12 +36,17 @@ pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Told, CaseErr
     let cells = case.grid.cells().map(|count| count.to_string()).join(" x ");
     let [particle, unknown] = size.per_item.map(|bytes| count(round(bytes)));
     let row = |name: &str, value: String| vec![name.to_owned(), value];
-    let rows = [
+    let allowed = size.systems.allowed.iter();
+    let allowed = allowed.map(|allowed| row("factors", allowed.words()));
+    let mut rows = vec![
         row("method", case.method.label()),
         row("particles", count(size.particles)),
         row("cells", format!("{} ({cells})", count(size.cells))),
         row("unknowns", format!("about {}", count(size.unknowns))),
         row("solver", size.systems.method.clone()),
+    ];
+    rows.extend(allowed);
+    rows.extend([
         row("memory", memory(size.bytes, size.most_bytes)),
         row(
             "",
@@ -49,7 +54,7 @@ pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Told, CaseErr
         ),
         row("time", time::sentence(&time)),
         row("results", case.output.folder.display().to_string()),
-    ];
+    ]);
     let stages: Vec<Vec<String>> = case
         .stages
         .iter()

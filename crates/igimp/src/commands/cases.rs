@@ -18,8 +18,8 @@ pub(crate) fn explain(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
 
 pub(crate) fn check(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
     let file = read(&arguments.case, &arguments.settings())?;
-    let told = in_any_dimension!(file.any_case(), case => size(case, &arguments.case))?;
     output::warn(&file.warnings());
+    let told = in_any_dimension!(file.any_case(), case => size(case, &arguments.case))?;
     output::print(&told.text)?;
     Ok(Exit::Done)
 }

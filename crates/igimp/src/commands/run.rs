@@ -194,6 +194,9 @@ fn again(arguments: &RunArguments) -> String {
     if let Some(meshes) = arguments.meshes {
         words.push(format!("--meshes {meshes}"));
     }
+    if let Some(memory) = &arguments.memory {
+        words.push(format!("--memory {}", quoted(memory)));
+    }
     if let Some(systems) = &arguments.export_matrix {
         let systems = quoted(&systems.display().to_string());
         words.push(format!("--export-matrix {systems}"));
@@ -222,6 +225,8 @@ mod tests {
             "materials.clay.cohesion=12 kPa",
             "--out",
             "out/a",
+            "--memory",
+            "2 GiB",
             "--export-matrix",
             "my systems",
             "--quiet",
@@ -232,7 +237,7 @@ mod tests {
         assert_eq!(
             again(&arguments),
             "igimp run 'my slope.toml' --out out/a --set 'materials.clay.cohesion=12 kPa' \
-             --export-matrix 'my systems' --resume"
+             --memory '2 GiB' --export-matrix 'my systems' --resume"
         );
         assert_eq!(quoted("it's"), r"'it'\''s'");
     }

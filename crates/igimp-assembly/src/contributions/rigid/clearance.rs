@@ -8,10 +8,13 @@ use super::vectors::{minus, norm};
 use crate::body::particles::Particles;
 use crate::error::padded;
 
-/// The centre of a particle stands at least so far off a body, in half-lengths as seeded \[-\].
+/// The centre of a particle stands at least so far off a body, in half-lengths as seeded \[-\]. A choice: an undeformed domain
+/// then reaches no further into the body than a quarter of its width, and a particle at rest on a side, one half-length off,
+/// is left alone until half of that has crept away.
 const LEAST_HEIGHT: f64 = 0.5;
 
-/// A step carries a centre at most so far into a body, in half-lengths as seeded \[-\].
+/// A step carries a centre at most so far into a body, in half-lengths as seeded \[-\]. A choice: beyond that the whole domain lies
+/// within the body, and the way back could lead through its other side.
 const MOST_DEPTH: f64 = 1.0;
 
 /// In a notch, or between two bodies, the way off one side leads to another: the sides are looked at so often.

@@ -10,6 +10,7 @@ use igimp_results::folder::overwrite_guard::{admit, refuse_links};
 use igimp_results::folder::provenance::Owner;
 use igimp_results::folder::{self, holds_checkpoints, owner, refuse_foreign};
 
+use super::difference;
 use crate::error::CaseError;
 use crate::run::resume::fingerprint;
 use crate::run::{Start, Target};
@@ -54,7 +55,12 @@ impl Entered {
         } else if start == Start::Resume
             && owner(root).is_some_and(|owner| owner.input != claim.input)
         {
-            return Err(CheckpointError::OtherCase { path: root.clone() }.into());
+            let other = CheckpointError::OtherCase {
+                path: root.clone(),
+                differs: None,
+            };
+            let kept = root.join("case.completed.toml");
+            return Err(difference::named(other, &kept, &target.completed).into());
         }
         if let Some(systems) = &target.systems {
             refuse_foreign(systems)?;

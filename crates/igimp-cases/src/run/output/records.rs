@@ -306,28 +306,12 @@ impl<'a, const D: usize> AcceptedStep<'a, D> {
     }
 }
 
-/// The parts of the energy of a stage, as its table has them.
-const ENERGY: [(&str, fn(&EnergySummary) -> f64); 13] = [
-    ("kinetic", |own| own.kinetic),
-    ("kinetic_gain", |own| own.kinetic_gain),
-    ("elastic_gain", |own| own.elastic),
-    ("plastic_work", |own| own.plastic),
-    ("contact", |own| own.contact),
-    ("reinforcement", |own| own.reinforcement),
-    ("pore_water", |own| own.water),
-    ("damping", |own| own.damping),
-    ("loads", |own| own.loads),
-    ("supports", |own| own.supports),
-    ("scheme", |own| own.scheme),
-    ("map", |own| own.map),
-    ("integration", |own| own.integration),
-];
-
 /// An empty table of energy.
 fn energy_table<const D: usize>() -> Table {
     let unit = if D == 2 { "J/m" } else { "J" };
     let moment = ["stage", "step", "time_[s]"].map(str::to_owned);
-    let parts = ENERGY.iter().map(|(name, _)| format!("{name}_[{unit}]"));
+    let parts = EnergySummary::default().parts();
+    let parts = parts.iter().map(|(name, _)| format!("{name}_[{unit}]"));
     Table {
         name: "energy".to_owned(),
         header: moment.into_iter().chain(parts).collect(),
@@ -342,7 +326,8 @@ fn energy_row<const D: usize>(moment: &Moment<'_, D>, own: &EnergySummary) -> Ve
         moment.number as f64,
         moment.controls.time,
     ];
-    let parts = ENERGY.iter().map(|(_, part)| part(own));
+    let parts = own.parts();
+    let parts = parts.iter().map(|(_, value)| *value);
     place.into_iter().chain(parts).collect()
 }
 

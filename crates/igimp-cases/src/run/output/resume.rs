@@ -12,7 +12,7 @@ use igimp_results::folder::{self, Folder};
 use igimp_results::tables::rows;
 use igimp_solver::Body;
 
-use super::{BEFORE, Output, csv};
+use super::{BEFORE, Output, csv, difference};
 use crate::error::CaseError;
 use crate::run::Target;
 use crate::run::output::records::Records;
@@ -39,7 +39,10 @@ impl<const D: usize> Output<D> {
         let Some(path) = checkpoint::newest(&folder.checkpoint())? else {
             return Ok((Self::create(target, case, records)?, None));
         };
-        let found = checkpoint::read(&path, Some(&fingerprint::of_case(case)))?;
+        let found =
+            checkpoint::read(&path, Some(&fingerprint::of_case(case))).map_err(|error| {
+                difference::named(error, &folder.completed_case(), &target.completed)
+            })?;
         let passed_over = checkpoint::passed_over(&path)?;
         checkpoint::discard_after(&path)?;
         write_whole(&folder.case(), &target.source)?;
@@ -72,7 +75,12 @@ impl<const D: usize> Output<D> {
         let found = checkpoint::read(&path, None)?;
         let notes: Notes = notes_of(&path, &found.meta)?;
         if notes.history != fingerprint::of_history(case, stage) {
-            return Err(CheckpointError::OtherCase { path }.into());
+            let other = CheckpointError::OtherCase {
+                path,
+                differs: None,
+            };
+            let kept = folder.completed_case();
+            return Err(difference::named(other, &kept, &target.completed).into());
         }
         checkpoint::discard_after(&path)?;
         write_whole(&folder.case(), &target.source)?;

@@ -1,6 +1,6 @@
 //! Fingerprints of cases: a saved state is taken up only for the input that it came from.
 
-use igimp_model::{Case, Every, Output, TitleBlock};
+use igimp_model::{Case, Every, Output, SolverSettings, TitleBlock};
 use igimp_results::checkpoint::sha256;
 
 /// Of everything but the place and frequency of output, and the title block.
@@ -20,7 +20,7 @@ pub(crate) fn of_history<const D: usize>(case: &Case<D>, stages: usize) -> Strin
     sha256(format!("{history:?}").as_bytes())
 }
 
-/// A case without what concerns its output and the head of its report alone.
+/// A case without what concerns its output, the head of its report and the memory for factors alone.
 fn whole<const D: usize>(case: &Case<D>) -> Case<D> {
     Case {
         title_block: TitleBlock::default(),
@@ -33,6 +33,10 @@ fn whole<const D: usize>(case: &Case<D>) -> Case<D> {
             checkpoint_every: 0,
             checkpoint_keep: 0,
         },
+        solver: SolverSettings {
+            memory: None,
+            ..case.solver
+        },
         ..case.clone()
     }
 }
@@ -42,11 +46,14 @@ mod tests {
     use super::*;
     use crate::estimate::tests::case;
 
-    /// GOAL: a run can be taken up after its report got another author, and not after another cohesion.
+    /// GOAL: a run can be taken up after its report got another author, on a machine with other memory, and not after another
+    /// cohesion.
     #[test]
     fn the_head_of_the_report_is_no_input() {
         let mut other = case();
         other.title_block.author = Some("A. Engineer".into());
+        assert_eq!(of_case(&other), of_case(&case()));
+        other.solver.memory = "2 GiB".parse().ok();
         assert_eq!(of_case(&other), of_case(&case()));
         other.materials[0].young *= 2.0;
         assert_ne!(of_case(&other), of_case(&case()));

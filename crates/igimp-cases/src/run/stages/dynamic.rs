@@ -100,7 +100,7 @@ pub(crate) fn dynamic<const D: usize>(
                 march: *taken.accepted.state,
                 resistance: taken.resistance,
                 drag: 0.0,
-                end: is_at_rest.then(|| EndReason::CameToRest {
+                end: is_at_rest.then_some(EndReason::CameToRest {
                     time: taken.controls.time - from.time,
                     share,
                 }),

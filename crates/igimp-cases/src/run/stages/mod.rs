@@ -2,6 +2,7 @@
 
 pub(crate) mod construction;
 pub(crate) mod dynamic;
+pub(crate) mod fallen;
 pub(crate) mod initial;
 pub(crate) mod limit_load;
 pub(crate) mod loading;

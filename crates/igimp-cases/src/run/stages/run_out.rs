@@ -104,11 +104,18 @@ pub(crate) fn run_out<const D: usize>(
     match ended {
         StageEnd::Stopped(EndReason::AtRest {
             steps, drag_share, ..
-        }) => stand(session, state, &path, summary, (steps, drag_share)),
+        }) => stand(
+            session,
+            (number, state),
+            &path,
+            summary,
+            (steps, drag_share),
+        ),
         StageEnd::Completed(_) => {
-            session.warn(format!(
-                "the slope still moves after {steps} steps of run-out"
-            ));
+            session.warn_of_stage(
+                number,
+                &format!("the slope still moves after {steps} steps of run-out"),
+            );
             Ok(StageEnd::Stopped(EndReason::StillMoving { steps }))
         }
         other => Ok(other),
@@ -134,7 +141,7 @@ pub(crate) fn flowing<const D: usize>(model: &Model<'_, D>) -> Method {
 /// The last step, without drag: the slope has to be in equilibrium where it rests.
 fn stand<const D: usize>(
     session: &mut Session<'_, D>,
-    state: &mut State<D>,
+    (number, state): (usize, &mut State<D>),
     path: &StagePath<'_, D>,
     summary: &mut StageSummary,
     (steps, drag_share): (usize, f64),
@@ -153,18 +160,31 @@ fn stand<const D: usize>(
         left: None,
         ..*path
     };
-    Ok(
-        match march_path(session, state, &last, summary, &mut |_, _, _| Ok(None))? {
-            StageEnd::NotConverged(_) => {
-                session.warn(
-                    "the slope all but rests, but no equilibrium without drag was found".into(),
-                );
-                StageEnd::Stopped(rest(false))
+    let model = session.model;
+    let ended = march_path(
+        session,
+        state,
+        &last,
+        summary,
+        &mut |session, summary, taken| {
+            session.record(&taken.moment(number, summary.steps))?;
+            if let Some(output) = &mut session.output {
+                output.frame_of_step(number, model, summary, taken)?;
             }
-            StageEnd::Completed(_) => StageEnd::Completed(rest(true)),
-            other => other,
+            Ok(None)
         },
-    )
+    )?;
+    Ok(match ended {
+        StageEnd::NotConverged(_) => {
+            session.warn_of_stage(
+                number,
+                "the slope all but rests, but no equilibrium without drag was found",
+            );
+            StageEnd::Stopped(rest(false))
+        }
+        StageEnd::Completed(_) => StageEnd::Completed(rest(true)),
+        other => other,
+    })
 }
 
 #[cfg(test)]

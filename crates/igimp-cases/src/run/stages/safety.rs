@@ -19,7 +19,7 @@ use igimp_text::short;
 
 use self::criterion::default_limit;
 use self::interval::next_factor;
-use self::remarks::{few_cells, moving_mass, remarks};
+use self::remarks::{few_cells, moving_mass, remarks, tension};
 use super::loading::begin;
 use crate::error::CaseError;
 use crate::run::Event;
@@ -50,7 +50,7 @@ pub(crate) fn reduce_strength<const D: usize>(
     for &material in &reduction.materials {
         let material = &session.model.case.materials[material];
         if let Some(least) = material.least_cohesion(cell) {
-            session.warn(format!(
+            session.warn_of_stage(number, &format!(
                 "\"{}\" counts with a cohesion of {} kPa, γh/400, which the cells at its face need",
                 material.name,
                 short(1e-3 * least)
@@ -66,7 +66,7 @@ pub(crate) fn reduce_strength<const D: usize>(
     if summary.safety.is_some()
         && let Some(text) = few_cells(session.model.case, &state.body.particles)
     {
-        session.warn(text);
+        session.warn_of_stage(number, &text);
     }
     ended
 }
@@ -343,11 +343,14 @@ impl<'a, const D: usize> Trials<'a, D> {
         let mut candidates: Vec<End<D>> = within.into_iter().collect();
         if stable {
             if !below_failed(end.srf, &self.failed) {
-                session.warn(format!(
-                    "the slope stands at SRF {:.4} though it failed at a smaller factor; \
+                session.warn_of_stage(
+                    self.number,
+                    &format!(
+                        "the slope stands at SRF {:.4} though it failed at a smaller factor; \
                      the factor of safety is that of the smallest factor that failed",
-                    end.srf
-                ));
+                        end.srf
+                    ),
+                );
             }
             candidates.push(end);
         } else if below_failed(end.srf, &self.failed) {
@@ -393,7 +396,8 @@ impl<'a, const D: usize> Trials<'a, D> {
         if self.limit.is_some() {
             criterion = format!("{criterion}, or {}", self.exceeded(session));
         }
-        let moving_mass = self.failed.as_ref().map(|end| moving_mass(&end.state));
+        let moving_mass = self.failed.as_ref().and_then(|end| moving_mass(&end.state));
+        let tension = (self.failed.as_ref()).and_then(|end| tension(case, &end.state));
         let stable = self.stable.as_ref().map(|end| end.srf);
         let failed = self.failed.as_ref().map(|end| end.srf);
         let slid = self.slid(session);
@@ -407,8 +411,9 @@ impl<'a, const D: usize> Trials<'a, D> {
             trials: self.made,
             path: None,
         };
-        for text in remarks(&safety, self.reduction).into_iter().chain(slid) {
-            session.warn(text);
+        let remarks = remarks(&safety, self.reduction).into_iter();
+        for text in remarks.chain(slid).chain(tension) {
+            session.warn_of_stage(self.number, &text);
         }
         session.records.factor_of_safety = match (stable, failed) {
             (Some(stable), Some(failed)) => 0.5 * (stable + failed),

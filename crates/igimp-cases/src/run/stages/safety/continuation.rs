@@ -89,7 +89,7 @@ pub(super) fn search<const D: usize>(
     summary.reached = 1.0;
     Ok(finish(
         session,
-        (stage, reduction),
+        (number, reduction),
         followed,
         scale,
         summary,
@@ -368,7 +368,7 @@ impl<const D: usize> Observer<D> for Watch<'_, '_, D> {
 /// The factor of safety that a path tells, with its remarks.
 fn finish<const D: usize>(
     session: &mut Session<'_, D>,
-    (stage, reduction): (&Stage, &StrengthReduction),
+    (number, reduction): (usize, &StrengthReduction),
     followed: Followed<D>,
     scale: Option<f64>,
     summary: &mut StageSummary,
@@ -383,10 +383,10 @@ fn finish<const D: usize>(
     } = followed;
     let shares = match shares {
         Some(Err(cause)) => {
-            session.warn(format!(
-                "what decides the factor of safety in stage \"{}\" is not known: {cause}",
-                stage.name
-            ));
+            session.warn_of_stage(
+                number,
+                &format!("what decides the factor of safety is not known: {cause}"),
+            );
             None
         }
         Some(Ok(shares)) => Some(shares),
@@ -403,19 +403,23 @@ fn finish<const D: usize>(
         points,
     };
     let (stable, failed) = limit::interval(&path);
-    for text in remarks(&path) {
-        session.warn(text);
+    let case = session.model.case;
+    let tension = (last.as_ref()).and_then(|end| super::remarks::tension(case, &end.state));
+    for text in remarks(&path).into_iter().chain(tension) {
+        session.warn_of_stage(number, &text);
     }
     if let StageEnd::NotConverged(cause) = &ended {
-        session.warn(format!(
-            "the path of equilibria in stage \"{}\" was lost: {}; what it reached is no limit, and search = \"trials\" \
-             asks another way",
-            stage.name, cause.failure
-        ));
+        let cause = &cause.failure;
+        session.warn_of_stage(
+            number,
+            &format!(
+                "the path of equilibria was lost: {cause}; what it reached is no limit, and search = \"trials\" asks another way"
+            ),
+        );
     }
     let moving_mass = last
         .as_ref()
-        .map(|end| super::remarks::moving_mass(&end.state));
+        .and_then(|end| super::remarks::moving_mass(&end.state));
     session.records.factor_of_safety = match (stable, failed) {
         (Some(stable), Some(failed)) => 0.5 * (stable + failed),
         _ => f64::NAN,

@@ -1,0 +1,205 @@
+//! GOAL: what misleads is said: a slope that does not stand has its factor all the same, tension that carries is told, memory
+//! that decides is told, a run-out's last step is in its tables; each once, and with its stage.
+//! CASE: slopes of some hundred particles, run in memory.
+//! ORACLE: F of strengths times k is k times F; a cut-off takes away what tension carried; the state that a run ends with.
+
+use igimp_cases::run::{Run, in_memory};
+use igimp_input::CaseFile;
+use igimp_results::ending::Ending;
+use igimp_results::summary::{SafetySummary, StageOutcome};
+
+/// A slope of 10 m at two to one above its toe, at strengths c [kPa] and tan φ, with overrides.
+fn slope(cohesion: f64, tan_friction: f64, set: &[&str]) -> Run<2> {
+    let friction = tan_friction.atan().to_degrees();
+    let text = format!(
+        r#"
+igimp = 1
+[case]
+title = "slope"
+gravity = "10 m/s2"
+[grid]
+cell = "1 m"
+domain = {{ x = ["0 m", "40 m"], y = ["0 m", "16 m"] }}
+[materials.soil]
+model = "mohr-coulomb"
+unit_weight = "20 kN/m3"
+young = "100 MPa"
+poisson = 0.3
+cohesion = "{cohesion} kPa"
+friction = "{friction} deg"
+dilation = "0 deg"
+[[bodies]]
+name = "slope"
+material = "soil"
+points_per_cell = 4
+polygon = [["0 m", "0 m"], ["40 m", "0 m"], ["40 m", "5 m"], ["25 m", "5 m"], ["20 m", "15 m"], ["0 m", "15 m"]]
+[boundaries]
+left = "roller"
+right = "roller"
+bottom = "fixed"
+[[stages]]
+name = "weight"
+type = "gravity"
+steps = 5
+[[stages]]
+name = "safety"
+type = "strength-reduction"
+"#
+    );
+    let set: Vec<String> = set.iter().map(|&own| own.to_owned()).collect();
+    let file = CaseFile::parse("slope.toml", &text, &set).unwrap_or_else(|error| panic!("{error}"));
+    in_memory(file.case()).unwrap()
+}
+
+fn safety(run: &Run<2>) -> &SafetySummary {
+    run.summary.stages[1].safety.as_ref().unwrap()
+}
+
+/// Middle of the interval of a factor of safety.
+fn factor(run: &Run<2>) -> f64 {
+    let found = safety(run);
+    0.5 * (found.stable.unwrap() + found.failed.unwrap())
+}
+
+fn warnings_with<'r>(run: &'r Run<2>, words: &str) -> Vec<&'r String> {
+    let all = run.summary.warnings.iter();
+    all.filter(|text| text.contains(words)).collect()
+}
+
+#[test]
+fn a_slope_that_does_not_stand_has_its_factor_all_the_same() {
+    let tan = 20.0_f64.to_radians().tan();
+    let stands = slope(20.0, 2.0 * tan, &[]);
+    assert_eq!(stands.summary.stages[0].outcome, StageOutcome::Completed);
+    let falls = slope(10.0, tan, &[]);
+    let weight = &falls.summary.stages[0];
+    assert_eq!(
+        (weight.outcome, &weight.code[..]),
+        (StageOutcome::Stopped, "no-equilibrium")
+    );
+    assert!(falls.failure.is_none());
+    assert_eq!(falls.summary.ending(), Ending::Done);
+    // The one by reducing the strength of what stands, the other by raising gravity on what does not.
+    let (half, whole) = (factor(&falls), factor(&stands));
+    assert!(half < 1.0 && whole > 1.0);
+    assert!((2.0 * half / whole - 1.0).abs() < 0.02, "{half} {whole}");
+    let told = warnings_with(&falls, "does not stand under its weight");
+    assert_eq!(told.len(), 1);
+    assert!(told[0].starts_with("stage \"weight\": "), "{told:?}");
+    assert!(warnings_with(&stands, "does not stand").is_empty());
+}
+
+#[test]
+fn a_slope_that_falls_before_other_stages_ends_the_run() {
+    let load = "stages.safety.type=run-out";
+    let more = ["stages.safety.reduction.factor=1.5", load];
+    let falls = slope(10.0, 20.0_f64.to_radians().tan(), &[load, more[0]]);
+    assert_eq!(falls.summary.ending(), Ending::NotConverged);
+    assert!(falls.failure.is_some());
+}
+
+#[test]
+fn tension_that_carries_is_told_of_the_search() {
+    let tan = 20.0_f64.to_radians().tan();
+    let pulled = slope(60.0, tan, &[]);
+    let cracked = slope(60.0, tan, &["materials.soil.tension_cutoff=0 kPa"]);
+    let (with, without) = (factor(&pulled), factor(&cracked));
+    assert!(with > 1.02 * without, "{with} {without}");
+    let told = warnings_with(&pulled, "carries tension");
+    assert_eq!(told.len(), 1, "{:?}", pulled.summary.warnings);
+    assert!(told[0].starts_with("stage \"safety\": "), "{told:?}");
+    assert!(warnings_with(&cracked, "carries tension").is_empty());
+}
+
+#[test]
+fn remarks_name_their_stage_and_are_told_once() {
+    let tan = 20.0_f64.to_radians().tan();
+    for search in ["continuation", "trials"] {
+        let run = slope(10.0, tan, &[&format!("stages.safety.search={search}")]);
+        let all = &run.summary.warnings;
+        assert!(all.len() > 1);
+        for (number, text) in all.iter().enumerate() {
+            assert!(text.starts_with("stage \""), "{text}");
+            assert!(!all[..number].contains(text), "twice: {text}");
+        }
+        assert!(safety(&run).moving_mass.is_some_and(|share| share > 0.0));
+    }
+}
+
+// CASE: the shipped block that slumps, on cells of half a metre.
+// ORACLE: as many rows as steps, and one for the undeformed state; the last one has the height that the check reads in the end.
+#[test]
+fn a_run_out_records_its_last_step() {
+    let shipped = igimp_input::shipped::find("block").unwrap();
+    let file = shipped
+        .case_file(["grid.cell=0.5 m", "bodies.block.points_per_cell=4"])
+        .unwrap();
+    let run = in_memory(file.case()).unwrap();
+    let slump = &run.summary.stages[1];
+    assert!(
+        slump.reason.contains("equilibrium without drag"),
+        "{}",
+        slump.reason
+    );
+    let steps: usize = run.summary.stages.iter().map(|stage| stage.steps).sum();
+    let top = &run.monitors[0];
+    assert_eq!(top.rows.len(), steps + 1, "{:?}", top.header);
+    let column = top
+        .header
+        .iter()
+        .position(|name| name.starts_with("y_"))
+        .unwrap();
+    let recorded = top.rows[top.rows.len() - 1][column];
+    let at_rest = run.summary.checks[0].check.measured;
+    assert!((recorded - at_rest).abs() < 1e-12, "{recorded} {at_rest}");
+}
+
+// CASE: the weight of the shipped slope in space, with room for factors, with none by the case, and with none by the machine.
+// ORACLE: equilibrium, which no solver changes beyond the tolerance; the choice of the solver as the record of its stage has it.
+#[test]
+fn memory_that_decides_on_the_solver_is_told() {
+    let run = |memory: &str| -> Run<3> {
+        let set = [format!("solver.memory={memory}")];
+        let file = igimp_input::shipped::find("landslide_3d")
+            .unwrap()
+            .case_file(set)
+            .unwrap();
+        let mut case = file.case_in_space().clone();
+        case.stages.truncate(1);
+        in_memory(&case).unwrap()
+    };
+    let [roomy, stated, of_machine] = ["4 GiB", "1 MiB", "0.001 %"].map(run);
+    let reason = |run: &Run<3>| {
+        run.summary.stages[0]
+            .linear
+            .as_ref()
+            .unwrap()
+            .reason
+            .clone()
+    };
+    assert!(!reason(&roomy).contains("allowed"), "{}", reason(&roomy));
+    assert!(
+        reason(&stated).ends_with("are allowed (by solver.memory)"),
+        "{}",
+        reason(&stated)
+    );
+    assert!(
+        reason(&of_machine).contains("(by solver.memory 0.001 % of "),
+        "{}",
+        reason(&of_machine)
+    );
+    let told = |run: &Run<3>| {
+        let warnings = run.summary.warnings.iter();
+        warnings
+            .filter(|text| text.contains("the memory for factors"))
+            .count()
+    };
+    assert_eq!([told(&roomy), told(&stated), told(&of_machine)], [0, 0, 1]);
+    let moved = |run: &Run<3>| run.summary.stages[0].largest_displacement;
+    assert!(
+        (moved(&stated) / moved(&roomy) - 1.0).abs() < 1e-4,
+        "{} {}",
+        moved(&stated),
+        moved(&roomy)
+    );
+}

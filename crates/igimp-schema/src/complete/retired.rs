@@ -1,0 +1,30 @@
+//! Keys of earlier versions, and what took their place: a file with one of them is refused, and its message says what to write.
+
+/// Keys that went, with the table that they stood in and the remedy.
+const RETIRED: [(&str, &str, &str); 1] = [(
+    "grid",
+    "bbar",
+    "`bbar` is `locking` now: locking = \"b-bar\" for bbar = true, \"none\" for bbar = false, and \"shared-strain\" is the default",
+)];
+
+/// What took the place of a key of a table; the name of the table may not be known.
+pub(super) fn remedy(table: Option<&str>, key: &str) -> Option<&'static str> {
+    let is_meant =
+        |own: &&(&str, &str, &str)| own.1 == key && table.is_none_or(|table| table == own.0);
+    RETIRED.iter().find(is_meant).map(|own| own.2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // GOAL: a key that went is met with its successor, in its table alone.
+    // ORACLE: the change log.
+    #[test]
+    fn a_key_that_went_names_its_successor() {
+        let told = remedy(Some("grid"), "bbar").unwrap();
+        assert!(told.contains("locking = \"b-bar\""), "{told}");
+        assert_eq!(remedy(Some("solver"), "bbar"), None);
+        assert_eq!(remedy(Some("grid"), "cell"), None);
+    }
+}
