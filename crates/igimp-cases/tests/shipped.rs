@@ -350,6 +350,22 @@ fn block_slumps_until_it_rests() {
 }
 
 #[test]
+fn a_column_of_sand_collapses_until_it_rests() {
+    let ran = ran("column_collapse", &["grid.cell=2 cm"]);
+    assert_eq!(ran.outcomes(), [Completed]);
+    let stage = &ran.run.summary.stages[0];
+    assert_eq!(stage.code, "came-to-rest");
+    // Lower than it stood, and not flat: half a column of this shape keeps most of its height.
+    between(ran.end_of("height"), 0.07, 0.099);
+    let fastest = ran
+        .curve("kinetic-energy")
+        .iter()
+        .map(|own| own[1])
+        .fold(0.0, f64::max);
+    between(ran.end_of("kinetic-energy") / fastest, 0.0, 1e-6);
+}
+
+#[test]
 fn contact_footing_lets_go() {
     let ran = ran(
         "contact_footing",

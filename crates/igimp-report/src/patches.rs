@@ -2,8 +2,9 @@
 //!
 //! A particle stands for the part of its body within its part of a cell. That piece is cut by the edges
 //! of the body as it was seeded, and moves with the particle: a corner X goes to
-//! x_p + F_p (X − X_p) (theory, eq. 41). Corners that neighbours share meet in the middle of where these
-//! carry them, so that soil has no gaps; where it parts they go their own ways.
+//! x_p + F_p (X − X_p) (theory, eq. 41), but no further than three times as far off as it was.
+//! Corners that neighbours share meet in the middle of where these carry them, so that soil has no
+//! gaps; where it parts they go their own ways.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -18,6 +19,9 @@ use crate::error::ReportError;
 /// Corners that a particle carries further from their middle than so many times its size have
 /// parted \[-\].
 const PARTED: f64 = 1.5;
+/// A corner is drawn no further from its particle than so many times as far as it was seeded \[-\]: what has flowed far is
+/// sheared into threads that no soil has.
+const MOST_STRETCHED: f64 = 3.0;
 /// Corners closer than this share of the smallest cell are one \[-\].
 const SAME: f64 = 1e-6;
 
@@ -41,7 +45,14 @@ impl Corner {
             there.particles.def_grad[particle],
         );
         let [dx, dy] = self.offset;
-        Some([0, 1].map(|a| x[a] + f[a][0] * dx + f[a][1] * dy))
+        let arm = [0, 1].map(|a| f[a][0] * dx + f[a][1] * dy);
+        let stretch = arm[0].hypot(arm[1]) / dx.hypot(dy);
+        let shown = if stretch > MOST_STRETCHED {
+            MOST_STRETCHED / stretch
+        } else {
+            1.0
+        };
+        Some([0, 1].map(|a| x[a] + shown * arm[a]))
     }
 }
 
@@ -193,7 +204,7 @@ impl Pieces {
 fn size(particles: &Particles<2>, particle: usize) -> f64 {
     let f = particles.def_grad[particle];
     let sides = particles.half_length0[particle].map(|half| 2.0 * half);
-    let side = |axis: usize| sides[axis] * f[0][axis].hypot(f[1][axis]).max(1.0);
+    let side = |axis: usize| sides[axis] * f[0][axis].hypot(f[1][axis]).clamp(1.0, MOST_STRETCHED);
     side(0) + side(1)
 }
 

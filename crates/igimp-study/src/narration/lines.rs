@@ -94,8 +94,17 @@ impl Lines {
 /// An accepted step.
 pub fn step(number: usize, steps: usize, progress: f64, report: &StepReport) -> String {
     let width = steps.to_string().len();
+    let place = if report.duration > 0.0 {
+        let duration = report.duration;
+        format!(
+            "step {number:>5} of {duration:.2e} s  {:>5.1} % of the time",
+            100.0 * progress
+        )
+    } else {
+        format!("step {number:>width$}/{steps}  load factor {progress:.4}")
+    };
     let mut line = format!(
-        "step {number:>width$}/{steps}  load factor {progress:.4}  {:>2} it  residual {}  plastic {:>5.1} %",
+        "{place}  {:>2} it  residual {}  plastic {:>5.1} %",
         report.iterations,
         residual(report.residuals.last().copied()),
         100.0 * report.plastic_share
