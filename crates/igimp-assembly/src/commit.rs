@@ -99,7 +99,14 @@ impl<const D: usize> Particles<D> {
         });
     }
 
-    /// Takes all motion from the particles, or begins with a velocity by particle \[length/time\].
+    /// Takes all motion from the particles, as before a step in statics.
+    pub fn rest(&mut self) {
+        let fields = self.fields_mut();
+        fields.velocity.fill([0.0; D]);
+        fields.acceleration.fill([0.0; D]);
+    }
+
+    /// The particles with velocities to begin with \[length/time\].
     ///
     /// # Errors
     /// [`AssemblyError::InvalidParticle`] for a velocity that is not finite.

@@ -26,4 +26,10 @@ impl<const D: usize> Body<D> {
             reinforcement: Vec::new(),
         }
     }
+
+    /// Takes all motion from what moves, as before a march in statics.
+    pub fn rest(&mut self) {
+        self.particles.rest();
+        self.rigid.iter_mut().for_each(RigidBody::rest);
+    }
 }

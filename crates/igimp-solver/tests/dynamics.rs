@@ -207,6 +207,8 @@ fn a_block_falls_freely() {
                 );
             }
             assert!(reports.iter().all(|own| own.iterations <= 2));
+            body.rest();
+            assert!(body.particles.velocity.iter().all(|v| *v == [0.0; 2]));
         }
     }
 }

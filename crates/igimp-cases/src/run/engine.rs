@@ -412,6 +412,9 @@ fn dispatch<const D: usize>(
     search: Option<Search<D>>,
 ) -> Result<StageEnd, CaseError> {
     let stage = &session.model.case.stages[number];
+    if resumption.is_none() && !matches!(stage.kind, StageKind::Dynamic(_)) {
+        state.body.rest();
+    }
     match &stage.kind {
         StageKind::K0 if resumption.is_none() => {
             initial::level_ground(session.model, state)?;

@@ -109,6 +109,15 @@ impl<const D: usize> RigidBody<D> {
         force
     }
 
+    /// Takes all motion from the body, as before a step in statics.
+    pub fn rest(&mut self) {
+        self.motion = RigidInertia {
+            mass: self.motion.mass,
+            moments: self.motion.moments,
+            ..RigidInertia::default()
+        };
+    }
+
     /// Takes over how its nodes move at the end of a step: velocities \[length/time\] and accelerations \[length/time²\].
     pub(crate) fn accelerate(
         &mut self,

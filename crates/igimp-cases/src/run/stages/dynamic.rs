@@ -4,14 +4,14 @@
 //! are chosen by the error of the time integration and by the way of the soil, and land on equal parts of the duration, as
 //! many as the stage has steps. No factor of safety follows from motion.
 
-use igimp_model::{Dynamic, Reduction};
+use igimp_model::Dynamic;
 use igimp_results::ending::EndReason;
 use igimp_results::summary::StageSummary;
 use igimp_solver::{MarchSettings, Pace};
 
 use super::loading::{begin, target};
 use super::rigid_begin;
-use super::run_out::flowing;
+use super::run_out::{divisor, flowing};
 use crate::error::CaseError;
 use crate::run::model::Model;
 use crate::run::output::records::Moment;
@@ -43,15 +43,8 @@ pub(crate) fn dynamic<const D: usize>(
     }
     let mut from = resumption.map_or_else(|| state.controls.clone(), |left| left.from.clone());
     if let Some((materials, reduction)) = &dynamic.reduction {
-        let factor = match reduction {
-            Reduction::Factor(factor) => *factor,
-            Reduction::TimesFos(times) => {
-                let found = session.records.factor_of_safety;
-                if !found.is_finite() {
-                    return Ok(StageEnd::Stopped(EndReason::NoFactorOfSafety));
-                }
-                times * found
-            }
+        let Some(factor) = divisor(session, reduction) else {
+            return Ok(StageEnd::Stopped(EndReason::NoFactorOfSafety));
         };
         for &material in materials {
             from.srf[material] = factor;

@@ -39,15 +39,8 @@ pub(crate) fn run_out<const D: usize>(
     let case = model.case;
     let mut to = state.controls.clone();
     to.drained = case.stages[number].drained;
-    let factor = match run_out.reduction {
-        Reduction::Factor(factor) => factor,
-        Reduction::TimesFos(times) => {
-            let found = session.records.factor_of_safety;
-            if !found.is_finite() {
-                return Ok(StageEnd::Stopped(EndReason::NoFactorOfSafety));
-            }
-            times * found
-        }
+    let Some(factor) = divisor(session, &run_out.reduction) else {
+        return Ok(StageEnd::Stopped(EndReason::NoFactorOfSafety));
     };
     for &material in &run_out.materials {
         to.srf[material] = factor;
@@ -119,6 +112,20 @@ pub(crate) fn run_out<const D: usize>(
             Ok(StageEnd::Stopped(EndReason::StillMoving { steps }))
         }
         other => Ok(other),
+    }
+}
+
+/// What strength is divided by; none where the factor of safety that it refers to was not found.
+pub(super) fn divisor<const D: usize>(
+    session: &Session<'_, D>,
+    reduction: &Reduction,
+) -> Option<f64> {
+    match reduction {
+        Reduction::Factor(factor) => Some(*factor),
+        Reduction::TimesFos(times) => {
+            let found = session.records.factor_of_safety;
+            found.is_finite().then_some(times * found)
+        }
     }
 }
 
