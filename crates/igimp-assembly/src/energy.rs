@@ -63,11 +63,6 @@ impl StepEnergy {
             + self.integration;
         self.loads + self.supports - self.unbalanced - gone
     }
-
-    /// What the numerical method takes.
-    pub fn numerical(&self) -> f64 {
-        self.scheme + self.map + self.integration + self.unbalanced
-    }
 }
 
 /// The energy of one particle in a step.

@@ -142,6 +142,14 @@ pub enum AssemblyError {
     /// Every degree of freedom is prescribed or dropped.
     #[error("no unknown is left: every active node is fixed")]
     NoUnknowns,
+    /// The velocities that the grid takes over from the particles were not found.
+    #[error(
+        "the motion of the particles could not be given to the grid: a share of {left:.1e} of their momentum is left"
+    )]
+    MotionNotFound {
+        /// What is left of the momentum, over all of it \[-\].
+        left: f64,
+    },
     /// A number that must be finite is not.
     #[error("{what} is not finite at index {index}")]
     NonFinite {

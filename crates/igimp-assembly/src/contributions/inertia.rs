@@ -15,12 +15,16 @@ use crate::body::particles::Particles;
 use crate::conditions::time_step::{MassMatrix, TimeScheme, TimeStep};
 use crate::contributions::nodal_forces::AddBlock;
 use crate::contributions::rigid::{NODES_PER_BODY, RigidBody};
+use crate::error::AssemblyError;
 use crate::step::stencils::Stencils;
 use crate::step::strips::split;
 use crate::step::unknowns::Unknowns;
 
-/// The squared residual of the velocities of the grid over that of none at which they are found \[-\].
-const FOUND: f64 = 1e-28;
+/// The share of their momentum that the velocities of the grid leave when no more iterations are made \[-\].
+const FOUND: f64 = 1e-14;
+
+/// The share that they may leave \[-\]: nodes that few particles reach keep round-off from going further.
+const ACCEPTED: f64 = 1e-9;
 
 /// Most iterations for the velocities of the grid: the scaled matrix is well conditioned, but for nodes that few particles reach.
 const MOST_ITERATIONS: usize = 200;
@@ -42,6 +46,9 @@ pub(crate) struct Inertia<const D: usize> {
 
 impl<const D: usize> Inertia<D> {
     /// The mass of particles and rigid bodies on the nodes of a step, and their motion.
+    ///
+    /// # Errors
+    /// [`AssemblyError::MotionNotFound`].
     pub(crate) fn of(
         step: TimeStep,
         particles: &Particles<D>,
@@ -49,12 +56,12 @@ impl<const D: usize> Inertia<D> {
         stencils: &Stencils<D>,
         unknowns: &Unknowns<D>,
         mass_of: &(dyn Fn(usize) -> f64 + Sync),
-    ) -> Self {
+    ) -> Result<Self, AssemblyError> {
         let nodes = unknowns.nodes_of_grid();
         let mass = NodalMass::of(step.mass, mass_of, stencils, nodes);
         let on_grid =
             |values: &[[f64; D]]| mass.solve(weighted(values, mass_of, stencils, nodes), unknowns);
-        let mut velocity = on_grid(&particles.velocity);
+        let mut velocity = on_grid(&particles.velocity)?;
         let share = weighted(&vec![[1.0; D]; particles.len()], mass_of, stencils, nodes);
         let mut mean_velocity = weighted(&particles.velocity, mass_of, stencils, nodes);
         for (sum, share) in mean_velocity.iter_mut().zip(&share) {
@@ -66,8 +73,9 @@ impl<const D: usize> Inertia<D> {
                 }
             });
         }
-        let mut acceleration = if step.asks_for_acceleration() && !step.is_first {
-            on_grid(&particles.acceleration)
+        let carries = step.asks_for_acceleration() && !step.is_first;
+        let mut acceleration = if carries {
+            on_grid(&particles.acceleration)?
         } else {
             vec![[0.0; D]; nodes]
         };
@@ -76,20 +84,20 @@ impl<const D: usize> Inertia<D> {
             velocity.extend(own);
             mean_velocity.extend(own);
             let carried = body.nodal(&body.motion.acceleration, &body.motion.spin_rate);
-            acceleration.extend(if step.asks_for_acceleration() && !step.is_first {
+            acceleration.extend(if carries {
                 carried
             } else {
                 [[0.0; D]; NODES_PER_BODY]
             });
         }
-        Self {
+        Ok(Self {
             of_bodies: bodies.iter().flat_map(RigidBody::nodal_mass).collect(),
             step,
             mass,
             velocity,
             mean_velocity,
             acceleration,
-        }
+        })
     }
 
     /// The time integration of the step.
@@ -125,9 +133,16 @@ impl<const D: usize> Inertia<D> {
     }
 
     /// Takes the accelerations at the start from the `force` there, by node \[force\].
-    pub(crate) fn begin(&mut self, force: &[[f64; D]], unknowns: &Unknowns<D>) {
+    ///
+    /// # Errors
+    /// [`AssemblyError::MotionNotFound`].
+    pub(crate) fn begin(
+        &mut self,
+        force: &[[f64; D]],
+        unknowns: &Unknowns<D>,
+    ) -> Result<(), AssemblyError> {
         let nodes = self.mass.diagonal.len();
-        self.acceleration = self.mass.solve(force[..nodes].to_vec(), unknowns);
+        self.acceleration = self.mass.solve(force[..nodes].to_vec(), unknowns)?;
         for (index, mass) in self.of_bodies.iter().enumerate() {
             let node = nodes + index;
             // The mass is diagonal but for a turning body of three different moments, whose first step this is.
@@ -140,6 +155,7 @@ impl<const D: usize> Inertia<D> {
                 }
             }));
         }
+        Ok(())
     }
 
     /// The accelerations at the start, by node \[length/time²\].
@@ -346,11 +362,14 @@ impl NodalMass {
 impl NodalMass {
     /// Values by node whose product with the mass matrix is `sums` where a component is unknown, zero where it is not: of particle
     /// velocities weighted by mass, those of the grid that come closest to them. Conjugate gradients, scaled by the diagonal.
+    ///
+    /// # Errors
+    /// [`AssemblyError::MotionNotFound`].
     fn solve<const D: usize>(
         &self,
         mut sums: Vec<[f64; D]>,
         unknowns: &Unknowns<D>,
-    ) -> Vec<[f64; D]> {
+    ) -> Result<Vec<[f64; D]>, AssemblyError> {
         let scaled = |values: &[[f64; D]]| -> Vec<[f64; D]> {
             std::iter::zip(values, &self.diagonal)
                 .map(|(value, own)| value.map(|v| if *own > 0.0 { v / own } else { 0.0 }))
@@ -361,7 +380,7 @@ impl NodalMass {
         let mut left = sums;
         let reference = product(&left, &found);
         if reference == 0.0 {
-            return found;
+            return Ok(found);
         }
         let mut image = vec![[0.0; D]; found.len()];
         self.multiply(&found, &mut image);
@@ -370,12 +389,17 @@ impl NodalMass {
         let mut way = scaled(&left);
         let mut size = product(&left, &way);
         for _ in 0..MOST_ITERATIONS {
-            if size <= FOUND * reference {
+            if size <= FOUND.powi(2) * reference {
                 break;
             }
             self.multiply(&way, &mut image);
             mask(&mut image, unknowns);
-            let length = size / product(&way, &image);
+            let curvature = product(&way, &image);
+            // In a direction that no particle sees nothing is left to be found.
+            if curvature <= 0.0 {
+                break;
+            }
+            let length = size / curvature;
             add_scaled(&mut found, length, &way);
             add_scaled(&mut left, -length, &image);
             let towards = scaled(&left);
@@ -386,7 +410,13 @@ impl NodalMass {
             add_scaled(&mut way, 1.0, &towards);
             size = next;
         }
-        found
+        let left = (size / reference).sqrt();
+        // Not a number is none that is small enough.
+        if left <= ACCEPTED {
+            Ok(found)
+        } else {
+            Err(AssemblyError::MotionNotFound { left })
+        }
     }
 }
 

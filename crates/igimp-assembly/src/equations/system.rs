@@ -170,7 +170,7 @@ impl<'a, const D: usize> System<'a, D> {
     /// step begins with. Loads act by now.
     ///
     /// # Errors
-    /// As [`Self::evaluate_into`].
+    /// [`AssemblyError::MotionNotFound`]; as [`Self::evaluate_into`].
     pub fn in_motion(mut self) -> Result<Self, AssemblyError> {
         let Some(time) = self.conditions.time else {
             return Ok(self);
@@ -183,7 +183,7 @@ impl<'a, const D: usize> System<'a, D> {
             self.stencils,
             &self.unknowns,
             &mass_of,
-        );
+        )?;
         let first = self.conditions.grid.node_count();
         for (index, body) in self.contact.bodies().iter().enumerate() {
             let gyroscopic = body.gyroscopic_force();
@@ -197,7 +197,7 @@ impl<'a, const D: usize> System<'a, D> {
             for (force, f_ext) in force.iter_mut().zip(&self.f_ext) {
                 *force = std::array::from_fn(|axis| f_ext[axis] - force[axis]);
             }
-            inertia.begin(&force, &self.unknowns);
+            inertia.begin(&force, &self.unknowns)?;
         }
         self.round_off += inertia.round_off();
         self.inertia = Some(inertia);

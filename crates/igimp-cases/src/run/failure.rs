@@ -12,6 +12,7 @@ use igimp_solver::{StepError, StepFailure};
 
 use super::Failure;
 use super::session::Session;
+use super::stages::dynamic::most_cuts;
 use super::state::State;
 
 /// Whether a stage that found no equilibrium ended in a way that tells no limit: its path was lost, its linear system
@@ -54,7 +55,7 @@ pub(crate) fn describe<const D: usize>(
             _ => (error.from * stage.steps as f64).floor() as usize + 1,
         },
         steps: stage.steps,
-        cuts: case.solver.cuts,
+        cuts: most_cuts(case, &stage.kind),
         smallest: (error.to - error.from) * stage.steps as f64,
         max_iterations: case.solver.max_iterations,
         near_worst,

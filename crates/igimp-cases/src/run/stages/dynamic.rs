@@ -1,10 +1,10 @@
-//! Motion in time, with inertia: after failure, under impact, in an earthquake.
+//! Motion in time, with inertia: after failure, or from the first moment on.
 //!
 //! Every step is the same search for equilibrium, with the force of acceleration among the forces (theory, eqs. 60 to 68). Steps
 //! are chosen by the error of the time integration and by the way of the soil, and land on equal parts of the duration, as
 //! many as the stage has steps. No factor of safety follows from motion.
 
-use igimp_model::Dynamic;
+use igimp_model::{Case, Dynamic, StageKind};
 use igimp_results::ending::EndReason;
 use igimp_results::summary::StageSummary;
 use igimp_solver::{MarchSettings, Pace};
@@ -22,8 +22,16 @@ use crate::run::state::State;
 /// The first step over the time in which a wave crosses a cell \[-\].
 const FIRST_STEP: f64 = 1.0;
 
-/// How often a step may be cut in succession.
+/// How often a step may be cut in succession, at least: what is chosen by error and way may be far too long.
 const CUTS: u32 = 12;
+
+/// How often a step of a stage may be cut in succession.
+pub(crate) fn most_cuts<const D: usize>(case: &Case<D>, kind: &StageKind) -> u32 {
+    match kind {
+        StageKind::Dynamic(_) => case.solver.cuts.max(CUTS),
+        _ => case.solver.cuts,
+    }
+}
 
 /// Moves a state through time.
 pub(crate) fn dynamic<const D: usize>(
@@ -129,7 +137,7 @@ fn pace<const D: usize>(
         .map_or(1.0, share)
         .min(1.0 / parts as f64);
     Ok(MarchSettings {
-        cuts: CUTS,
+        cuts: model.case.solver.cuts.max(CUTS),
         pace: Some(Pace {
             first: share(FIRST_STEP * crossing).min(longest),
             longest,
