@@ -93,7 +93,7 @@ impl<const D: usize> Particles<D> {
         let own = (&mut fields.velocity, &mut fields.acceleration).into_par_iter();
         (own.enumerate().with_min_len(CHUNK)).for_each(|(particle, (velocity, acceleration))| {
             *velocity = motion.of_particle(velocity, stencils.of(particle));
-            if motion.keeps_rest {
+            if motion.carries_acceleration {
                 *acceleration = interpolate(stencils, particle, &motion.acceleration);
             }
         });

@@ -92,7 +92,8 @@ impl<const D: usize> System<'_, D> {
         let motion = inertia.motion(u);
         let parts = self.energy_of_particles(trial, u, &motion)?;
         let sum = |part: fn(&ParticleEnergy) -> f64| parts.iter().map(part).sum::<f64>();
-        let theta = inertia.step().scheme.theta();
+        // Of the work of a force, the weight of that at the end.
+        let theta = inertia.step().scheme.weights().sum;
         let still = vec![[0.0; D]; u.len()];
         let work_of = |own: &dyn NodalForces<D>, at: &[[f64; D]]| {
             let mut force = vec![[0.0; D]; at.len()];
@@ -115,27 +116,19 @@ impl<const D: usize> System<'_, D> {
             ..StepEnergy::default()
         };
         energy.elastic_gain = energy.elastic - sum(|own| own.elastic_before);
-        // The work of stress and of all that acts with it: what is left of the work from outside when the mean force of acceleration
-        // has its part, that of forces at the end of the step and of accelerations at its start.
-        let mut f_end = inertia.times(&motion.acceleration);
-        for (end, (f_ext, f_int)) in
-            std::iter::zip(&mut f_end, std::iter::zip(self.f_ext(), &trial.f_int))
-        {
-            for a in 0..D {
-                end[a] += f_ext[a] - f_int[a];
-            }
-        }
-        let accelerating = theta * (product(&f_end, u) + energy.supports)
-            + (1.0 - theta) * product(&inertia.times(inertia.acceleration()), u);
-        energy.integration = energy.loads + energy.supports
-            - accelerating
-            - (energy.elastic_gain + energy.plastic + energy.water)
-            - (contact + reinforcement + energy.damping);
         // Of particles, and of the grid that takes their motion over for the step.
         let Motion { before, after, .. } = &motion;
         let gained: Vec<[f64; D]> = std::iter::zip(after, before)
             .map(|(after, before)| std::array::from_fn(|a| after[a] - before[a]))
             .collect();
+        let gained = inertia.times(&gained);
+        let duration = inertia.step().duration;
+        let accelerating = product(&gained, u) / duration;
+        energy.integration = energy.loads + energy.supports
+            - energy.unbalanced
+            - accelerating
+            - (energy.elastic_gain + energy.plastic + energy.water)
+            - (contact + reinforcement + energy.damping);
         let of_grid = |v: &[[f64; D]]| 0.5 * product(&inertia.times(v), v);
         let of_bodies = |v: &[[f64; D]]| {
             let mut v = v.to_vec();
@@ -146,7 +139,12 @@ impl<const D: usize> System<'_, D> {
         energy.kinetic += of_bodies(after);
         energy.kinetic_gain = energy.kinetic - kinetic_before;
         energy.map = kinetic_before - of_grid(before) - (energy.kinetic - of_grid(after));
-        energy.scheme = (2.0 * theta - 1.0) * of_grid(&gained);
+        let mean: Vec<[f64; D]> = std::iter::zip(u, std::iter::zip(after, before))
+            .map(|(u, (after, before))| {
+                std::array::from_fn(|a| u[a] / duration - 0.5 * (after[a] + before[a]))
+            })
+            .collect();
+        energy.scheme = product(&gained, &mean);
         Ok(Some(energy))
     }
 

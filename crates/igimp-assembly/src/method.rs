@@ -73,6 +73,9 @@ pub enum Remedy {
     /// It moves with the nearest node that carries enough soil: a rigid translation causes no
     /// strain, whatever its size (the default).
     Tie,
+    /// Its displacement goes on linearly from the nearest cell whose nodes carry enough soil, so that rotation causes no strain
+    /// either; without such a cell within two cells it is tied.
+    Extrapolate,
     /// Its displacement is zero. In stiff soil that moves far in a step, the sliver of soil
     /// beyond resists.
     Drop,

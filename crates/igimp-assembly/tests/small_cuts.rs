@@ -631,13 +631,13 @@ fn forces_that_hold_tied_nodes_act_on_their_masters() {
     let body = body(&cells([1, 1], [4, 4]), [SLIVER; 2]);
     let free = free(&grid, &law);
     let stencils = Stencils::build(&body, &method, &free).unwrap();
-    let is_tied = |&node: &usize| stencils.master(node) != node;
+    let is_tied = |&node: &usize| stencils.is_tied(node);
     let tied: Vec<usize> = (0..grid.node_count()).filter(is_tied).collect();
     assert!(!tied.is_empty());
     let mut random = Random(9);
     let held: Vec<[f64; 2]> = (0..grid.node_count())
         .map(|node| {
-            let touched = stencils.node_volume(stencils.master(node)) > 0.0;
+            let touched = (stencils.carriers(node)).any(|own| stencils.node_volume(own.node) > 0.0);
             [0, 1].map(|_| if touched { random.symmetric() } else { 0.0 })
         })
         .collect();

@@ -1,6 +1,6 @@
 //! Stages: what happens, in order.
 
-use igimp_assembly::{Geometry, MassMatrix, TimeScheme};
+use igimp_assembly::{Geometry, TimeScheme};
 
 use super::{Construction, RigidMove};
 
@@ -130,9 +130,9 @@ pub struct Dynamic {
     pub duration: f64,
     /// Time integration.
     pub scheme: TimeScheme,
-    /// Mass matrix.
-    pub mass: MassMatrix,
-    /// Share of a cell's volume below which a node is tied \[-\].
+    /// Share of the mass that is lumped at the nodes \[-\].
+    pub lumped_share: f64,
+    /// Share of a cell's volume below which the motion of a node is extrapolated \[-\].
     pub tied_below: f64,
     /// Longest step \[s\]; none: error and way alone choose.
     pub longest_step: Option<f64>,

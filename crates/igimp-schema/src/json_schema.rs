@@ -205,6 +205,7 @@ fn number(range: Range) -> Json {
         Range::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
         Range::NotNegative => json!({ "type": "number", "minimum": 0 }),
         Range::Share => json!({ "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1 }),
+        Range::Fraction => json!({ "type": "number", "minimum": 0, "maximum": 1 }),
     }
 }
 

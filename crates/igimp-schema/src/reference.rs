@@ -241,6 +241,7 @@ fn range_text(range: Range) -> &'static str {
         Range::Positive => " > 0",
         Range::NotNegative => " ≥ 0",
         Range::Share => " between 0 and 1",
+        Range::Fraction => " from 0 to 1",
     }
 }
 

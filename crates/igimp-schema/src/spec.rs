@@ -111,6 +111,8 @@ pub enum Range {
     NotNegative,
     /// Above zero and below one.
     Share,
+    /// From zero to one.
+    Fraction,
 }
 
 impl Range {
@@ -122,6 +124,7 @@ impl Range {
                 Self::Positive => value > 0.0,
                 Self::NotNegative => value >= 0.0,
                 Self::Share => 0.0 < value && value < 1.0,
+                Self::Fraction => (0.0..=1.0).contains(&value),
             }
     }
 
@@ -132,6 +135,7 @@ impl Range {
             Self::Positive => "positive",
             Self::NotNegative => "zero or positive",
             Self::Share => "between 0 and 1, the ends excluded",
+            Self::Fraction => "between 0 and 1",
         }
     }
 }

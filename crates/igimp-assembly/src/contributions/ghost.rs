@@ -39,11 +39,17 @@ pub(crate) fn ghost_penalty<const D: usize>(
             }
         }
     }
-    for entry in &mut entries {
-        entry.row = stencils.master(entry.row);
-        entry.column = stencils.master(entry.column);
+    let mut carried = Vec::with_capacity(entries.len());
+    for entry in entries {
+        for row in stencils.carriers(entry.row) {
+            carried.extend(stencils.carriers(entry.column).map(|column| Coupling {
+                row: row.node,
+                column: column.node,
+                stiffness: row.weight * column.weight * entry.stiffness,
+            }));
+        }
     }
-    Couplings(entries)
+    Couplings(carried)
 }
 
 /// Which cells hold soil, and how stiff it is.

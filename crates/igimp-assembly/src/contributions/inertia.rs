@@ -3,7 +3,7 @@
 //!
 //! ```math
 //! M_{ij} = \sum_p m_p S_{ip} S_{jp},\qquad M\,v_0 = \sum_p m_p S_{ip} v_p,\qquad
-//! f^{a}(u) = M a_1,\qquad a_1 = \frac{u - \Delta t\,v_0}{(\theta\,\Delta t)^2} - \frac{1 - \theta}{\theta}\,a_0
+//! f^{a}(u) = M \left[(1 - \alpha_m)\,a_1 + \alpha_m\,a_0\right]
 //! ```
 //!
 //! The particles are the quadrature of the mass, as they are of stress: momentum and energy of the map are exact.
@@ -12,7 +12,7 @@ use igimp_shape::Support;
 use rayon::prelude::*;
 
 use crate::body::particles::Particles;
-use crate::conditions::time_step::{MassMatrix, TimeScheme, TimeStep};
+use crate::conditions::time_step::{TimeScheme, TimeStep, Weights};
 use crate::contributions::nodal_forces::AddBlock;
 use crate::contributions::rigid::{NODES_PER_BODY, RigidBody};
 use crate::error::AssemblyError;
@@ -27,7 +27,7 @@ const FOUND: f64 = 1e-14;
 const ACCEPTED: f64 = 1e-9;
 
 /// Most iterations for the velocities of the grid: the scaled matrix is well conditioned, but for nodes that few particles reach.
-const MOST_ITERATIONS: usize = 200;
+const MOST_ITERATIONS: usize = 500;
 
 /// Inertia of one step.
 #[derive(Debug)]
@@ -42,6 +42,8 @@ pub(crate) struct Inertia<const D: usize> {
     mean_velocity: Vec<[f64; D]>,
     /// At the start, by node; zero where the scheme does not ask for it \[length/time²\].
     acceleration: Vec<[f64; D]>,
+    /// Internal less external force at the start, by node; empty where the scheme does not ask for it \[force\].
+    force_at_start: Vec<[f64; D]>,
 }
 
 impl<const D: usize> Inertia<D> {
@@ -58,24 +60,28 @@ impl<const D: usize> Inertia<D> {
         mass_of: &(dyn Fn(usize) -> f64 + Sync),
     ) -> Result<Self, AssemblyError> {
         let nodes = unknowns.nodes_of_grid();
-        let mass = NodalMass::of(step.mass, mass_of, stencils, nodes);
-        let on_grid =
-            |values: &[[f64; D]]| mass.solve(weighted(values, mass_of, stencils, nodes), unknowns);
-        let mut velocity = on_grid(&particles.velocity)?;
+        let mass = NodalMass::of(step.lumped, mass_of, stencils, nodes);
         let share = weighted(&vec![[1.0; D]; particles.len()], mass_of, stencils, nodes);
-        let mut mean_velocity = weighted(&particles.velocity, mass_of, stencils, nodes);
-        for (sum, share) in mean_velocity.iter_mut().zip(&share) {
-            *sum = std::array::from_fn(|a| {
-                if share[a] > 0.0 {
-                    sum[a] / share[a]
-                } else {
-                    0.0
-                }
-            });
-        }
+        let on_grid = |values: &[[f64; D]]| {
+            let sums = weighted(values, mass_of, stencils, nodes);
+            let mean: Vec<[f64; D]> = std::iter::zip(&sums, &share)
+                .map(|(sum, share)| {
+                    std::array::from_fn(|a| {
+                        if share[a] > 0.0 {
+                            sum[a] / share[a]
+                        } else {
+                            0.0
+                        }
+                    })
+                })
+                .collect();
+            let found = mass.solve(sums, mean.clone(), unknowns)?;
+            Ok::<_, AssemblyError>((found, mean))
+        };
+        let (mut velocity, mut mean_velocity) = on_grid(&particles.velocity)?;
         let carries = step.asks_for_acceleration() && !step.is_first;
         let mut acceleration = if carries {
-            on_grid(&particles.acceleration)?
+            on_grid(&particles.acceleration)?.0
         } else {
             vec![[0.0; D]; nodes]
         };
@@ -97,6 +103,7 @@ impl<const D: usize> Inertia<D> {
             velocity,
             mean_velocity,
             acceleration,
+            force_at_start: Vec::new(),
         })
     }
 
@@ -121,6 +128,7 @@ impl<const D: usize> Inertia<D> {
             acceleration: Vec::with_capacity(u.len()),
             before: self.velocity.clone(),
             keeps_rest: self.step.scheme == TimeScheme::Newmark,
+            carries_acceleration: self.step.asks_for_acceleration(),
         };
         for (u, (before, acceleration)) in
             std::iter::zip(u, std::iter::zip(&self.velocity, &self.acceleration))
@@ -132,35 +140,39 @@ impl<const D: usize> Inertia<D> {
         motion
     }
 
-    /// Takes the accelerations at the start from the `force` there, by node \[force\].
+    /// Takes over the internal less the external `force` at the start, by node \[force\]: where motion begins with this step, the
+    /// accelerations at the start follow from it.
     ///
     /// # Errors
     /// [`AssemblyError::MotionNotFound`].
     pub(crate) fn begin(
         &mut self,
-        force: &[[f64; D]],
+        force: Vec<[f64; D]>,
         unknowns: &Unknowns<D>,
     ) -> Result<(), AssemblyError> {
-        let nodes = self.mass.diagonal.len();
-        self.acceleration = self.mass.solve(force[..nodes].to_vec(), unknowns)?;
-        for (index, mass) in self.of_bodies.iter().enumerate() {
-            let node = nodes + index;
-            // The mass is diagonal but for a turning body of three different moments, whose first step this is.
-            self.acceleration.push(std::array::from_fn(|a| {
-                let is_free = unknowns.index(node, a).is_some() && mass[a][a] > 0.0;
-                if is_free {
-                    force[node][a] / mass[a][a]
-                } else {
-                    0.0
-                }
-            }));
+        if self.step.is_first {
+            let nodes = self.mass.diagonal.len();
+            let driving = |node: &[f64; D]| node.map(|f| -f);
+            let on_grid = force[..nodes].iter().map(driving).collect();
+            let still = vec![[0.0; D]; nodes];
+            self.acceleration = self.mass.solve(on_grid, still, unknowns)?;
+            for (index, mass) in self.of_bodies.iter().enumerate() {
+                let node = nodes + index;
+                // The mass is diagonal but for a turning body of three different moments, whose first step this is.
+                self.acceleration.push(std::array::from_fn(|a| {
+                    let is_free = unknowns.index(node, a).is_some() && mass[a][a] > 0.0;
+                    if is_free {
+                        -force[node][a] / mass[a][a]
+                    } else {
+                        0.0
+                    }
+                }));
+            }
+        }
+        if self.step.scheme.weights().of_force > 0.0 {
+            self.force_at_start = force;
         }
         Ok(())
-    }
-
-    /// The accelerations at the start, by node \[length/time²\].
-    pub(crate) fn acceleration(&self) -> &[[f64; D]] {
-        &self.acceleration
     }
 
     /// Adds inertia at nodal step displacements `u` \[length\] to the internal force `f` \[force\], with its derivative; the norm
@@ -185,9 +197,34 @@ impl<const D: usize> Inertia<D> {
         squared.sqrt()
     }
 
-    /// The force of acceleration M a₁ by node \[force\].
-    pub(crate) fn force(&self, u: &[[f64; D]]) -> Vec<[f64; D]> {
-        self.times(&self.motion(u).acceleration)
+    /// The force of acceleration by node, and what equilibrium between start and end has of the forces at the start: over the weight
+    /// of those at the end \[force\].
+    fn force(&self, u: &[[f64; D]]) -> Vec<[f64; D]> {
+        let mut between = self.motion(u).acceleration;
+        let Weights {
+            of_mass, of_force, ..
+        } = self.step.scheme.weights();
+        if of_mass == 0.0 && of_force == 0.0 {
+            return self.times(&between);
+        }
+        for (own, before) in between.iter_mut().zip(&self.acceleration) {
+            *own = std::array::from_fn(|a| {
+                ((1.0 - of_mass) * own[a] + of_mass * before[a]) / (1.0 - of_force)
+            });
+        }
+        let mut force = self.times(&between);
+        add_scaled(
+            &mut force,
+            of_force / (1.0 - of_force),
+            &self.force_at_start,
+        );
+        force
+    }
+
+    /// The factor of the mass in the derivative of the force \[1/time²\].
+    fn mass_rate(&self) -> f64 {
+        let weights = self.step.scheme.weights();
+        self.step.rate() * (1.0 - weights.of_mass) / (1.0 - weights.of_force)
     }
 
     /// The error of the time integration over a step by `u` \[length\], as a share of its motion (theory, eq. 68) \[-\].
@@ -226,9 +263,9 @@ impl<const D: usize> Inertia<D> {
         4.0 * f64::EPSILON * rate * squared.sqrt()
     }
 
-    /// Hands the mass over (θ Δt)² on in blocks of nodes.
+    /// Hands the derivative of the force of acceleration on in blocks of nodes.
     fn add_mass(&self, blocks: &mut AddBlock<'_, D>) {
-        let rate = self.step.rate();
+        let rate = self.mass_rate();
         let scaled = |mass: f64| {
             let mut block = [[0.0; D]; D];
             for (a, row) in block.iter_mut().enumerate() {
@@ -267,6 +304,8 @@ pub struct Motion<const D: usize> {
     pub acceleration: Vec<[f64; D]>,
     /// Whether a particle keeps the part of its velocity that the grid does not carry.
     pub keeps_rest: bool,
+    /// Whether particles carry accelerations on to the next step.
+    pub carries_acceleration: bool,
 }
 
 impl<const D: usize> Motion<D> {
@@ -300,9 +339,9 @@ struct NodalMass {
 }
 
 impl NodalMass {
-    /// Sums the mass matrix over the particles, strip by strip.
+    /// Sums the mass matrix over the particles, strip by strip, a share of it lumped.
     fn of<const D: usize>(
-        kind: MassMatrix,
+        lumped: f64,
         mass_of: &(dyn Fn(usize) -> f64 + Sync),
         stencils: &Stencils<D>,
         nodes: usize,
@@ -325,14 +364,18 @@ impl NodalMass {
                         let m = mass_of(particle as usize);
                         for (k, row) in own.iter().enumerate() {
                             let share = m * row.value;
-                            if kind == MassMatrix::Lumped {
-                                diagonal[row.node - nodes.start] += share;
+                            let own_share = lumped + (1.0 - lumped) * row.value;
+                            diagonal[row.node - nodes.start] += share * own_share;
+                            if lumped == 1.0 {
                                 continue;
                             }
-                            diagonal[row.node - nodes.start] += share * row.value;
                             let row = &mut beyond[row.node - nodes.start];
                             for other in &own[k + 1..] {
-                                add_entry(row, other.node as u32, share * other.value);
+                                add_entry(
+                                    row,
+                                    other.node as u32,
+                                    (1.0 - lumped) * share * other.value,
+                                );
                             }
                         }
                     }
@@ -361,13 +404,15 @@ impl NodalMass {
 
 impl NodalMass {
     /// Values by node whose product with the mass matrix is `sums` where a component is unknown, zero where it is not: of particle
-    /// velocities weighted by mass, those of the grid that come closest to them. Conjugate gradients, scaled by the diagonal.
+    /// velocities weighted by mass, those of the grid that come closest to them. Conjugate gradients, scaled by the diagonal, that
+    /// begin with a `guess`: what no particle sees stays as guessed.
     ///
     /// # Errors
     /// [`AssemblyError::MotionNotFound`].
     fn solve<const D: usize>(
         &self,
         mut sums: Vec<[f64; D]>,
+        guess: Vec<[f64; D]>,
         unknowns: &Unknowns<D>,
     ) -> Result<Vec<[f64; D]>, AssemblyError> {
         let scaled = |values: &[[f64; D]]| -> Vec<[f64; D]> {
@@ -376,10 +421,12 @@ impl NodalMass {
                 .collect()
         };
         mask(&mut sums, unknowns);
-        let mut found = scaled(&sums);
+        let mut found = guess;
+        mask(&mut found, unknowns);
         let mut left = sums;
-        let reference = product(&left, &found);
+        let reference = product(&left, &scaled(&left));
         if reference == 0.0 {
+            found.fill([0.0; D]);
             return Ok(found);
         }
         let mut image = vec![[0.0; D]; found.len()];

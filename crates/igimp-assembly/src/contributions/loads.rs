@@ -39,10 +39,12 @@ pub(crate) fn add_variation_of_weight<const D: usize>(
             continue;
         }
         for (node, moment) in moments.by_node.iter().enumerate() {
-            let force = &mut f_ext[stencils.master(node)];
-            for a in 0..D {
-                let along: f64 = (0..D).map(|b| moment[a][b] * gravity[b]).sum();
-                force[a] += gain * along;
+            for carrier in stencils.carriers(node) {
+                let force = &mut f_ext[carrier.node];
+                for a in 0..D {
+                    let along: f64 = (0..D).map(|b| moment[a][b] * gravity[b]).sum();
+                    force[a] += carrier.weight * (gain * along);
+                }
             }
         }
     }
@@ -89,9 +91,8 @@ pub(crate) fn add_force_of_points<const D: usize>(
             point: index,
             position: padded(&point.x),
         };
-        let mut own = point.supports(grid, index)?;
-        for support in &mut own {
-            support.node = stencils.master(support.node);
+        let own = stencils.carried(&point.supports(grid, index)?);
+        for support in &own {
             if support.value > 0.0 && stencils.node_volume(support.node) == 0.0 {
                 return Err(unsupported());
             }
@@ -128,10 +129,11 @@ pub(crate) fn add_unbalanced_forces<const D: usize>(
     f_ext: &mut [[f64; D]],
 ) {
     for (node, force) in held.forces.iter().enumerate() {
-        let master = stencils.master(node);
-        if stencils.node_volume(master) > 0.0 {
-            for axis in 0..D {
-                f_ext[master][axis] += held.share * force[axis];
+        for carrier in stencils.carriers(node) {
+            if stencils.node_volume(carrier.node) > 0.0 {
+                for axis in 0..D {
+                    f_ext[carrier.node][axis] += carrier.weight * (held.share * force[axis]);
+                }
             }
         }
     }

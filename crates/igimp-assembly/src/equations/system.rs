@@ -191,13 +191,13 @@ impl<'a, const D: usize> System<'a, D> {
                 self.f_ext[first + NODES_PER_BODY * index + 1][axis] += force;
             }
         }
-        if time.asks_for_acceleration() && time.is_first {
+        if time.asks_for_force_at_start() {
             let still = vec![[0.0; D]; self.node_count()];
             let mut force = self.evaluate(&still, TangentKind::Elastic)?.f_int;
             for (force, f_ext) in force.iter_mut().zip(&self.f_ext) {
-                *force = std::array::from_fn(|axis| f_ext[axis] - force[axis]);
+                *force = std::array::from_fn(|axis| force[axis] - f_ext[axis]);
             }
-            inertia.begin(&force, &self.unknowns)?;
+            inertia.begin(force, &self.unknowns)?;
         }
         self.round_off += inertia.round_off();
         self.inertia = Some(inertia);
@@ -716,8 +716,8 @@ impl<'a, const D: usize> System<'a, D> {
         beside_particles(&self.couplings, &self.contact, &self.reinforcement)
     }
 
-    /// Adds a correction `du` by unknown to nodal displacements `u` \[length\]; tied nodes follow their
-    /// masters.
+    /// Adds a correction `du` by unknown to nodal displacements `u` \[length\]; tied nodes follow those
+    /// that they move with.
     pub fn add_correction(&self, u: &mut [[f64; D]], du: &[f64]) {
         for (node, displacement) in u.iter_mut().enumerate() {
             for axis in 0..D {
@@ -726,8 +726,11 @@ impl<'a, const D: usize> System<'a, D> {
                 }
             }
         }
-        for (&node, &master) in self.stencils.masters() {
-            u[node] = u[master];
+        for (&node, carriers) in self.stencils.ties() {
+            u[node] = std::array::from_fn(|axis| {
+                let moved = carriers.iter().map(|own| own.weight * u[own.node][axis]);
+                moved.reduce(|sum, own| sum + own).unwrap_or(0.0)
+            });
         }
     }
 

@@ -3,33 +3,150 @@
 
 use std::collections::BTreeMap;
 
-use igimp_shape::Grid;
+use igimp_shape::{Grid, Support};
 
 use crate::conditions::constraints::Constraints;
 use crate::step::node_shares::NodeShare;
 use crate::step::supports::Supports;
 
-/// The master of every node that is a small cut, its volume being less than `below` of its cell's:
-/// the nearest node that shares a particle with it, carries enough soil and has the same
-/// constraints; of equally near ones that with most soil.
+/// How many cells away from a small cut the cell may be from which its displacement is extrapolated: from further on, the motion of
+/// a spray would be that of its neighbours many times over.
+const REACH: usize = 1;
+
+/// What is none of a weight \[-\].
+const ROUND_OFF: f64 = 1e-12;
+
+/// A node that a small cut moves with, and by how much.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carrier {
+    /// The node.
+    pub node: usize,
+    /// What its displacement counts; the weights of a tie sum to one \[-\].
+    pub weight: f64,
+}
+
+/// Tied nodes with the nodes that they move with.
+pub(crate) type Ties = BTreeMap<usize, Vec<Carrier>>;
+
+/// Supports on the nodes that tied ones move with, in their order; equal nodes are not added up.
+pub(crate) fn carried<const D: usize>(supports: &[Support<D>], ties: &Ties) -> Vec<Support<D>> {
+    let mut own = Vec::with_capacity(supports.len());
+    for support in supports {
+        match ties.get(&support.node) {
+            None => own.push(*support),
+            Some(carriers) => {
+                own.extend(carriers.iter().map(|&Carrier { node, weight }| Support {
+                    node,
+                    value: weight * support.value,
+                    grad: support.grad.map(|own| weight * own),
+                    grad_bar: support.grad_bar.map(|own| weight * own),
+                }))
+            }
+        }
+    }
+    own
+}
+
+/// Which nodes are small cuts, their volume being less than `below` of their cells'. Touched, not of positive volume: a point on a
+/// face sees the cell beyond by its gradient only.
+pub(crate) fn small_cuts<const D: usize>(
+    grid: &Grid<D>,
+    shares: &[NodeShare],
+    below: f64,
+) -> Vec<bool> {
+    (0..shares.len())
+        .map(|node| {
+            let share = &shares[node];
+            share.is_touched && share.volume < below * cell_volume(grid, node)
+        })
+        .collect()
+}
+
+/// Ties small cuts to the nearest cell whose nodes all carry enough soil, by its linear functions beyond its faces: of equally near
+/// ones to that with most soil. What a cut is held by holds all nodes that it is tied to. Cuts without such a cell find none.
+pub(crate) fn extrapolations<const D: usize>(
+    grid: &Grid<D>,
+    shares: &[NodeShare],
+    constraints: &Constraints<D>,
+    cuts: &[bool],
+) -> Ties {
+    let mut ties = Ties::new();
+    for cut in (0..cuts.len()).filter(|&node| cuts[node]) {
+        let held = |axis: usize| constraints.of(cut, axis);
+        if (0..D).all(|axis| held(axis).is_some()) {
+            continue;
+        }
+        let mut nearest: Option<(f64, f64, Vec<Carrier>)> = None;
+        for cell in cells_around(grid, cut) {
+            let carriers = carried_beyond(grid, cell, cut);
+            let is_firm = carriers.iter().all(|own| {
+                shares[own.node].is_touched
+                    && !cuts[own.node]
+                    && (0..D).all(|axis| {
+                        held(axis).is_none() || held(axis) == constraints.of(own.node, axis)
+                    })
+            });
+            if !is_firm {
+                continue;
+            }
+            // The sum of the magnitudes of weights grows with the distance.
+            let distance: f64 = carriers.iter().map(|own| own.weight.abs()).sum();
+            let soil: f64 = carriers.iter().map(|own| shares[own.node].volume).sum();
+            let is_nearer = (nearest.as_ref()).is_none_or(|&(other, most, _)| {
+                distance < other || (distance == other && soil > most)
+            });
+            if is_nearer {
+                nearest = Some((distance, soil, carriers));
+            }
+        }
+        if let Some((_, _, carriers)) = nearest {
+            ties.insert(cut, carriers);
+        }
+    }
+    ties
+}
+
+/// The cells within reach of a node.
+fn cells_around<const D: usize>(
+    grid: &Grid<D>,
+    node: usize,
+) -> impl Iterator<Item = [usize; D]> + '_ {
+    let place = grid.node_place(node);
+    let lower: [usize; D] = place.map(|own| own.saturating_sub(REACH + 1));
+    let count: [usize; D] = std::array::from_fn(|axis| {
+        (place[axis] + REACH + 1).min(grid.axes[axis].cell_count()) - lower[axis]
+    });
+    (0..count.iter().product()).map(move |mut index: usize| {
+        std::array::from_fn(|axis| {
+            let own = lower[axis] + index % count[axis];
+            index /= count[axis];
+            own
+        })
+    })
+}
+
+/// The nodes of a cell with the values of their linear functions at a node, which may lie beyond the cell.
+fn carried_beyond<const D: usize>(grid: &Grid<D>, cell: [usize; D], node: usize) -> Vec<Carrier> {
+    let x = grid.node_position(node);
+    let first = grid.node_position(grid.node_index(cell));
+    let size = grid.cell_size(cell);
+    let within = std::array::from_fn(|axis| (x[axis] - first[axis]) / size[axis]);
+    (grid.tents(cell, within))
+        .map(|(node, weight, _)| Carrier { node, weight })
+        .filter(|own| own.weight.abs() > ROUND_OFF)
+        .collect()
+}
+
+/// The master of every node that is a small cut: the nearest node that shares a particle with it, carries enough soil and has the
+/// same constraints; of equally near ones that with most soil.
 pub(crate) fn masters_of_cuts<const D: usize>(
     grid: &Grid<D>,
     supports: &Supports<D>,
     shares: &[NodeShare],
     constraints: &Constraints<D>,
-    below: f64,
+    cuts: &[bool],
 ) -> BTreeMap<usize, usize> {
     let fixed = |node: usize| (0..D).all(|axis| constraints.of(node, axis).is_some());
-    // Touched, not of positive volume: a point on a face sees the cell beyond by its gradient only.
-    let cuts: Vec<bool> = (0..shares.len())
-        .map(|node| {
-            let share = &shares[node];
-            share.is_touched && share.volume < below * cell_volume(grid, node)
-        })
-        .collect();
-    if !cuts.contains(&true) {
-        return BTreeMap::new();
-    }
     let distance = |a: usize, b: usize| {
         let (a, b) = (grid.node_position(a), grid.node_position(b));
         std::iter::zip(a, b)
@@ -37,7 +154,7 @@ pub(crate) fn masters_of_cuts<const D: usize>(
             .sum::<f64>()
     };
     let mut masters = BTreeMap::new();
-    for particle in supports.touching(&cuts) {
+    for particle in supports.touching(cuts) {
         let own = supports.of(particle);
         let nodes = own.iter().map(|support| support.node);
         for cut in nodes.clone().filter(|&node| cuts[node] && !fixed(node)) {

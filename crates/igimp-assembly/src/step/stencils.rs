@@ -1,18 +1,18 @@
 //! Who touches what: the supports of every particle, frozen for one step, with small cuts tied,
 //! and what follows from them for the nodes.
 
-use std::collections::BTreeMap;
-
 use igimp_shape::{Grid, Support};
 
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::error::AssemblyError;
-use crate::method::{Method, Remedy};
+use crate::method::{Method, Remedy, SmallCuts};
 use crate::step::cell_soil::Moments;
 use crate::step::domain::bounds;
 use crate::step::node_shares::{NodeShare, node_shares};
-use crate::step::small_cuts::{cell_volume, masters_of_cuts};
+use crate::step::small_cuts::{
+    Carrier, Ties, carried, cell_volume, extrapolations, masters_of_cuts, small_cuts,
+};
 use crate::step::strips::Strips;
 use crate::step::supports::Supports;
 
@@ -24,7 +24,7 @@ use crate::step::supports::Supports;
 pub struct Stencils<const D: usize> {
     supports: Supports<D>,
     shares: Vec<NodeShare>,
-    masters: BTreeMap<usize, usize>,
+    ties: Ties,
     strips: Strips,
 }
 
@@ -44,39 +44,31 @@ impl<const D: usize> Stencils<D> {
         method: &Method,
         conditions: &StepConditions<D>,
     ) -> Result<Self, AssemblyError> {
-        let StepConditions {
-            grid,
-            constraints,
-            laws,
-            ..
-        } = conditions;
+        let StepConditions { grid, laws, .. } = conditions;
         conditions.validate(particles)?;
         let mut supports = Supports::build(grid, particles, method, laws)?;
         let mut strips = Strips::build(grid, &supports);
         let mut shares = node_shares(grid, particles, &supports, &strips);
-        let mut masters = BTreeMap::new();
-        let cuts = method.small_cuts;
-        if cuts.remedy == Remedy::Tie {
-            masters = masters_of_cuts(grid, &supports, &shares, constraints, cuts.below);
-            if !masters.is_empty() {
-                let mut tied = vec![false; grid.node_count()];
-                for (&node, &master) in &masters {
-                    tied[node] = true;
-                    let share = std::mem::take(&mut shares[node]);
-                    shares[master].volume += share.volume;
-                    shares[master].mass += share.mass;
+        let ties = ties(method, conditions, &supports, &shares);
+        if !ties.is_empty() {
+            let mut tied = vec![false; grid.node_count()];
+            for (&node, carriers) in &ties {
+                tied[node] = true;
+                let share = std::mem::take(&mut shares[node]);
+                for Carrier { node, weight } in carriers {
+                    shares[*node].volume += weight * share.volume;
+                    shares[*node].mass += weight * share.mass;
                 }
-                let master = |node| masters.get(&node).copied().unwrap_or(node);
-                for particle in supports.touching(&tied) {
-                    supports.tie(grid, particle, master);
-                }
-                strips = Strips::build(grid, &supports);
             }
+            for particle in supports.touching(&tied) {
+                supports.tie(grid, particle, &ties);
+            }
+            strips = Strips::build(grid, &supports);
         }
         Ok(Self {
             supports,
             shares,
-            masters,
+            ties,
             strips,
         })
     }
@@ -134,17 +126,58 @@ impl<const D: usize> Stencils<D> {
     }
 
     /// Tied nodes with the nodes that they move with.
-    pub(crate) fn masters(&self) -> &BTreeMap<usize, usize> {
-        &self.masters
+    pub(crate) fn ties(&self) -> &Ties {
+        &self.ties
     }
 
-    /// The node that a node moves with: itself unless it is tied.
-    pub fn master(&self, node: usize) -> usize {
-        self.masters.get(&node).copied().unwrap_or(node)
+    /// Whether a node moves with others.
+    pub fn is_tied(&self, node: usize) -> bool {
+        self.ties.contains_key(&node)
+    }
+
+    /// The nodes that a node moves with: itself alone unless it is tied.
+    pub fn carriers(&self, node: usize) -> impl Iterator<Item = Carrier> + '_ {
+        let tie = self.ties.get(&node);
+        let own = tie.is_none().then_some(Carrier { node, weight: 1.0 });
+        own.into_iter().chain(tie.into_iter().flatten().copied())
+    }
+
+    /// The supports of a point on the nodes that carry it, in their order.
+    pub(crate) fn carried(&self, supports: &[Support<D>]) -> Vec<Support<D>> {
+        carried(supports, &self.ties)
     }
 
     /// Particles grouped by strips of node rows, for sums that are the same for any thread count.
     pub(crate) fn strips(&self) -> &Strips {
         &self.strips
     }
+}
+
+/// The ties of small cuts that a method asks for.
+fn ties<const D: usize>(
+    method: &Method,
+    conditions: &StepConditions<D>,
+    supports: &Supports<D>,
+    shares: &[NodeShare],
+) -> Ties {
+    let SmallCuts { below, remedy, .. } = method.small_cuts;
+    let (grid, constraints) = (&conditions.grid, &conditions.constraints);
+    if remedy == Remedy::Drop {
+        return Ties::new();
+    }
+    let cuts = small_cuts(grid, shares, below);
+    if !cuts.contains(&true) {
+        return Ties::new();
+    }
+    let mut ties = match remedy {
+        Remedy::Extrapolate => extrapolations(grid, shares, constraints, &cuts),
+        Remedy::Tie | Remedy::Drop => Ties::new(),
+    };
+    let masters = masters_of_cuts(grid, supports, shares, constraints, &cuts);
+    for (cut, node) in masters {
+        let weight = 1.0;
+        ties.entry(cut)
+            .or_insert_with(|| vec![Carrier { node, weight }]);
+    }
+    ties
 }

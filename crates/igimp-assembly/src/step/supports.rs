@@ -9,6 +9,7 @@ use crate::laws::SharedLaw;
 use crate::method::{Geometry, Locking, Method};
 use crate::step::cell_soil::{CellSoil, Moments};
 use crate::step::domain::{bounds, capped_half_length, merge_equal_nodes, off_grid};
+use crate::step::small_cuts::{Ties, carried};
 
 /// The supports of each particle, nodes ascending.
 #[derive(Clone, Debug)]
@@ -105,15 +106,19 @@ impl<const D: usize> Supports<D> {
 
     /// Replaces the nodes of one particle by the nodes that they move with, and adds up supports
     /// that come together.
-    pub(crate) fn tie(&mut self, grid: &Grid<D>, particle: usize, master: impl Fn(usize) -> usize) {
-        let chunk = &mut self.chunks[particle / CHUNK];
-        let (start, count) = &mut chunk.places[particle % CHUNK];
-        let own = &mut chunk.all[*start as usize..(*start + *count) as usize];
-        for support in &mut *own {
-            support.node = master(support.node);
-        }
+    pub(crate) fn tie(&mut self, grid: &Grid<D>, particle: usize, ties: &Ties) {
+        let mut own = carried(self.of(particle), ties);
         own.sort_by_key(|support| support.node);
-        *count = merge_equal_nodes(own) as u32;
+        let count = merge_equal_nodes(&mut own);
+        let chunk = &mut self.chunks[particle / CHUNK];
+        let (start, room) = &mut chunk.places[particle % CHUNK];
+        if count > *room as usize {
+            *start = chunk.all.len() as u32;
+            chunk.all.extend_from_slice(&own[..count]);
+        } else {
+            chunk.all[*start as usize..][..count].copy_from_slice(&own[..count]);
+        }
+        *room = count as u32;
         let (_, extent) = bounds(grid, self.of(particle));
         self.reach = extent.into_iter().fold(self.reach, usize::max);
     }

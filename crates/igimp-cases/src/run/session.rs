@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use igimp_assembly::{
-    Geometry, MassMatrix, Method, Particles, StepEnergy, TimeScheme, TimeStep, UnbalancedForces,
+    Geometry, Method, Particles, StepEnergy, TimeScheme, TimeStep, UnbalancedForces,
 };
 use igimp_linear::LinearEffort;
 use igimp_results::ending::EndReason;
@@ -259,7 +259,7 @@ pub(crate) struct StagePath<'a, const D: usize> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TimeIntegration {
     pub(crate) scheme: TimeScheme,
-    pub(crate) mass: MassMatrix,
+    pub(crate) lumped: f64,
 }
 
 /// How a march ended.
@@ -308,7 +308,7 @@ pub(crate) fn march_path<const D: usize>(
             .with_time(path.time.map(|integration| TimeStep {
                 duration: after.time - before.time,
                 scheme: integration.scheme,
-                mass: integration.mass,
+                lumped: integration.lumped,
                 is_first: from == 0.0,
                 must_resolve: true,
             }))

@@ -413,6 +413,7 @@ pub(super) fn method(own: &keys::Method) -> Method {
             remedy: match *cuts.remedy {
                 keys::Remedy::Drop => Remedy::Drop,
                 keys::Remedy::Tie => Remedy::Tie,
+                keys::Remedy::Extrapolate => Remedy::Extrapolate,
             },
             ghost_penalty: *cuts.ghost_penalty,
         },

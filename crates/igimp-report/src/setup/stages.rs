@@ -118,6 +118,7 @@ fn happens<const D: usize>(case: &Case<D>, stage: &Stage) -> String {
                 short(dynamic.duration),
                 match dynamic.scheme {
                     TimeScheme::Newmark => "Newmark's method",
+                    TimeScheme::GeneralisedAlpha => "the generalised-α method",
                     TimeScheme::BackwardEuler => "backward Euler",
                 }
             )];

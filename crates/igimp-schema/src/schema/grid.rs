@@ -139,6 +139,7 @@ choices! {
     /// What happens to a small cut.
     Remedy;
     Tie "tie", "it moves with the nearest node that carries soil";
+    Extrapolate "extrapolate", "its displacement goes on linearly from the nearest cell full of soil";
     Drop "drop", "its displacement is zero";
 }
 

@@ -113,10 +113,11 @@ table! {
 table! {
     DYNAMIC: Dynamic, "Motion in time, with inertia.";
     duration: quantity(Time, Positive), required "\"5 s\"", "how long it lasts";
-    scheme: choice(Scheme), default "\"backward-euler\"", "how motion is integrated in time";
-    mass: choice(Mass), default "\"consistent\"", "how mass is given to the nodes";
+    scheme: choice(Scheme), default "\"generalised-alpha\"", "how motion is integrated in time";
+    lumped_share: number(Fraction), default "0.01",
+        "share of the mass that is lumped at the nodes: 0 consistent, 1 lumped";
     tied_below: number(NotNegative), default "0.2",
-        "share of a cell's volume below which a node is tied while the soil moves; less serves bodies that turn";
+        "share of a cell's volume below which the motion of a node is extrapolated from full cells";
     longest_step: quantity(Time, Positive), optional "the error of the scheme and the way of the soil alone choose",
         "longest step of time";
     reduction: apart(table(REDUCTION: Reduction)), optional "strength stays",
@@ -157,13 +158,7 @@ choices! {
     Scheme;
     BackwardEuler "backward-euler", "first order; what steps do not resolve is damped out";
     Newmark "newmark", "second order, without damping (β = ¼, γ = ½)";
-}
-
-choices! {
-    /// How mass is given to the nodes.
-    Mass;
-    Consistent "consistent", "by products of the basis: exact in momentum and energy";
-    Lumped "lumped", "to each node its share: smooths velocities";
+    GeneralisedAlpha "generalised-alpha", "second order; what steps do not resolve is damped";
 }
 
 choices! {

@@ -182,9 +182,7 @@ fn carried_by<const D: usize>(
         &mut own,
     )
     .ok()?;
-    for support in &mut own {
-        support.node = stencils.master(support.node);
-    }
+    let mut own = stencils.carried(&own);
     let is_dropped = |node: usize| !unknowns.is_active(node);
     own.retain(|support| support.value > LEAST_SHARE || !is_dropped(support.node));
     shares_of_carried(grid, unknowns, is_dropped, x, &own)

@@ -238,9 +238,12 @@ fn soil_at<const D: usize>(
     let mut shares: Vec<(usize, f64)> = Vec::with_capacity(1 << D);
     let mut sum = 0.0;
     for (node, share, _) in grid.tents(cell, within) {
-        let node = stencils.master(node);
-        if share > LEAST_SHARE && unknowns.is_active(node) {
-            shares.push((node, share));
+        if share <= LEAST_SHARE {
+            continue;
+        }
+        for carrier in (stencils.carriers(node)).filter(|own| unknowns.is_active(own.node)) {
+            let share = carrier.weight * share;
+            shares.push((carrier.node, share));
             sum += share;
         }
     }

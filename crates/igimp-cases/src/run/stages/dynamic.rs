@@ -4,6 +4,7 @@
 //! are chosen by the error of the time integration and by the way of the soil, and land on equal parts of the duration, as
 //! many as the stage has steps. No factor of safety follows from motion.
 
+use igimp_assembly::{Remedy, SmallCuts};
 use igimp_model::{Case, Dynamic, StageKind};
 use igimp_results::ending::EndReason;
 use igimp_results::summary::StageSummary;
@@ -69,14 +70,18 @@ pub(crate) fn dynamic<const D: usize>(
     }
     let mut method = flowing(model);
     method.geometry = stage.geometry;
-    method.small_cuts.below = dynamic.tied_below;
+    method.small_cuts = SmallCuts {
+        below: dynamic.tied_below,
+        remedy: Remedy::Extrapolate,
+        ..method.small_cuts
+    };
     let path = StagePath {
         from: &from,
         to: &to,
         drag: &|_, _| 0.0,
         time: Some(TimeIntegration {
             scheme: dynamic.scheme,
-            mass: dynamic.mass,
+            lumped: dynamic.lumped_share,
         }),
         method,
         settings: pace(model, state, dynamic, stage.steps)?,

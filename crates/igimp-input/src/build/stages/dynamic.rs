@@ -1,6 +1,6 @@
 //! Stages that take time.
 
-use igimp_assembly::{MassMatrix, TimeScheme};
+use igimp_assembly::TimeScheme;
 use igimp_model::{Dynamic, StageKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::stages as keys;
@@ -28,11 +28,9 @@ pub(crate) fn stage<const D: usize>(
         scheme: match *own.scheme {
             keys::Scheme::BackwardEuler => TimeScheme::BackwardEuler,
             keys::Scheme::Newmark => TimeScheme::Newmark,
+            keys::Scheme::GeneralisedAlpha => TimeScheme::GeneralisedAlpha,
         },
-        mass: match *own.mass {
-            keys::Mass::Consistent => MassMatrix::Consistent,
-            keys::Mass::Lumped => MassMatrix::Lumped,
-        },
+        lumped_share: *own.lumped_share,
         tied_below: *own.tied_below,
         longest_step: own.longest_step.as_ref().map(|own| **own),
         reduction,
