@@ -70,6 +70,9 @@ pub trait RigidForm<const D: usize>: Debug + Send + Sync {
     /// coordinates \[m\]; infinite beside the body.
     fn underside(&self, lower: &[f64; D], upper: &[f64; D]) -> f64;
 
+    /// Moments of inertia over the mass of a uniform body, about axes through a point; in the plane the last one counts \[m²\].
+    fn squared_gyration(&self, about: &[f64; D]) -> [[f64; 3]; 3];
+
     /// Its shape, place and size, in words.
     fn words(&self) -> [String; 2];
 
@@ -86,6 +89,23 @@ impl<const D: usize> RigidPart<D> {
     /// [`SurfaceError`].
     pub fn surface(&self, cell: f64) -> Result<Surface<D>, SurfaceError> {
         (self.shape).surface(self.reference, self.rounding * cell, cell)
+    }
+
+    /// The mass of the part that is modelled under a gravity \[m/s²\] \[kg/m, in space kg\]; none without gravity.
+    pub fn mass(&self, gravity: f64) -> f64 {
+        if gravity > 0.0 {
+            self.weight / gravity / self.force_factor
+        } else {
+            0.0
+        }
+    }
+
+    /// Its moments of inertia under a gravity \[m/s²\], about axes through the reference point, where its mass has its
+    /// centre: those of a uniform body \[kg·m, in space kg·m²\].
+    pub fn moments_of_inertia(&self, gravity: f64) -> [[f64; 3]; 3] {
+        let mass = self.mass(gravity);
+        let squared = self.shape.squared_gyration(&self.reference);
+        squared.map(|row| row.map(|own| mass * own))
     }
 
     /// Its extent where it starts: corners of the lowest and of the highest coordinates \[m\].
@@ -170,6 +190,31 @@ impl RigidForm<2> for RigidShape {
                 lowest(&mut std::iter::once(centre[0].clamp(left, right)))
             }
         }
+    }
+
+    fn squared_gyration(&self, about: &[f64; 2]) -> [[f64; 3]; 3] {
+        let polar = match self {
+            Self::Polygon(corners) => {
+                let own = |at: &[f64; 2]| [at[0] - about[0], at[1] - about[1]];
+                let next = corners.iter().cycle().skip(1);
+                let (mut area, mut moment) = (0.0, 0.0);
+                for (p, q) in std::iter::zip(corners, next) {
+                    let (p, q) = (own(p), own(q));
+                    let cross = p[0] * q[1] - p[1] * q[0];
+                    let squares = p[0] * p[0] + p[1] * p[1] + q[0] * q[0] + q[1] * q[1];
+                    area += 0.5 * cross;
+                    moment += cross / 12.0 * (squares + p[0] * q[0] + p[1] * q[1]);
+                }
+                moment / area
+            }
+            Self::Circle { centre, radius } => {
+                let off = (centre[0] - about[0]).hypot(centre[1] - about[1]);
+                0.5 * radius * radius + off * off
+            }
+        };
+        let mut moments = [[0.0; 3]; 3];
+        moments[2][2] = polar;
+        moments
     }
 
     fn words(&self) -> [String; 2] {

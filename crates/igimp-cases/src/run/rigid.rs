@@ -37,6 +37,8 @@ pub(crate) fn made<const D: usize>(
     let mut body = RigidBody::new(surface, interfaces, part.reference);
     body.name.clone_from(&part.name);
     body.penalty.stiffness = part.stiffness;
+    body.motion.mass = part.mass(case.gravity);
+    body.motion.moments = part.moments_of_inertia(case.gravity);
     Ok(body)
 }
 

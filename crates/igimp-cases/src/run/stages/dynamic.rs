@@ -65,6 +65,10 @@ pub(crate) fn dynamic<const D: usize>(
     }
     let mut to = target(model.case, stage, &from);
     to.time += dynamic.duration;
+    // Forces on rigid bodies act from the first moment on, and what holds them no longer lets go at once.
+    for (own, end) in from.rigid.iter_mut().zip(&to.rigid) {
+        own.loaded = end.loaded;
+    }
     if resumption.is_none() {
         begin(session, state, number)?;
     }

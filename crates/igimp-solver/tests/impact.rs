@@ -1,0 +1,190 @@
+//! GOAL: rigid bodies with mass slide and roll on soil, and bodies of soil meet, as mechanics says.
+//! BODY: stiff elastic ground with a body under the weight of a slope on it; two bars of soil.
+//! ORACLE: a block slides by g (sin β − μ cos β), a cylinder rolls by ⅔ g sin β where it does not slip; bars that meet exchange
+//! their velocities after 2 L/c.
+
+mod body_support;
+
+use body_support::{YOUNG, block, elastic, unit_grid, workspace};
+use igimp_assembly::{
+    Constraints, Drive, Interface, Method, ParticleSeed, Particles, RigidBody, RigidMotion, Shear,
+    StepConditions, StepLoads, Surface, Tension, TimeScheme, TimeStep,
+};
+use igimp_shape::{Axis, Grid};
+use igimp_solver::{Body, NewtonSettings, step};
+
+/// Gravity \[length/time²\].
+const GRAVITY: f64 = 1e-2;
+
+/// Angle of the slope \[rad\].
+const SLOPE: f64 = 0.5;
+
+/// How long bodies move along the slope \[time\].
+const TIME: f64 = 30.0;
+
+/// The longest step \[time\].
+const LONGEST: f64 = 0.25;
+
+fn over(duration: f64, is_first: bool) -> TimeStep {
+    TimeStep {
+        duration,
+        scheme: TimeScheme::GeneralisedAlpha,
+        lumped: 0.01,
+        is_first,
+        must_resolve: false,
+    }
+}
+
+/// A body of a mass that has moved along the slope on two layers of ground, free to turn or not.
+fn slid(rigid: RigidBody<2>, is_free_to_turn: bool) -> RigidBody<2> {
+    let grid = unit_grid([10, 6]);
+    let mut body = block(&grid, [0, 0], [10, 2]);
+    let weight = rigid.motion.mass * GRAVITY;
+    body.rigid = vec![rigid];
+    let turn = match is_free_to_turn {
+        true => Drive::Loaded(0.0),
+        false => Drive::Moved(0.0),
+    };
+    let motion = RigidMotion {
+        displacement: [weight * SLOPE.sin(), -weight * SLOPE.cos()].map(Drive::Loaded),
+        rotation: [turn, Drive::Moved(0.0), Drive::Moved(0.0)],
+    };
+    let mut constraints = Constraints::free(&grid);
+    for axis in 0..2 {
+        constraints.fix_wall(&grid, 1, false, axis).unwrap();
+    }
+    let loads = StepLoads::gravity([0.0; 2]);
+    let conditions = StepConditions::new(grid, constraints, loads, vec![elastic()])
+        .unwrap()
+        .with_motions(vec![motion])
+        .unwrap();
+    let (method, settings) = (Method::igimp(), NewtonSettings::default());
+    let mut workspace = workspace();
+    let (mut past, mut duration) = (0.0, LONGEST);
+    while past < TIME {
+        let time = Some(over(duration, past == 0.0));
+        let conditions = conditions.clone().with_time(time).unwrap();
+        let from_to = (0.0, 1.0);
+        match step(
+            &mut body,
+            &method,
+            &conditions,
+            from_to,
+            &settings,
+            &mut workspace,
+        ) {
+            Ok(_) => {
+                past += duration;
+                if 2.0 * duration <= LONGEST && (past / (2.0 * duration)).fract() == 0.0 {
+                    duration *= 2.0;
+                }
+            }
+            Err(error) => {
+                duration *= 0.5;
+                assert!(duration > 1e-3, "{error:?}");
+            }
+        }
+    }
+    body.rigid.remove(0)
+}
+
+/// A surface that friction alone holds.
+fn rubbing(friction: f64) -> Interface {
+    let adhesion = vec![0.0];
+    let varies = false;
+    Interface {
+        shear: Shear::Limited {
+            adhesion,
+            varies,
+            friction,
+        },
+        tension: Tension::None,
+    }
+}
+
+/// The mean acceleration from rest \[length/time²\].
+fn acceleration(way: f64) -> f64 {
+    2.0 * way / (TIME * TIME)
+}
+
+fn within(share: f64, own: f64, expected: f64) {
+    assert!((own / expected - 1.0).abs() < share, "{own} {expected}");
+}
+
+/// GOAL: a block slides by what friction leaves of its weight.
+#[test]
+fn a_block_slides_by_what_friction_leaves() {
+    for friction in [0.2, 0.4] {
+        let corners = [[-1.0, 0.0], [1.0, 0.0], [1.0, 1.0], [-1.0, 1.0]];
+        let surface = Surface::polygon(&corners, 0.25, 1.0).unwrap();
+        let mut block = RigidBody::new(surface, vec![rubbing(friction); 4], [3.0, 2.0]);
+        block.motion.mass = 1.0;
+        let way = slid(block, false).pose.origin[0] - 3.0;
+        let expected = GRAVITY * (SLOPE.sin() - friction * SLOPE.cos());
+        within(0.01, acceleration(way), expected);
+    }
+}
+
+/// GOAL: a cylinder rolls by two thirds of what it would slide by, and turns by its way over its radius.
+#[test]
+fn a_cylinder_rolls() {
+    for (mass, cell) in [(1.0, 1.0), (20.0, 0.12)] {
+        let surface = Surface::circle(1.0, cell).unwrap();
+        let mut cylinder = RigidBody::new(surface, vec![rubbing(0.4)], [3.0, 3.0]);
+        cylinder.motion.mass = mass;
+        cylinder.motion.moments[2][2] = 0.5 * mass;
+        let moved = slid(cylinder, true);
+        let way = moved.pose.origin[0] - 3.0;
+        within(0.01, acceleration(way), 2.0 / 3.0 * GRAVITY * SLOPE.sin());
+        within(0.01, -moved.pose.angle[0], way);
+    }
+}
+
+/// GOAL: two bars that meet with opposite velocities exchange them in the time that a wave goes to and fro.
+#[test]
+fn bars_that_meet_exchange_their_velocities() {
+    let (cells, speed) = (100, 1e-3);
+    let grid = Grid::new([Axis::uniform(0.0, 1.0, 2 * cells + 4).unwrap()]);
+    let seeds: Vec<_> = (0..4 * cells)
+        .map(|k| ParticleSeed {
+            x: [2.25 + 0.5 * k as f64],
+            half_length: [0.25],
+            volume: 0.5,
+            density: 1.0,
+            law: 0,
+            centroid: [0.0],
+        })
+        .collect();
+    let velocities = (0..4 * cells)
+        .map(|k| [if k < 2 * cells { speed } else { -speed }])
+        .collect();
+    let particles = Particles::new(&seeds).unwrap();
+    let mut body = Body::new(particles.with_velocities(velocities).unwrap());
+    let constraints = Constraints::free(&grid);
+    let loads = StepLoads::gravity([0.0]);
+    let conditions = StepConditions::new(grid, constraints, loads, vec![elastic()]).unwrap();
+    let (method, settings) = (Method::igimp(), NewtonSettings::default());
+    let wave = (YOUNG * 0.7 / (1.3 * 0.4)).sqrt();
+    let steps = 4 * cells;
+    let duration = 2.0 * cells as f64 / wave / steps as f64;
+    let mut workspace = workspace();
+    for k in 0..steps {
+        let time = Some(over(duration, k == 0));
+        let conditions = conditions.clone().with_time(time).unwrap();
+        let from_to = (0.0, 1.0);
+        step(
+            &mut body,
+            &method,
+            &conditions,
+            from_to,
+            &settings,
+            &mut workspace,
+        )
+        .unwrap();
+    }
+    let (first, second) = body.particles.velocity.split_at(2 * cells);
+    for (bar, expected) in [(first, -speed), (second, speed)] {
+        let mean = bar.iter().map(|v| v[0]).sum::<f64>() / bar.len() as f64;
+        within(0.02, mean, expected);
+    }
+}
