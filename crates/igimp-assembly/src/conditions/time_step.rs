@@ -50,6 +50,11 @@ impl TimeStep {
         (self.scheme.theta() * self.duration).powi(-2)
     }
 
+    /// The rate 1/(θ Δt) by which a displacement becomes a velocity \[1/time\].
+    pub(crate) fn velocity_rate(&self) -> f64 {
+        1.0 / (self.scheme.theta() * self.duration)
+    }
+
     /// Whether the scheme asks for the acceleration at the start.
     pub(crate) fn asks_for_acceleration(&self) -> bool {
         self.scheme.theta() < 1.0

@@ -42,6 +42,8 @@ pub(crate) struct Inertia<const D: usize> {
     mean_velocity: Vec<[f64; D]>,
     /// At the start, by node; zero where the scheme does not ask for it \[length/time²\].
     acceleration: Vec<[f64; D]>,
+    /// Damping of soil by its mass \[1/time\].
+    damping: f64,
 }
 
 impl<const D: usize> Inertia<D> {
@@ -97,12 +99,37 @@ impl<const D: usize> Inertia<D> {
             velocity,
             mean_velocity,
             acceleration,
+            damping: 0.0,
         })
     }
 
     /// The time integration of the step.
     pub(crate) fn step(&self) -> &TimeStep {
         &self.step
+    }
+
+    /// Damps soil by so much of its mass \[1/time\].
+    pub(crate) fn damp(&mut self, damping: f64) {
+        self.damping = damping;
+    }
+
+    /// Velocities at the start, by node \[length/time\].
+    pub(crate) fn velocity(&self) -> &[[f64; D]] {
+        &self.velocity
+    }
+
+    /// The force α M v of velocities by node, on soil alone \[force\].
+    pub(crate) fn damping_force(&self, velocity: &[[f64; D]]) -> Vec<[f64; D]> {
+        let nodes = self.mass.diagonal.len();
+        let mut force = vec![[0.0; D]; velocity.len()];
+        if self.damping != 0.0 {
+            let (of_soil, soil) = (&mut force[..nodes], &velocity[..nodes]);
+            self.mass.multiply(soil, of_soil);
+            for own in of_soil.as_flattened_mut() {
+                *own *= self.damping;
+            }
+        }
+        force
     }
 
     /// Step displacements of nodes that go on as the soil around them moves at the start \[length\]: by the mean of the velocities of
@@ -171,7 +198,8 @@ impl<const D: usize> Inertia<D> {
         f: &mut [[f64; D]],
         blocks: Option<&mut AddBlock<'_, D>>,
     ) -> f64 {
-        let force = self.force(u);
+        let motion = self.motion(u);
+        let force = self.times(&motion.acceleration);
         let mut squared = 0.0;
         for (f, force) in f.iter_mut().zip(&force) {
             for a in 0..D {
@@ -179,15 +207,15 @@ impl<const D: usize> Inertia<D> {
                 squared += force[a] * force[a];
             }
         }
+        if self.damping != 0.0 {
+            for (f, force) in f.iter_mut().zip(self.damping_force(&motion.after)) {
+                *f = std::array::from_fn(|a| f[a] + force[a]);
+            }
+        }
         if let Some(blocks) = blocks {
             self.add_mass(blocks);
         }
         squared.sqrt()
-    }
-
-    /// The force of acceleration M a₁ by node \[force\].
-    pub(crate) fn force(&self, u: &[[f64; D]]) -> Vec<[f64; D]> {
-        self.times(&self.motion(u).acceleration)
     }
 
     /// The error of the time integration over a step by `u` \[length\], as a share of its motion (theory, eq. 68) \[-\].
@@ -229,10 +257,11 @@ impl<const D: usize> Inertia<D> {
     /// Hands the mass over (θ Δt)² on in blocks of nodes.
     fn add_mass(&self, blocks: &mut AddBlock<'_, D>) {
         let rate = self.step.rate();
+        let of_soil = rate + self.damping * self.step.velocity_rate();
         let scaled = |mass: f64| {
             let mut block = [[0.0; D]; D];
             for (a, row) in block.iter_mut().enumerate() {
-                row[a] = rate * mass;
+                row[a] = of_soil * mass;
             }
             block
         };
