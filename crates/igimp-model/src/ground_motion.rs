@@ -86,10 +86,11 @@ impl GroundMotion {
         velocity
     }
 
-    /// The shortest interval between samples \[s\].
+    /// The interval between samples, the median one where they are not even \[s\].
     pub fn interval(&self) -> f64 {
-        let pieces = self.pieces().map(|piece| piece.duration);
-        pieces.fold(f64::INFINITY, f64::min)
+        let mut all: Vec<f64> = self.pieces().map(|piece| piece.duration).collect();
+        all.sort_by(f64::total_cmp);
+        all.get(all.len() / 2).copied().unwrap_or(f64::INFINITY)
     }
 
     /// The largest acceleration by magnitude \[m/s²\].

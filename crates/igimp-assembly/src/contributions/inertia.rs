@@ -218,9 +218,14 @@ impl<const D: usize> Inertia<D> {
         squared.sqrt()
     }
 
-    /// The error of the time integration over a step by `u` \[length\], as a share of its motion (theory, eq. 68) \[-\].
-    pub(crate) fn error(&self, u: &[[f64; D]]) -> f64 {
+    /// The error of the time integration over a step by `u` \[length\], as a share of its motion (theory, eq. 68) \[-\]; none where
+    /// the force of acceleration is `negligible` \[force\], as at rest.
+    pub(crate) fn error(&self, u: &[[f64; D]], negligible: f64) -> f64 {
         let accelerated = self.motion(u).acceleration;
+        let force = self.times(&accelerated);
+        if product(&force, &force).sqrt() <= negligible {
+            return 0.0;
+        }
         let change: Vec<[f64; D]> = std::iter::zip(&accelerated, &self.acceleration)
             .map(|(after, before)| std::array::from_fn(|a| after[a] - before[a]))
             .collect();

@@ -34,6 +34,9 @@ use crate::method::{Kinematics, Method};
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
 
+/// The force of acceleration below which a body is at rest, over the round-off of forces \[-\].
+const AT_REST: f64 = 100.0;
+
 /// One step's system of equations. Borrows the state at the step's start and never changes it.
 #[derive(Debug)]
 pub struct System<'a, const D: usize> {
@@ -694,7 +697,8 @@ impl<'a, const D: usize> System<'a, D> {
     /// The error of the time integration over a step by nodal displacements `u` \[length\], as a share of its motion \[-\]; none in
     /// statics.
     pub fn time_error(&self, u: &[[f64; D]]) -> Option<f64> {
-        self.inertia.as_ref().map(|inertia| inertia.error(u))
+        let negligible = AT_REST * self.round_off;
+        (self.inertia.as_ref()).map(|inertia| inertia.error(u, negligible))
     }
 
     /// How the nodes move over a step by nodal step displacements `u` \[length\], for [`Particles::accelerate`]; none in statics.
