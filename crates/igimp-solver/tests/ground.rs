@@ -341,6 +341,32 @@ fn a_layer_on_a_compliant_base_amplifies_by_its_impedance() {
     }
 }
 
+/// GOAL: springs beside dashpots send long waves back as their stiffness says (theory, eq. 71).
+/// CASE: a layer on a half-space of itself, with springs of modulus over height.
+/// ORACLE: the layer on the impedance ρ c + k/(i ω): 1/|cos kH + i sin kH/(1 − i c/(ω L))|; without springs it is 1.
+#[test]
+fn springs_send_long_waves_back() {
+    let height = 20.0;
+    for kh in [0.8_f64, 1.6] {
+        let (body, conditions) = bar(20, 0);
+        let omega = kh * wave_speed() / height;
+        let top = body.particles.len() - 1;
+        let period = 2.0 * PI / omega;
+        let walls = vec![at_bottom(1.0 / height)];
+        let times = (period / 80.0, TimeScheme::Newmark);
+        let mut motion = Motion::new(body, conditions, walls, times);
+        let found = amplification(&mut motion, omega, [1200, 1280], top);
+        // sin kH i/(1 − i b) = sin kH (i − b)/(1 + b²), with b = c/(ω L).
+        let b = 1.0 / kh;
+        let share = kh.sin() / (1.0 + b * b);
+        let expected = 1.0 / f64::hypot(kh.cos() - b * share, share);
+        assert!(
+            (found / expected - 1.0).abs() < 0.02,
+            "{kh}: {found} {expected}"
+        );
+    }
+}
+
 /// GOAL: soil is damped as Rayleigh says: in proportion to stiffness, and to mass.
 /// ORACLE: a layer of complex stiffness G (1 + i ω β) on a rigid base at its resonance, 1/√(cos² a + sinh² b) with
 /// (a − i b) = k* H; with the complex density ρ (1 − i α/ω) by the same formula, its amplitude over its base by

@@ -6,10 +6,12 @@
 
 use std::collections::BTreeMap;
 
+use igimp_shape::Grid;
+
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::conditions::time_step::TimeStep;
-use crate::conditions::walls::WallNode;
+use crate::conditions::walls::AbsorbingWall;
 use crate::contributions::nodal_forces::{AddBlock, NodalForces};
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
@@ -40,6 +42,17 @@ struct NodeAtWall<const D: usize> {
     velocity: [f64; D],
 }
 
+impl<const D: usize> NodeAtWall<D> {
+    /// Adds what a wall does at the node, with the area that a unit of volume there has on it \[1/length\].
+    fn join(&mut self, wall: &AbsorbingWall<D>, per_volume: f64, share: &Shares) {
+        for a in 0..D {
+            let wave = usize::from(a != wall.normal);
+            self.dashpot[a] += per_volume * share.impedance[wave];
+            self.spring[a] += per_volume * share.modulus[wave] * wall.spring[a];
+        }
+    }
+}
+
 /// Two nodes that move together.
 #[derive(Clone, Debug)]
 struct Tie<const D: usize> {
@@ -68,30 +81,27 @@ impl<const D: usize> WallForces<D> {
         unknowns: &Unknowns<D>,
         mass_of: &(dyn Fn(usize) -> f64 + Sync),
     ) -> Self {
-        let mut own = Self {
-            nodes: Vec::new(),
-            ties: Vec::new(),
-            step: None,
-        };
         let Some(walls) = &conditions.walls else {
-            return own;
+            return Self {
+                nodes: Vec::new(),
+                ties: Vec::new(),
+                step: None,
+            };
         };
         let grid = &conditions.grid;
-        let shares = shares(particles, stencils, conditions, mass_of);
-        let displaced: BTreeMap<usize, &WallNode<D>> =
-            walls.nodes.iter().map(|own| (own.node, own)).collect();
-        let displacement = |node: usize| displaced.get(&node).map_or([0.0; D], |n| n.displacement);
-        let takes_part = |node: usize| unknowns.is_active(node) && stencils.master(node) == node;
+        let mut shares = shares(particles, stencils, conditions, mass_of);
+        shares.retain(|&node, _| unknowns.is_active(node) && stencils.master(node) == node);
+        let displaced: BTreeMap<usize, [f64; D]> = (walls.nodes.iter())
+            .map(|own| (own.node, own.displacement))
+            .collect();
+        let displacement = |node: usize| displaced.get(&node).copied().unwrap_or([0.0; D]);
         let mut nodes: BTreeMap<usize, NodeAtWall<D>> = BTreeMap::new();
         for wall in &walls.absorbing {
             let axis = &grid.axes[wall.normal];
             let last = axis.cell_count() - 1;
             let (place, cell) = if wall.upper { (last + 1, last) } else { (0, 0) };
-            let per_area = 2.0 / axis.spacing(cell);
-            for (&node, share) in &shares {
-                if grid.node_place(node)[wall.normal] != place || !takes_part(node) {
-                    continue;
-                }
+            let at_wall = |node: usize| grid.node_place(node)[wall.normal] == place;
+            for (&node, share) in shares.iter().filter(|(node, _)| at_wall(**node)) {
                 let own = nodes.entry(node).or_insert_with(|| NodeAtWall {
                     node,
                     dashpot: [0.0; D],
@@ -99,40 +109,15 @@ impl<const D: usize> WallForces<D> {
                     displacement: displacement(node),
                     velocity: [0.0; D],
                 });
-                for a in 0..D {
-                    let wave = usize::from(a != wall.normal);
-                    own.dashpot[a] += per_area * share.impedance[wave];
-                    own.spring[a] += per_area * share.modulus[wave] * wall.spring[a];
-                }
+                own.join(wall, 2.0 / axis.spacing(cell), share);
             }
         }
-        own.nodes = nodes.into_values().collect();
-        if let Some(tied) = walls.tied {
-            let across = grid.axes[tied].node_count() - 1;
-            let cell = grid.axes[tied].spacing(0);
-            for (&node, share) in &shares {
-                let mut place = grid.node_place(node);
-                if place[tied] != 0 {
-                    continue;
-                }
-                place[tied] = across;
-                let other = grid.node_index(place);
-                let Some(beyond) = shares.get(&other) else {
-                    continue;
-                };
-                if !(takes_part(node) && takes_part(other)) {
-                    continue;
-                }
-                let modulus = share.modulus[0].max(beyond.modulus[0]);
-                let (a, b) = (displacement(node), displacement(other));
-                own.ties.push(Tie {
-                    nodes: [node, other],
-                    stiffness: TIE * modulus / (cell * cell),
-                    gap: std::array::from_fn(|k| a[k] - b[k]),
-                });
-            }
+        Self {
+            nodes: nodes.into_values().collect(),
+            ties: (walls.tied)
+                .map_or_else(Vec::new, |tied| ties(grid, tied, &shares, displacement)),
+            step: None,
         }
-        own
     }
 
     /// Lets dashpots act in a step that begins with these velocities by node \[length/time\].
@@ -231,6 +216,33 @@ impl<const D: usize> NodalForces<D> for WallForces<D> {
             }
         }
     }
+}
+
+/// The pairs of nodes at the two ends of an axis, both with soil.
+fn ties<const D: usize>(
+    grid: &Grid<D>,
+    axis: usize,
+    shares: &BTreeMap<usize, Shares>,
+    displacement: impl Fn(usize) -> [f64; D],
+) -> Vec<Tie<D>> {
+    let cell = grid.axes[axis].spacing(0);
+    let first = shares
+        .iter()
+        .filter(|(node, _)| grid.node_place(**node)[axis] == 0);
+    first
+        .filter_map(|(&node, share)| {
+            let mut place = grid.node_place(node);
+            place[axis] = grid.axes[axis].node_count() - 1;
+            let other = grid.node_index(place);
+            let modulus = share.modulus[0].max(shares.get(&other)?.modulus[0]);
+            let (a, b) = (displacement(node), displacement(other));
+            Some(Tie {
+                nodes: [node, other],
+                stiffness: TIE * modulus / (cell * cell),
+                gap: std::array::from_fn(|k| a[k] - b[k]),
+            })
+        })
+        .collect()
 }
 
 /// What soil leaves at the nodes of the walls of a grid.

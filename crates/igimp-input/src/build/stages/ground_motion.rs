@@ -53,7 +53,7 @@ pub(super) fn walls<const D: usize>(
         absorbing.push(below);
     }
     let first = own.absorbing.iter().next().map(|wall| wall.place);
-    let tied = own.tied_sides.written.then_some(own.tied_sides.place);
+    let tied = own.tied_sides.then_some(own.tied_sides.place);
     if about.index == 0
         && let Some(place) = first.or(tied).or(motion.map(|own| own.place))
     {
