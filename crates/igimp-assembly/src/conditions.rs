@@ -1,11 +1,13 @@
 //! What holds during one step, besides the particles.
 
 pub(crate) mod constraints;
+pub(crate) mod ground_motion;
 pub(crate) mod loads;
 pub(crate) mod reinforcement;
 pub(crate) mod rigid_motion;
 pub(crate) mod time_step;
 pub(crate) mod unbalanced;
+pub(crate) mod walls;
 pub(crate) mod water;
 
 use igimp_shape::Grid;
@@ -17,9 +19,11 @@ use crate::conditions::water::Water;
 use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
 use constraints::Constraints;
+use ground_motion::{GroundMotion, Rayleigh};
 use loads::StepLoads;
 use time_step::TimeStep;
 use unbalanced::UnbalancedForces;
+use walls::Walls;
 
 /// What holds during one step, besides the particles.
 #[derive(Clone, Debug)]
@@ -44,6 +48,12 @@ pub struct StepConditions<const D: usize> {
     pub held: Option<UnbalancedForces<D>>,
     /// The time that the step takes; none in statics.
     pub time: Option<TimeStep>,
+    /// Walls behind which the ground goes on, in a step that takes time.
+    pub walls: Option<Walls<D>>,
+    /// Motion of the ground in whose frame motion is told, in a step that takes time.
+    pub ground: Option<GroundMotion<D>>,
+    /// Viscous damping of soil, in a step that takes time.
+    pub damping: Option<Rayleigh>,
 }
 
 impl<const D: usize> StepConditions<D> {
@@ -68,6 +78,9 @@ impl<const D: usize> StepConditions<D> {
             water: Water::default(),
             held: None,
             time: None,
+            walls: None,
+            ground: None,
+            damping: None,
         };
         conditions.validate_fields()?;
         Ok(conditions)
@@ -129,6 +142,36 @@ impl<const D: usize> StepConditions<D> {
         Ok(self)
     }
 
+    /// The same with walls behind which the ground goes on.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for a wall that is none.
+    pub fn with_walls(mut self, walls: Option<Walls<D>>) -> Result<Self, AssemblyError> {
+        self.walls = walls;
+        self.validate_fields()?;
+        Ok(self)
+    }
+
+    /// The same on ground that moves.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for an acceleration that is not finite.
+    pub fn with_ground(mut self, ground: Option<GroundMotion<D>>) -> Result<Self, AssemblyError> {
+        self.ground = ground;
+        self.validate_fields()?;
+        Ok(self)
+    }
+
+    /// The same with viscous damping of soil.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for damping that is negative or not finite.
+    pub fn with_damping(mut self, damping: Option<Rayleigh>) -> Result<Self, AssemblyError> {
+        self.damping = damping;
+        self.validate_fields()?;
+        Ok(self)
+    }
+
     /// Refuses conditions that do not validate_fields.
     fn validate_fields(&self) -> Result<(), AssemblyError> {
         self.constraints.belong_to(&self.grid)?;
@@ -153,6 +196,23 @@ impl<const D: usize> StepConditions<D> {
         if self.time.is_some_and(|time| !time.is_sound()) {
             let (what, index) = ("duration of a step", 0);
             return Err(AssemblyError::NonFinite { what, index });
+        }
+        let of_motion = [
+            (
+                "wall",
+                self.walls.as_ref().is_some_and(|own| !own.are_sound()),
+            ),
+            (
+                "acceleration of the ground",
+                self.ground.is_some_and(|own| !own.is_finite()),
+            ),
+            (
+                "damping of soil",
+                self.damping.is_some_and(|own| !own.is_sound()),
+            ),
+        ];
+        if let Some((what, _)) = of_motion.into_iter().find(|(_, is_wrong)| *is_wrong) {
+            return Err(AssemblyError::NonFinite { what, index: 0 });
         }
         self.water.is_finite()?;
         self.loads.are_finite()

@@ -30,13 +30,15 @@ pub struct StepEnergy {
     pub contact: f64,
     /// Work on reinforcement.
     pub reinforcement: f64,
-    /// Work of gravity, loads and forces on rigid bodies.
+    /// Work of gravity, loads and forces on rigid bodies, and of −M a in the frame of ground that moves.
     pub loads: f64,
     /// Work of the supports.
     pub supports: f64,
+    /// Work against dashpots and springs of walls, less that of the forces which they carry.
+    pub boundaries: f64,
     /// Work against the pressure of given water beyond its reference.
     pub water: f64,
-    /// Work against dashpots, drag and ghost penalty.
+    /// Work against damping of soil, drag and ghost penalty.
     pub damping: f64,
     /// Kinetic energy that the scheme of time integration takes.
     pub scheme: f64,
@@ -58,6 +60,7 @@ impl StepEnergy {
             + self.reinforcement
             + self.water
             + self.damping
+            + self.boundaries
             + self.scheme
             + self.map
             + self.integration;
@@ -100,8 +103,9 @@ impl<const D: usize> System<'_, D> {
             own.add(at, &mut force, None);
             product(&force, u)
         };
-        let [ghost, drag, contact, reinforcement] = (self.forces())
+        let [ghost, drag, contact, reinforcement, _] = (self.forces())
             .map(|own| theta * work_of(own, u) + (1.0 - theta) * work_of(own, &still));
+        let ground = self.work_of_ground(inertia, u);
         let mut energy = StepEnergy {
             kinetic: sum(|own| own.kinetic),
             elastic: sum(|own| own.elastic),
@@ -109,8 +113,9 @@ impl<const D: usize> System<'_, D> {
             water: sum(|own| own.water),
             contact,
             reinforcement,
-            damping: ghost + drag,
-            loads: product(self.f_ext(), u),
+            damping: ghost + drag + ground.damping,
+            boundaries: ground.boundaries,
+            loads: product(self.f_ext(), u) - ground.carried + ground.earlier,
             supports: product(&self.reactions(trial), u),
             unbalanced: theta * self.work_out_of_balance(trial, u),
             ..StepEnergy::default()
@@ -128,7 +133,7 @@ impl<const D: usize> System<'_, D> {
             - energy.unbalanced
             - accelerating
             - (energy.elastic_gain + energy.plastic + energy.water)
-            - (contact + reinforcement + energy.damping);
+            - (contact + reinforcement + energy.damping + energy.boundaries);
         let of_grid = |v: &[[f64; D]]| 0.5 * product(&inertia.times(v), v);
         let of_bodies = |v: &[[f64; D]]| {
             let mut v = v.to_vec();

@@ -350,6 +350,23 @@ fn block_slumps_until_it_rests() {
 }
 
 #[test]
+fn an_earthquake_moves_a_slope_as_far_as_a_block() {
+    let ran = ran("earthquake_slope", &[]);
+    assert_eq!(ran.outcomes(), [Completed, Stopped, Completed]);
+    let stage = &ran.run.summary.stages[2];
+    let block = stage.newmark.as_ref().unwrap();
+    println!(
+        "{block:?} {} {:?} {}",
+        stage.largest_displacement, stage.energy, stage.steps
+    );
+    assert!(block.is_limit);
+    between(block.yield_coefficient, 0.15, 0.35);
+    between(block.displacement, 0.005, 0.2);
+    // The soil also sways, and its layer amplifies the motion of the rock.
+    between(stage.largest_displacement / block.displacement, 0.5, 10.0);
+}
+
+#[test]
 fn a_column_of_sand_collapses_until_it_rests() {
     let ran = ran("column_collapse", &["grid.cell=2 cm"]);
     assert_eq!(ran.outcomes(), [Completed]);

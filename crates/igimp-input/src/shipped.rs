@@ -69,6 +69,7 @@ shipped! {
     "footing_3d": "rough square footing on undrained clay in space, held against limit analysis",
     "slope_3d": "undrained slope between rough valley sides under rising weight, held against limit analysis",
     "landslide_3d": "slope of clay from an elevation grid: factor of safety in space, held against limit analysis",
+    "earthquake_slope": "clay slope in an earthquake: displacement of a sliding block and of the soil in motion",
     "column_collapse": "column of dry sand that is let go: motion in time until it rests",
     "block": "block of clay that loses its strength and spreads until it rests",
 }

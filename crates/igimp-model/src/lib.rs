@@ -7,6 +7,7 @@ mod axes;
 pub mod check;
 mod grid;
 mod ground;
+mod ground_motion;
 mod load;
 mod material;
 pub mod meshes;
@@ -28,6 +29,7 @@ use serde::{Deserialize, Serialize};
 pub use axes::{front, in_space};
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use ground::{Ground, Layer};
+pub use ground_motion::{Base, GroundMotion, Piece};
 pub use igimp_schema::field::Field;
 pub use load::{Load, LoadKind, Plan};
 pub use material::profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
@@ -46,8 +48,8 @@ pub use rigid::{
     RigidQuantity, RigidShape, RigidShear, components,
 };
 pub use stage::{
-    Dynamic, Reduction, ReductionPath, RunOut, SearchMethod, Stage, StageKind, StopWhen,
-    StrengthReduction,
+    Dynamic, Reduction, ReductionPath, RunOut, SearchMethod, Stage, StageKind, StageWalls,
+    StopWhen, StrengthReduction,
 };
 pub use water::{Construction, Drainage, Drained, PoreSource, WaterCondition, table_level};
 

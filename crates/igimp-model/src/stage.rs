@@ -1,8 +1,8 @@
 //! Stages: what happens, in order.
 
-use igimp_assembly::{Geometry, TimeScheme};
+use igimp_assembly::{Geometry, Rayleigh, TimeScheme};
 
-use super::{Construction, RigidMove};
+use super::{Construction, GroundMotion, RigidMove};
 
 /// One thing that happens.
 #[derive(Clone, Debug, PartialEq)]
@@ -143,6 +143,25 @@ pub struct Dynamic {
     /// The share of its largest value to which kinetic energy has to fall for the stage to end \[-\]; none: it lasts its whole
     /// duration.
     pub at_rest: Option<f64>,
+    /// What lies beyond the walls of the grid.
+    pub walls: StageWalls,
+    /// Motion of the ground that the body stands on; none: it stands still.
+    pub ground_motion: Option<GroundMotion>,
+    /// Damping of soil, if any.
+    pub rayleigh: Option<Rayleigh>,
+    /// The stage whose yield acceleration gives the displacement by Newmark's sliding block, by index.
+    pub newmark_from: Option<usize>,
+}
+
+/// What lies beyond the walls of the grid during motion.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StageWalls {
+    /// Walls with dashpots, by axis and whether it is the upper end.
+    pub absorbing: Vec<(usize, bool)>,
+    /// Stiffness of the springs beside dashpots over modulus and length of the model \[-\].
+    pub springs: f64,
+    /// Whether the two walls across the first axis move together.
+    pub tied: bool,
 }
 
 /// By how much strength is reduced.

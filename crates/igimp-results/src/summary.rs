@@ -199,6 +199,9 @@ pub struct StageSummary {
     /// Where the work of a stage that takes time went.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub energy: Option<EnergySummary>,
+    /// What a sliding block does by the motion of the ground, where the stage asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub newmark: Option<NewmarkSummary>,
     /// How its linear systems were solved, in space.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub linear: Option<LinearSummary>,
@@ -242,9 +245,12 @@ pub struct EnergySummary {
     pub reinforcement: f64,
     /// Work against given pore pressure.
     pub water: f64,
-    /// Work against dashpots and ghost penalty.
+    /// Work against damping of soil and ghost penalty.
     pub damping: f64,
-    /// Work of gravity, loads and forces on rigid bodies.
+    /// Work against dashpots and springs of walls.
+    #[serde(default)]
+    pub boundaries: f64,
+    /// Work of gravity, loads and forces on rigid bodies, and of −M a where the ground moves.
     pub loads: f64,
     /// Work of the supports.
     pub supports: f64,
@@ -258,7 +264,7 @@ pub struct EnergySummary {
 
 impl EnergySummary {
     /// Its parts, as `energy.csv` names them.
-    pub fn parts(&self) -> [(&'static str, f64); 13] {
+    pub fn parts(&self) -> [(&'static str, f64); 14] {
         [
             ("kinetic", self.kinetic),
             ("kinetic_gain", self.kinetic_gain),
@@ -268,6 +274,7 @@ impl EnergySummary {
             ("reinforcement", self.reinforcement),
             ("pore_water", self.water),
             ("damping", self.damping),
+            ("boundaries", self.boundaries),
             ("loads", self.loads),
             ("supports", self.supports),
             ("scheme", self.scheme),
@@ -292,6 +299,7 @@ impl EnergySummary {
             (self.reinforcement, "reinforcement"),
             (self.water, "pore water"),
             (self.damping, "damping"),
+            (self.boundaries, "boundaries"),
         ];
         for (value, name) in others.into_iter().filter(|(value, _)| *value != 0.0) {
             let _ = write!(text, ", {name} {}", short(value));
@@ -318,6 +326,40 @@ impl EnergySummary {
         } else {
             0.0
         }
+    }
+}
+
+/// What a rigid block does by Newmark's method on the ground that a stage moves.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct NewmarkSummary {
+    /// Yield coefficient k_c, as a force over the weight: positive to the right \[-\].
+    pub yield_coefficient: f64,
+    /// Whether it is that of a limit; else of the last equilibrium that was found.
+    pub is_limit: bool,
+    /// The stage that tells it.
+    pub from: String,
+    /// Largest acceleration of the ground \[m/s²\].
+    pub peak_acceleration: f64,
+    /// Displacement of the block \[m\].
+    pub displacement: f64,
+}
+
+impl NewmarkSummary {
+    /// In a sentence, beside the largest displacement that the stage found \[m\].
+    pub fn sentence(&self, largest: f64) -> String {
+        format!(
+            "Newmark's block: {} m with k_c = {} of stage \"{}\"{}, ground at up to {} m/s²; the soil moved by up to {} m",
+            short(self.displacement),
+            short(self.yield_coefficient),
+            self.from,
+            if self.is_limit {
+                ""
+            } else {
+                " (its last equilibrium, no limit)"
+            },
+            short(self.peak_acceleration),
+            short(largest)
+        )
     }
 }
 

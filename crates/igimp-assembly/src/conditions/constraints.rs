@@ -44,6 +44,21 @@ impl<const D: usize> Constraints<D> {
         Ok(())
     }
 
+    /// Lets the displacement of a node along one axis go.
+    ///
+    /// # Errors
+    /// [`AssemblyError::UnknownNode`] or [`AssemblyError::UnknownAxis`].
+    pub fn release(&mut self, node: usize, axis: usize) -> Result<(), AssemblyError> {
+        let nodes = self.prescribed.len();
+        let entry = self
+            .prescribed
+            .get_mut(node)
+            .ok_or(AssemblyError::UnknownNode { node, nodes })?;
+        known_axis::<D>(axis)?;
+        entry[axis] = None;
+        Ok(())
+    }
+
     /// Holds one component of displacement on all nodes of a wall: axis `normal`, its lower or
     /// upper end, component `axis`.
     ///

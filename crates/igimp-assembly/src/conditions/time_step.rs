@@ -83,6 +83,12 @@ impl TimeStep {
         1.0 / (self.scheme.weights().beta * self.duration.powi(2))
     }
 
+    /// The rate γ/(β Δt) by which a displacement becomes a velocity \[1/time\].
+    pub(crate) fn velocity_rate(&self) -> f64 {
+        let Weights { beta, gamma, .. } = self.scheme.weights();
+        gamma / (beta * self.duration)
+    }
+
     /// Whether the scheme asks for the acceleration at the start.
     pub(crate) fn asks_for_acceleration(&self) -> bool {
         self.scheme != TimeScheme::BackwardEuler

@@ -44,6 +44,8 @@ pub(crate) struct Inertia<const D: usize> {
     acceleration: Vec<[f64; D]>,
     /// Internal less external force at the start, by node; empty where the scheme does not ask for it \[force\].
     force_at_start: Vec<[f64; D]>,
+    /// Damping of soil by its mass \[1/time\].
+    damping: f64,
 }
 
 impl<const D: usize> Inertia<D> {
@@ -104,12 +106,42 @@ impl<const D: usize> Inertia<D> {
             mean_velocity,
             acceleration,
             force_at_start: Vec::new(),
+            damping: 0.0,
         })
     }
 
     /// The time integration of the step.
     pub(crate) fn step(&self) -> &TimeStep {
         &self.step
+    }
+
+    /// Damps soil by so much of its mass \[1/time\].
+    pub(crate) fn damp(&mut self, damping: f64) {
+        self.damping = damping;
+    }
+
+    /// The accelerations at the start, by node \[length/time²\].
+    pub(crate) fn acceleration(&self) -> &[[f64; D]] {
+        &self.acceleration
+    }
+
+    /// Velocities at the start, by node \[length/time\].
+    pub(crate) fn velocity(&self) -> &[[f64; D]] {
+        &self.velocity
+    }
+
+    /// The force α M v of velocities by node, on soil alone \[force\].
+    pub(crate) fn damping_force(&self, velocity: &[[f64; D]]) -> Vec<[f64; D]> {
+        let nodes = self.mass.diagonal.len();
+        let mut force = vec![[0.0; D]; velocity.len()];
+        if self.damping != 0.0 {
+            let (of_soil, soil) = (&mut force[..nodes], &velocity[..nodes]);
+            self.mass.multiply(soil, of_soil);
+            for own in of_soil.as_flattened_mut() {
+                *own *= self.damping;
+            }
+        }
+        force
     }
 
     /// Step displacements of nodes that go on as the soil around them moves at the start \[length\]: by the mean of the velocities of
@@ -183,12 +215,18 @@ impl<const D: usize> Inertia<D> {
         f: &mut [[f64; D]],
         blocks: Option<&mut AddBlock<'_, D>>,
     ) -> f64 {
-        let force = self.force(u);
+        let motion = self.motion(u);
+        let force = self.force(&motion);
         let mut squared = 0.0;
         for (f, force) in f.iter_mut().zip(&force) {
             for a in 0..D {
                 f[a] += force[a];
                 squared += force[a] * force[a];
+            }
+        }
+        if self.damping != 0.0 {
+            for (f, force) in f.iter_mut().zip(self.damping_force(&motion.after)) {
+                *f = std::array::from_fn(|a| f[a] + force[a]);
             }
         }
         if let Some(blocks) = blocks {
@@ -199,14 +237,14 @@ impl<const D: usize> Inertia<D> {
 
     /// The force of acceleration by node, and what equilibrium between start and end has of the forces at the start: over the weight
     /// of those at the end \[force\].
-    fn force(&self, u: &[[f64; D]]) -> Vec<[f64; D]> {
-        let mut between = self.motion(u).acceleration;
+    fn force(&self, motion: &Motion<D>) -> Vec<[f64; D]> {
         let Weights {
             of_mass, of_force, ..
         } = self.step.scheme.weights();
         if of_mass == 0.0 && of_force == 0.0 {
-            return self.times(&between);
+            return self.times(&motion.acceleration);
         }
+        let mut between = motion.acceleration.clone();
         for (own, before) in between.iter_mut().zip(&self.acceleration) {
             *own = std::array::from_fn(|a| {
                 ((1.0 - of_mass) * own[a] + of_mass * before[a]) / (1.0 - of_force)
@@ -227,9 +265,14 @@ impl<const D: usize> Inertia<D> {
         self.step.rate() * (1.0 - weights.of_mass) / (1.0 - weights.of_force)
     }
 
-    /// The error of the time integration over a step by `u` \[length\], as a share of its motion (theory, eq. 68) \[-\].
-    pub(crate) fn error(&self, u: &[[f64; D]]) -> f64 {
+    /// The error of the time integration over a step by `u` \[length\], as a share of its motion (theory, eq. 68) \[-\]; none where
+    /// the force of acceleration is `negligible` \[force\], as at rest.
+    pub(crate) fn error(&self, u: &[[f64; D]], negligible: f64) -> f64 {
         let accelerated = self.motion(u).acceleration;
+        let force = self.times(&accelerated);
+        if product(&force, &force).sqrt() <= negligible {
+            return 0.0;
+        }
         let change: Vec<[f64; D]> = std::iter::zip(&accelerated, &self.acceleration)
             .map(|(after, before)| std::array::from_fn(|a| after[a] - before[a]))
             .collect();
@@ -266,10 +309,11 @@ impl<const D: usize> Inertia<D> {
     /// Hands the derivative of the force of acceleration on in blocks of nodes.
     fn add_mass(&self, blocks: &mut AddBlock<'_, D>) {
         let rate = self.mass_rate();
+        let of_soil = rate + self.damping * self.step.velocity_rate();
         let scaled = |mass: f64| {
             let mut block = [[0.0; D]; D];
             for (a, row) in block.iter_mut().enumerate() {
-                row[a] = rate * mass;
+                row[a] = of_soil * mass;
             }
             block
         };

@@ -9,3 +9,4 @@ pub(crate) mod nodal_forces;
 pub(crate) mod pore_water;
 pub(crate) mod reinforcement;
 pub(crate) mod rigid;
+pub(crate) mod walls;

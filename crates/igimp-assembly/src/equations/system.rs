@@ -22,7 +22,9 @@ use crate::contributions::reinforcement::{Members, Reinforcement};
 use crate::contributions::rigid::{
     AcceptedContact, Contact, NODES_PER_BODY, Penetration, RigidBody,
 };
+use crate::contributions::walls::WallForces;
 use crate::equations::blocks::BlockTable;
+use crate::equations::damping::StiffnessDamping;
 use crate::equations::kinematics::ParticleTrial;
 use crate::equations::linearised::{Linearised, Moduli};
 use crate::equations::residual::{OutOfBalance, force_of_round_off};
@@ -32,6 +34,9 @@ use crate::method::{Kinematics, Method};
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
 
+/// The force of acceleration below which a body is at rest, over the round-off of forces \[-\].
+const AT_REST: f64 = 100.0;
+
 /// One step's system of equations. Borrows the state at the step's start and never changes it.
 #[derive(Debug)]
 pub struct System<'a, const D: usize> {
@@ -40,7 +45,7 @@ pub struct System<'a, const D: usize> {
     pub(crate) conditions: Cow<'a, StepConditions<D>>,
     pub(crate) method: &'a Method,
     pub(crate) unknowns: Unknowns<D>,
-    f_ext: Vec<[f64; D]>,
+    pub(crate) f_ext: Vec<[f64; D]>,
     /// By node that stands for the motion of a rigid body.
     motions: Vec<[Drive; D]>,
     /// ‖f_int‖ of strains that are round-off \[force\].
@@ -49,8 +54,12 @@ pub struct System<'a, const D: usize> {
     couplings: [Couplings; 2],
     contact: Contact<'a, D>,
     reinforcement: Members<'a, D>,
+    /// Walls behind which the ground goes on.
+    pub(crate) walls: WallForces<D>,
     /// Inertia of a step that takes time.
     pub(crate) inertia: Option<Inertia<D>>,
+    /// Damping by the elastic stiffness, in a step that takes time.
+    pub(crate) damping: Option<StiffnessDamping>,
     pub(crate) pores: Pores,
     pub(crate) table: BlockTable<D>,
     pub(crate) pattern: Arc<Pattern>,
@@ -123,10 +132,12 @@ impl<'a, const D: usize> System<'a, D> {
         ];
         let contact = Contact::find(bodies, particles, stencils, conditions, &unknowns);
         let reinforcement = Members::find(members, stencils, conditions, method, &unknowns)?;
-        let forces = beside_particles(&couplings, &contact, &reinforcement);
+        let (f_ext, pores) = external_force(particles, stencils, conditions, method, &motions)?;
+        let mass_of = |particle: usize| particles.mass[particle] + pores.mass(particle);
+        let walls = WallForces::find(particles, stencils, conditions, &unknowns, &mass_of);
+        let forces = beside_particles(&couplings, &contact, &reinforcement, &walls);
         let pairs: Vec<_> = forces.iter().flat_map(|force| force.pairs()).collect();
         let symmetric = symmetric_particles && forces.iter().all(|force| force.is_symmetric());
-        let (f_ext, pores) = external_force(particles, stencils, conditions, method, &motions)?;
         let (table, pattern) = BlockTable::build(grid, stencils, &unknowns, &pairs);
         Ok(Self {
             particles,
@@ -139,7 +150,9 @@ impl<'a, const D: usize> System<'a, D> {
             couplings,
             contact,
             reinforcement,
+            walls,
             inertia: None,
+            damping: None,
             pores,
             motions,
             table,
@@ -184,6 +197,8 @@ impl<'a, const D: usize> System<'a, D> {
             &self.unknowns,
             &mass_of,
         )?;
+        self.act_by_ground(&mut inertia);
+        let damping = self.stiffness_damping()?;
         let first = self.conditions.grid.node_count();
         for (index, body) in self.contact.bodies().iter().enumerate() {
             let gyroscopic = body.gyroscopic_force();
@@ -197,8 +212,14 @@ impl<'a, const D: usize> System<'a, D> {
             for (force, f_ext) in force.iter_mut().zip(&self.f_ext) {
                 *force = std::array::from_fn(|axis| force[axis] - f_ext[axis]);
             }
+            let of_start = self.forces_of_start(&inertia, damping.as_ref());
+            for (force, of_start) in force.iter_mut().zip(&of_start) {
+                *force = std::array::from_fn(|axis| force[axis] + of_start[axis]);
+            }
             inertia.begin(force, &self.unknowns)?;
         }
+        self.walls.set_in_motion(&inertia);
+        self.damping = damping;
         self.round_off += inertia.round_off();
         self.inertia = Some(inertia);
         Ok(self)
@@ -216,7 +237,12 @@ impl<'a, const D: usize> System<'a, D> {
     ) -> Result<(), AssemblyError> {
         conditions.validate(self.particles)?;
         self.symmetric_particles = are_symmetric(self.particles, &conditions);
-        let forces = beside_particles(&self.couplings, &self.contact, &self.reinforcement);
+        let forces = beside_particles(
+            &self.couplings,
+            &self.contact,
+            &self.reinforcement,
+            &self.walls,
+        );
         self.symmetric =
             self.symmetric_particles && forces.iter().all(|force| force.is_symmetric());
         self.reinforcement.control(&conditions.reinforcement);
@@ -342,6 +368,7 @@ impl<'a, const D: usize> System<'a, D> {
         }
         let inertia = self.inertia.as_ref();
         trial.inertia = inertia.map_or(0.0, |own| own.add(u, &mut trial.f_int, None));
+        self.add_damping(u, &mut trial.f_int, None);
         Ok(())
     }
 
@@ -390,6 +417,7 @@ impl<'a, const D: usize> System<'a, D> {
         trial.inertia = inertia.map_or(0.0, |own| {
             own.add(u, &mut trial.f_int, Some(&mut add_block))
         });
+        self.add_damping(u, &mut trial.f_int, Some(&mut matrix.values));
         Ok(())
     }
 
@@ -669,7 +697,8 @@ impl<'a, const D: usize> System<'a, D> {
     /// The error of the time integration over a step by nodal displacements `u` \[length\], as a share of its motion \[-\]; none in
     /// statics.
     pub fn time_error(&self, u: &[[f64; D]]) -> Option<f64> {
-        self.inertia.as_ref().map(|inertia| inertia.error(u))
+        let negligible = AT_REST * self.round_off;
+        (self.inertia.as_ref()).map(|inertia| inertia.error(u, negligible))
     }
 
     /// How the nodes move over a step by nodal step displacements `u` \[length\], for [`Particles::accelerate`]; none in statics.
@@ -712,8 +741,13 @@ impl<'a, const D: usize> System<'a, D> {
     }
 
     /// The forces beside those of particles and of acceleration.
-    pub(crate) fn forces(&self) -> [&dyn NodalForces<D>; 4] {
-        beside_particles(&self.couplings, &self.contact, &self.reinforcement)
+    pub(crate) fn forces(&self) -> [&dyn NodalForces<D>; 5] {
+        beside_particles(
+            &self.couplings,
+            &self.contact,
+            &self.reinforcement,
+            &self.walls,
+        )
     }
 
     /// Adds a correction `du` by unknown to nodal displacements `u` \[length\]; tied nodes follow those
@@ -777,13 +811,14 @@ fn external_force<const D: usize>(
     Ok((f_ext, pores))
 }
 
-/// Ghost penalty, drag, contact and reinforcement, in the order in which they are summed.
+/// Ghost penalty, drag, contact, reinforcement and walls, in the order in which they are summed.
 fn beside_particles<'s, const D: usize>(
     [ghost, drag]: &'s [Couplings; 2],
     contact: &'s Contact<'_, D>,
     reinforcement: &'s Members<'_, D>,
-) -> [&'s dyn NodalForces<D>; 4] {
-    [ghost, drag, contact, reinforcement]
+    walls: &'s WallForces<D>,
+) -> [&'s dyn NodalForces<D>; 5] {
+    [ghost, drag, contact, reinforcement, walls]
 }
 
 /// What drives the nodes that stand for rigid bodies: two for each, displacement and rotation, the

@@ -116,6 +116,11 @@ fn planned(stage: &Stage) -> StepsTaken {
                 ReductionPath::Reduce => (steps + 3.0, 4.0),
             }
         }
+        // No step is longer than the interval of its record.
+        StageKind::Dynamic(own) => match &own.ground_motion {
+            Some(motion) => (steps.max(own.duration / motion.interval()), 0.0),
+            None => (steps, 0.0),
+        },
         _ => (steps, 0.0),
     };
     let to_collapse =

@@ -414,6 +414,7 @@ fn dispatch<const D: usize>(
     let stage = &session.model.case.stages[number];
     if resumption.is_none() && !matches!(stage.kind, StageKind::Dynamic(_)) {
         state.body.rest();
+        state.controls.walls.clear();
     }
     match &stage.kind {
         StageKind::K0 if resumption.is_none() => {

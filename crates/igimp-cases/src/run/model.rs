@@ -244,7 +244,7 @@ impl<'c, const D: usize> Model<'c, D> {
         drag: f64,
     ) -> Result<StepConditions<D>, AssemblyError> {
         let grid = grid.map_err(|source| AssemblyError::Grid { source })?;
-        let mut constraints = self.supports(&grid)?;
+        let mut constraints = self.supports(&grid, &[])?;
         if let Some(footing) = self.footing.as_ref().filter(|_| to.settlement > 0.0) {
             footing.push(&grid, &mut constraints, from.settlement - to.settlement)?;
         }
@@ -300,11 +300,22 @@ impl<'c, const D: usize> Model<'c, D> {
             .map_or(0.0, |footing| footing.resistance(grid, reactions))
     }
 
-    fn supports(&self, grid: &Grid<D>) -> Result<Constraints<D>, AssemblyError> {
+    /// The supports of a grid, without those of some of its walls: by axis, and whether it is the upper end.
+    ///
+    /// # Errors
+    /// As [`Constraints::fix_wall`].
+    pub(crate) fn supports(
+        &self,
+        grid: &Grid<D>,
+        without: &[(usize, bool)],
+    ) -> Result<Constraints<D>, AssemblyError> {
         let mut constraints = Constraints::free(grid);
         let boundaries = &self.case.boundaries;
         for (normal, sides) in boundaries.sides.iter().enumerate() {
             for (side, upper) in std::iter::zip(sides, [false, true]) {
+                if without.contains(&(normal, upper)) {
+                    continue;
+                }
                 for axis in 0..D {
                     if *side == Side::Fixed || (*side == Side::Roller && axis == normal) {
                         constraints.fix_wall(grid, normal, upper, axis)?;

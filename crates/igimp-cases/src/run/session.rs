@@ -10,6 +10,7 @@ use igimp_assembly::{
     Geometry, Method, Particles, StepEnergy, TimeScheme, TimeStep, UnbalancedForces,
 };
 use igimp_linear::LinearEffort;
+use igimp_model::Dynamic;
 use igimp_results::ending::EndReason;
 use igimp_results::fields;
 use igimp_results::summary::{StageSummary, Summary};
@@ -24,7 +25,8 @@ use super::output::Output;
 use super::output::export::Export;
 use super::output::records::{Moment, Records, largest_displacement};
 use super::resume::Resumption;
-use super::state::{Controls, RigidTrack, State};
+use super::stages::walls::shaken;
+use super::state::{Controls, RigidTrack, State, WallTrack};
 use super::{Event, Listener, rigid};
 use crate::error::CaseError;
 use crate::estimate::factor_memory::decides;
@@ -228,6 +230,7 @@ fn add_energy(stage: &mut StageSummary, step: &StepEnergy, duration: f64) {
     own.reinforcement += step.reinforcement;
     own.water += step.water;
     own.damping += step.damping;
+    own.boundaries += step.boundaries;
     own.loads += step.loads;
     own.supports += step.supports;
     own.scheme += step.scheme;
@@ -244,7 +247,7 @@ pub(crate) struct StagePath<'a, const D: usize> {
     /// Drag of a step between two load factors, for overdamped motion \[1/s²\].
     pub(crate) drag: &'a dyn Fn(f64, f64) -> f64,
     /// The time integration, where the march takes time.
-    pub(crate) time: Option<TimeIntegration>,
+    pub(crate) time: Option<TimeIntegration<'a>>,
     /// The method, with the geometry that its steps are computed on.
     pub(crate) method: Method,
     /// Sizes of steps.
@@ -257,9 +260,11 @@ pub(crate) struct StagePath<'a, const D: usize> {
 
 /// How a march that takes time integrates motion.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct TimeIntegration {
+pub(crate) struct TimeIntegration<'a> {
     pub(crate) scheme: TimeScheme,
     pub(crate) lumped: f64,
+    /// The stage, with its walls and the motion of its ground.
+    pub(crate) stage: &'a Dynamic,
 }
 
 /// How a march ended.
@@ -289,9 +294,10 @@ pub(crate) fn march_path<const D: usize>(
 ) -> Result<StageEnd, CaseError> {
     let model = session.model;
     let tracks = RefCell::new(state.controls.tracks());
+    let walls = RefCell::new(state.controls.walls.clone());
     let at = |reached: f64| {
         let controls = path.from.towards(path.to, reached);
-        controls.with_tracks(&tracks.borrow())
+        (controls.with_tracks(&tracks.borrow())).with_walls(&walls.borrow())
     };
     let load_path = |from: f64, to: f64| {
         let (before, after) = (at(from), at(to));
@@ -300,6 +306,13 @@ pub(crate) fn march_path<const D: usize>(
             Geometry::Given => path.from,
         }));
         let conditions = model.conditions_on(grid, (&before, &after), (path.drag)(from, to))?;
+        let conditions = match path.time {
+            Some(own) => {
+                let controls = (path.from.time, &before, &after);
+                shaken(model, own.stage, controls, conditions)?
+            }
+            None => conditions,
+        };
         conditions
             .with_unbalanced(path.held.as_ref().map(|forces| UnbalancedForces {
                 forces: Arc::clone(forces),
@@ -330,6 +343,7 @@ pub(crate) fn march_path<const D: usize>(
         path,
         each,
         tracks: &tracks,
+        walls: &walls,
         reached: march.at,
         stopped: Ok(None),
     };
@@ -370,6 +384,8 @@ struct Watch<'w, 's, const D: usize> {
         &'w mut dyn FnMut(&mut Session<'_, D>, &StageSummary, &AcceptedStep<'_, D>) -> StopRequest,
     /// What the rigid bodies did so far.
     tracks: &'w RefCell<Vec<RigidTrack>>,
+    /// What stands at walls.
+    walls: &'w RefCell<Vec<WallTrack>>,
     reached: f64,
     stopped: Result<Option<Stop>, CaseError>,
 }
@@ -390,6 +406,9 @@ impl<const D: usize> Watch<'_, '_, D> {
         let tracks = rigid::tracks(model.case, &controls, accepted);
         controls = controls.with_tracks(&tracks);
         self.tracks.replace(tracks);
+        controls = controls.with_walls(&self.walls.borrow());
+        controls.walls = controls.walls_after(&accepted.forces.u);
+        self.walls.replace(controls.walls.clone());
         let grid = &accepted.conditions.grid;
         let taken = AcceptedStep {
             accepted,

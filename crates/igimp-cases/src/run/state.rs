@@ -28,6 +28,31 @@ pub struct Controls {
     /// Time since the first stage that takes some \[s\].
     #[serde(default)]
     pub time: f64,
+    /// What stands at the nodes of walls that a motion has let go.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub walls: Vec<WallTrack>,
+}
+
+/// What stands at a node of a wall behind which the ground goes on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WallTrack {
+    /// The node of the grid.
+    pub node: usize,
+    /// Force of the support that the wall replaces \[N/m; N in space\].
+    pub force: [f64; 3],
+    /// Displacement since then \[m\].
+    pub displacement: [f64; 3],
+}
+
+impl WallTrack {
+    /// The same after a step by nodal displacements \[m\].
+    fn moved<const D: usize>(&self, u: &[[f64; D]]) -> Self {
+        let mut moved = self.clone();
+        for (own, by) in moved.displacement.iter_mut().zip(&u[self.node]) {
+            *own += by;
+        }
+        moved
+    }
 }
 
 /// What acts on a member of reinforcement.
@@ -103,6 +128,7 @@ impl Controls {
             water: None,
             drained: false,
             time: 0.0,
+            walls: Vec::new(),
         }
     }
 
@@ -126,6 +152,7 @@ impl Controls {
             water: end.water,
             drained: end.drained,
             time: between(self.time, end.time, t),
+            walls: self.walls.clone(),
         }
     }
 
@@ -163,6 +190,18 @@ impl Controls {
             own.track = *track;
         }
         self
+    }
+
+    /// The same with what stands at walls.
+    #[must_use]
+    pub(crate) fn with_walls(mut self, walls: &[WallTrack]) -> Self {
+        self.walls = walls.to_vec();
+        self
+    }
+
+    /// What stands at walls after a step by nodal displacements \[m\].
+    pub(crate) fn walls_after<const D: usize>(&self, u: &[[f64; D]]) -> Vec<WallTrack> {
+        self.walls.iter().map(|own| own.moved(u)).collect()
     }
 
     /// The largest strength reduction factor of any material \[-\].

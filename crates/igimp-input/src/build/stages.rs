@@ -2,6 +2,7 @@
 
 pub(crate) mod construction;
 pub(crate) mod dynamic;
+pub(crate) mod ground_motion;
 pub(crate) mod safety;
 
 use igimp_assembly::Geometry;

@@ -9,6 +9,7 @@ mod dxf;
 mod elevation;
 mod outline;
 mod raster;
+mod record;
 mod stl;
 
 use std::fmt::Display;
@@ -40,6 +41,12 @@ pub(super) fn read(tree: &mut Node, case: &Path, problems: &mut Problems) {
             for body in own.into_iter().flatten() {
                 pressures(body, folder, problems);
             }
+        }
+    }
+    let stages = tree.get_mut("stages").map(Node::items_mut);
+    for stage in stages.into_iter().flatten() {
+        if let Some(motion) = stage.get_mut("ground_motion") {
+            record::resolve(motion, folder, problems);
         }
     }
     let loads = tree.get_mut("loads").map(Node::items_mut);

@@ -70,6 +70,23 @@ pub(super) fn headline(summary: &Summary) -> Vec<Number> {
             add(name, length(settlement), note);
         }
     }
+    for stage in &summary.stages {
+        if let Some(newmark) = &stage.newmark {
+            let name = several(
+                |stage| stage.newmark.is_some(),
+                stage,
+                "Newmark's sliding block",
+            );
+            let note = format!(
+                "k_c = {} of “{}”, ground at up to {}, in “{}”",
+                short(newmark.yield_coefficient),
+                newmark.from,
+                quantity(newmark.peak_acceleration, "m/s²"),
+                stage.name
+            );
+            add(name, length(newmark.displacement), note);
+        }
+    }
     let moved = |stage: &&StageSummary| stage.safety.is_none();
     if let Some(stage) = summary.stages.iter().rev().find(moved) {
         let note = format!("of all particles, at the end of “{}”", stage.name);

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use igimp_assembly::{Geometry, TimeScheme};
 use igimp_model::{
-    Case, Construction, Load, Reduction, ReductionPath, RigidDrive, RigidMove, SearchMethod, Stage,
-    StageKind, StopWhen,
+    Base, Case, Construction, Dynamic, Load, Reduction, ReductionPath, RigidDrive, RigidMove,
+    SearchMethod, Stage, StageKind, StopWhen,
 };
 use igimp_results::summary::SetupTable;
 use igimp_text::short;
@@ -126,10 +126,42 @@ fn happens<const D: usize>(case: &Case<D>, stage: &Stage) -> String {
                 let by = reduction_in_words(reduction);
                 parts.push(format!("strength of {} divided by {by}", materials(which)));
             }
+            parts.extend(ground_in_words(dynamic));
             parts.extend(dynamic.bodies.iter().map(|own| moves_in_words(case, own)));
             parts.join("; ")
         }
     }
+}
+
+/// Walls, ground and damping of motion in time, in words.
+fn ground_in_words(dynamic: &Dynamic) -> Vec<String> {
+    let mut parts = Vec::new();
+    if let Some(motion) = &dynamic.ground_motion {
+        let base = match motion.base {
+            Base::Rigid => "rigid base",
+            Base::Compliant => "compliant base",
+        };
+        let axis = ["x", "y", "z"][motion.axis.min(2)];
+        let peak = short(motion.peak());
+        parts.push(format!("{base} moved along {axis} by up to {peak} m/s²"));
+    }
+    if !dynamic.walls.absorbing.is_empty() {
+        let count = dynamic.walls.absorbing.len();
+        let springs = short(dynamic.walls.springs);
+        parts.push(format!(
+            "dashpots at {count} side(s), springs of {springs} M/L"
+        ));
+    }
+    if dynamic.walls.tied {
+        parts.push("left and right side tied".to_owned());
+    }
+    if let Some(damping) = &dynamic.rayleigh {
+        let (mass, stiffness) = (short(damping.mass), short(damping.stiffness));
+        parts.push(format!(
+            "Rayleigh damping {mass} 1/s of mass, {stiffness} s of stiffness"
+        ));
+    }
+    parts
 }
 
 /// The divisor of a reduction of strength, in words.

@@ -3,6 +3,7 @@
 pub mod bodies;
 mod declare;
 pub mod grid;
+pub mod ground_motion;
 pub mod loads;
 pub mod materials;
 pub mod outline;

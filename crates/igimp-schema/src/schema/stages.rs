@@ -2,6 +2,7 @@
 
 use super::MOST_THINGS;
 use super::declare::{choices, table, variants};
+use super::ground_motion::{GROUND_MOTION, GroundMotion, RAYLEIGH, Rayleigh, Wall};
 use super::rigid::{MOVE, Move};
 use crate::tree::Wrong;
 use crate::tree::read::At;
@@ -129,6 +130,18 @@ table! {
         "rigid bodies that it moves, loads or lets free";
     at_rest: number(Share), optional "it lasts its whole duration",
         "it ends when kinetic energy has fallen to this share of its largest value";
+    absorbing: list(choice(Wall), 0, 6), default "[]",
+        "sides of the grid with dashpots in place of supports; what the supports carried goes on";
+    wall_springs: number(NotNegative), default "1",
+        "stiffness of the springs beside dashpots, as a multiple of the soil's modulus over the length of the model";
+    tied_sides: flag, default "false",
+        "whether the left and the right side move together, as those of a laminar box, in place of their supports";
+    ground_motion: table(GROUND_MOTION: GroundMotion), optional "the ground stands still",
+        "motion of the ground below; displacement and velocity are then those against it";
+    rayleigh: table(RAYLEIGH: Rayleigh), optional "soil is not damped beside its plastic work",
+        "viscous damping of soil by mass and stiffness";
+    newmark_from: reference("stage"), optional "no sliding block is computed",
+        "stage of type gravity that tells the yield acceleration of Newmark's sliding block by its `horizontal`";
     geometry: apart(choice(Geometry)), default "\"moving\"", "the geometry that its steps are computed on";
 }
 

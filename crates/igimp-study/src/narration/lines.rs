@@ -185,6 +185,10 @@ fn end(summary: &StageSummary) -> String {
     if let Some(energy) = &summary.energy {
         let _ = write!(line, "\n  {}", energy.sentence());
     }
+    if let Some(newmark) = &summary.newmark {
+        let told = newmark.sentence(summary.largest_displacement);
+        let _ = write!(line, "\n  {told}");
+    }
     if let Some(linear) = &summary.linear {
         let _ = write!(line, "\n  {}", linear.sentence());
     }

@@ -7,12 +7,13 @@
 use igimp_assembly::{Remedy, SmallCuts};
 use igimp_model::{Case, Dynamic, StageKind};
 use igimp_results::ending::EndReason;
-use igimp_results::summary::StageSummary;
+use igimp_results::summary::{NewmarkSummary, StageSummary};
 use igimp_solver::{MarchSettings, Pace};
 
 use super::loading::{begin, target};
 use super::rigid_begin;
 use super::run_out::{divisor, flowing};
+use super::walls;
 use crate::error::CaseError;
 use crate::run::model::Model;
 use crate::run::output::records::Moment;
@@ -22,6 +23,9 @@ use crate::run::state::State;
 
 /// The first step over the time in which a wave crosses a cell \[-\].
 const FIRST_STEP: f64 = 1.0;
+
+/// The longest step on ground that moves, over the interval between samples of its record \[-\].
+const INTERVALS: f64 = 1.0;
 
 /// How often a step may be cut in succession, at least: what is chosen by error and way may be far too long.
 const CUTS: u32 = 12;
@@ -49,6 +53,16 @@ pub(crate) fn dynamic<const D: usize>(
         for text in rigid_begin::begin(model, state, &dynamic.bodies)? {
             session.warn(text);
         }
+    }
+    let mut method = flowing(model);
+    method.geometry = stage.geometry;
+    method.small_cuts = SmallCuts {
+        below: dynamic.tied_below,
+        remedy: Remedy::Extrapolate,
+        ..method.small_cuts
+    };
+    if resumption.is_none() {
+        state.controls.walls = walls::begin(model, state, &method, dynamic)?;
     }
     let mut from = resumption.map_or_else(|| state.controls.clone(), |left| left.from.clone());
     if let Some((materials, reduction)) = &dynamic.reduction {
@@ -86,6 +100,7 @@ pub(crate) fn dynamic<const D: usize>(
         time: Some(TimeIntegration {
             scheme: dynamic.scheme,
             lumped: dynamic.lumped_share,
+            stage: dynamic,
         }),
         method,
         settings: pace(model, state, dynamic, stage.steps)?,
@@ -122,9 +137,38 @@ pub(crate) fn dynamic<const D: usize>(
             Ok(resumption.end)
         },
     )?;
+    summary.newmark = sliding_block(session, dynamic);
     Ok(match ended {
         StageEnd::Stopped(reason @ EndReason::CameToRest { .. }) => StageEnd::Completed(reason),
         other => other,
+    })
+}
+
+/// What a sliding block does by the motion of the ground, if the stage asks for it: by the yield acceleration at the limit of the
+/// path of the stage that tells it, or at its last equilibrium.
+fn sliding_block<const D: usize>(
+    session: &Session<'_, D>,
+    dynamic: &Dynamic,
+) -> Option<NewmarkSummary> {
+    let (from, motion) = (dynamic.newmark_from?, dynamic.ground_motion.as_ref()?);
+    let case = session.model.case;
+    let told = session.summary.stages.get(from)?;
+    let StageKind::Gravity {
+        horizontal: Some(horizontal),
+        ..
+    } = case.stages[from].kind
+    else {
+        return None;
+    };
+    let limit = told.path.as_ref().and_then(|path| path.limit);
+    let coefficient = limit.map_or(told.reached * horizontal, |own| own.factor);
+    let displacement = motion.sliding(coefficient * case.gravity);
+    displacement.is_finite().then(|| NewmarkSummary {
+        yield_coefficient: coefficient,
+        is_limit: limit.is_some(),
+        from: told.name.clone(),
+        peak_acceleration: motion.peak(),
+        displacement,
     })
 }
 
@@ -141,9 +185,11 @@ fn pace<const D: usize>(
         .min((model.case.grid.smallest_cell().into_iter()).fold(f64::INFINITY, f64::min));
     let crossing = cell / fastest_wave(model, state);
     let share = |time: f64| time / dynamic.duration;
+    let record = dynamic.ground_motion.as_ref();
     let longest = dynamic
         .longest_step
         .map_or(1.0, share)
+        .min(record.map_or(1.0, |own| share(INTERVALS * own.interval())))
         .min(1.0 / parts as f64);
     Ok(MarchSettings {
         cuts: model.case.solver.cuts.max(CUTS),

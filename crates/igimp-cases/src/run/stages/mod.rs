@@ -9,3 +9,4 @@ pub(crate) mod loading;
 pub(crate) mod rigid_begin;
 pub(crate) mod run_out;
 pub(crate) mod safety;
+pub(crate) mod walls;

@@ -5,6 +5,7 @@ use igimp_model::{Dynamic, StageKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::stages as keys;
 
+use super::ground_motion::{motion, newmark_from, rayleigh, walls};
 use super::safety::{materials, reduction_of};
 use crate::build::context::About;
 use crate::build::rigid::stage::moves;
@@ -23,7 +24,21 @@ pub(crate) fn stage<const D: usize>(
             reduction_of(about, stated, problems)?,
         )),
     };
+    let walls = walls(about, own, problems);
+    let ground_motion = match &own.ground_motion {
+        None => None,
+        Some(stated) => Some(motion(about, stated, problems)?),
+    };
+    let rayleigh = match &own.rayleigh {
+        None => None,
+        Some(stated) => Some(rayleigh(stated, problems)?),
+    };
+    let newmark_from = newmark_from(about, own, problems).ok()?;
     Some(StageKind::Dynamic(Dynamic {
+        walls: walls?,
+        ground_motion,
+        rayleigh,
+        newmark_from,
         duration: *own.duration,
         scheme: match *own.scheme {
             keys::Scheme::BackwardEuler => TimeScheme::BackwardEuler,

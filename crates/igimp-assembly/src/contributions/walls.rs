@@ -1,0 +1,287 @@
+//! Forces of walls behind which the ground goes on (theory, eqs. 69 to 71): dashpots and springs at their nodes, and springs that
+//! make the nodes of two walls move together.
+//!
+//! The soil that touches a wall is what its particles leave at the nodes: with a first layer of cells of width h across the
+//! wall that is full, 2 Σ_p V_p S_ip / h is the area of a node on it.
+
+use std::collections::BTreeMap;
+
+use igimp_shape::Grid;
+
+use crate::body::particles::Particles;
+use crate::conditions::StepConditions;
+use crate::conditions::time_step::TimeStep;
+use crate::conditions::walls::AbsorbingWall;
+use crate::contributions::inertia::Inertia;
+use crate::contributions::nodal_forces::{AddBlock, NodalForces};
+use crate::step::stencils::Stencils;
+use crate::step::unknowns::Unknowns;
+
+/// The stiffness of a tie of two nodes over that of the soil around them \[-\].
+const TIE: f64 = 1e3;
+
+/// Forces of walls at their nodes.
+#[derive(Debug)]
+pub(crate) struct WallForces<const D: usize> {
+    nodes: Vec<NodeAtWall<D>>,
+    ties: Vec<Tie<D>>,
+    /// The motion of the step; dashpots rest before it is known.
+    step: Option<TimeStep>,
+}
+
+/// Dashpots and springs of a node.
+#[derive(Clone, Debug)]
+struct NodeAtWall<const D: usize> {
+    node: usize,
+    /// \[force·time/length\].
+    dashpot: [f64; D],
+    /// \[force/length\].
+    spring: [f64; D],
+    /// At the start of the step \[length\].
+    displacement: [f64; D],
+    /// At the start of the step \[length/time\].
+    velocity: [f64; D],
+    /// At the start of the step \[length/time²\].
+    acceleration: [f64; D],
+}
+
+impl<const D: usize> NodeAtWall<D> {
+    /// Adds what a wall does at the node, with the area that a unit of volume there has on it \[1/length\].
+    fn join(&mut self, wall: &AbsorbingWall<D>, per_volume: f64, share: &Shares) {
+        for a in 0..D {
+            let wave = usize::from(a != wall.normal);
+            self.dashpot[a] += per_volume * share.impedance[wave];
+            self.spring[a] += per_volume * share.modulus[wave] * wall.spring[a];
+        }
+    }
+}
+
+/// Two nodes that move together.
+#[derive(Clone, Debug)]
+struct Tie<const D: usize> {
+    nodes: [usize; 2],
+    /// \[force/length\].
+    stiffness: f64,
+    /// Displacement of the first beyond that of the second at the start of the step \[length\].
+    gap: [f64; D],
+}
+
+/// What soil leaves at a node: impedance and modulus, each for compression and shear.
+#[derive(Clone, Copy, Debug, Default)]
+struct Shares {
+    /// Σ m S c \[mass·length/time\].
+    impedance: [f64; 2],
+    /// Σ V S times modulus \[force·length\].
+    modulus: [f64; 2],
+}
+
+impl<const D: usize> WallForces<D> {
+    /// The forces of the walls of a step, without velocities yet.
+    pub(crate) fn find(
+        particles: &Particles<D>,
+        stencils: &Stencils<D>,
+        conditions: &StepConditions<D>,
+        unknowns: &Unknowns<D>,
+        mass_of: &(dyn Fn(usize) -> f64 + Sync),
+    ) -> Self {
+        let Some(walls) = &conditions.walls else {
+            return Self {
+                nodes: Vec::new(),
+                ties: Vec::new(),
+                step: None,
+            };
+        };
+        let grid = &conditions.grid;
+        let mut shares = shares(particles, stencils, conditions, mass_of);
+        shares.retain(|&node, _| unknowns.is_active(node) && !stencils.is_tied(node));
+        let displaced: BTreeMap<usize, [f64; D]> = (walls.nodes.iter())
+            .map(|own| (own.node, own.displacement))
+            .collect();
+        let displacement = |node: usize| displaced.get(&node).copied().unwrap_or([0.0; D]);
+        let mut nodes: BTreeMap<usize, NodeAtWall<D>> = BTreeMap::new();
+        for wall in &walls.absorbing {
+            let axis = &grid.axes[wall.normal];
+            let last = axis.cell_count() - 1;
+            let (place, cell) = if wall.upper { (last + 1, last) } else { (0, 0) };
+            let at_wall = |node: usize| grid.node_place(node)[wall.normal] == place;
+            for (&node, share) in shares.iter().filter(|(node, _)| at_wall(**node)) {
+                let own = nodes.entry(node).or_insert_with(|| NodeAtWall {
+                    node,
+                    dashpot: [0.0; D],
+                    spring: [0.0; D],
+                    displacement: displacement(node),
+                    velocity: [0.0; D],
+                    acceleration: [0.0; D],
+                });
+                own.join(wall, 2.0 / axis.spacing(cell), share);
+            }
+        }
+        Self {
+            nodes: nodes.into_values().collect(),
+            ties: (walls.tied)
+                .map_or_else(Vec::new, |tied| ties(grid, tied, &shares, displacement)),
+            step: None,
+        }
+    }
+
+    /// Lets dashpots act in a step that begins with this motion.
+    pub(crate) fn set_in_motion(&mut self, inertia: &Inertia<D>) {
+        self.step = Some(*inertia.step());
+        for own in &mut self.nodes {
+            own.velocity = inertia.velocity()[own.node];
+            own.acceleration = inertia.acceleration()[own.node];
+        }
+    }
+
+    /// The forces at the start of a step that begins with these velocities \[force\], without those of springs and ties if
+    /// `dashpots_only`, added to `f`.
+    pub(crate) fn add_at_start(
+        &self,
+        velocity: &[[f64; D]],
+        dashpots_only: bool,
+        f: &mut [[f64; D]],
+    ) {
+        for own in &self.nodes {
+            for a in 0..D {
+                f[own.node][a] += own.dashpot[a] * velocity[own.node][a];
+            }
+        }
+        if dashpots_only {
+            return;
+        }
+        for own in &self.nodes {
+            for a in 0..D {
+                f[own.node][a] += own.spring[a] * own.displacement[a];
+            }
+        }
+        for own in &self.ties {
+            for a in 0..D {
+                let force = own.stiffness * own.gap[a];
+                f[own.nodes[0]][a] += force;
+                f[own.nodes[1]][a] -= force;
+            }
+        }
+    }
+}
+
+impl<const D: usize> NodalForces<D> for WallForces<D> {
+    fn pairs(&self) -> Vec<(usize, usize)> {
+        let ties = self.ties.iter().map(|own| own.nodes);
+        ties.flat_map(|[a, b]| [(a, b), (b, a)]).collect()
+    }
+
+    fn is_symmetric(&self) -> bool {
+        true
+    }
+
+    fn add(&self, u: &[[f64; D]], f: &mut [[f64; D]], blocks: Option<&mut AddBlock<'_, D>>) {
+        let still = [0.0; D];
+        for own in &self.nodes {
+            let by = &u[own.node];
+            let velocity = self.step.map_or(still, |step| {
+                step.after(&own.velocity, &own.acceleration, by).0
+            });
+            for a in 0..D {
+                f[own.node][a] +=
+                    own.dashpot[a] * velocity[a] + own.spring[a] * (own.displacement[a] + by[a]);
+            }
+        }
+        for own in &self.ties {
+            let [first, second] = own.nodes;
+            for a in 0..D {
+                let force = own.stiffness * (own.gap[a] + u[first][a] - u[second][a]);
+                f[first][a] += force;
+                f[second][a] -= force;
+            }
+        }
+        let Some(blocks) = blocks else {
+            return;
+        };
+        let rate = self.step.map_or(0.0, |step| step.velocity_rate());
+        for own in &self.nodes {
+            let mut block = [[0.0; D]; D];
+            for (a, row) in block.iter_mut().enumerate() {
+                row[a] = rate * own.dashpot[a] + own.spring[a];
+            }
+            blocks(own.node, own.node, &block);
+        }
+        for own in &self.ties {
+            let [first, second] = own.nodes;
+            for (row, column, sign) in [
+                (first, first, 1.0),
+                (second, second, 1.0),
+                (first, second, -1.0),
+                (second, first, -1.0),
+            ] {
+                let mut block = [[0.0; D]; D];
+                for (a, entries) in block.iter_mut().enumerate() {
+                    entries[a] = sign * own.stiffness;
+                }
+                blocks(row, column, &block);
+            }
+        }
+    }
+}
+
+/// The pairs of nodes at the two ends of an axis, both with soil.
+fn ties<const D: usize>(
+    grid: &Grid<D>,
+    axis: usize,
+    shares: &BTreeMap<usize, Shares>,
+    displacement: impl Fn(usize) -> [f64; D],
+) -> Vec<Tie<D>> {
+    let cell = grid.axes[axis].spacing(0);
+    let first = shares
+        .iter()
+        .filter(|(node, _)| grid.node_place(**node)[axis] == 0);
+    first
+        .filter_map(|(&node, share)| {
+            let mut place = grid.node_place(node);
+            place[axis] = grid.axes[axis].node_count() - 1;
+            let other = grid.node_index(place);
+            let modulus = share.modulus[0].max(shares.get(&other)?.modulus[0]);
+            let (a, b) = (displacement(node), displacement(other));
+            Some(Tie {
+                nodes: [node, other],
+                stiffness: TIE * modulus / (cell * cell),
+                gap: std::array::from_fn(|k| a[k] - b[k]),
+            })
+        })
+        .collect()
+}
+
+/// What soil leaves at the nodes of the walls of a grid.
+fn shares<const D: usize>(
+    particles: &Particles<D>,
+    stencils: &Stencils<D>,
+    conditions: &StepConditions<D>,
+    mass_of: &(dyn Fn(usize) -> f64 + Sync),
+) -> BTreeMap<usize, Shares> {
+    let grid = &conditions.grid;
+    let at_wall = |node: usize| {
+        let place = grid.node_place(node);
+        (0..D).any(|axis| place[axis] == 0 || place[axis] + 1 == grid.axes[axis].node_count())
+    };
+    let mut shares: BTreeMap<usize, Shares> = BTreeMap::new();
+    for &particle in stencils.order() {
+        let particle = particle as usize;
+        let supports = stencils.of(particle);
+        if !supports.iter().any(|own| at_wall(own.node)) {
+            continue;
+        }
+        let bound = conditions.laws[particles.law[particle]].stiffness_bound();
+        let stiffness = particles.ratios[particle].stiffness;
+        let water = conditions.water.stiffness_of(particles, particle);
+        let shear = bound.shear() * stiffness;
+        let compression = bound.bulk() * stiffness + 4.0 / 3.0 * shear + water;
+        let (mass, volume) = (mass_of(particle), particles.volume(particle));
+        for support in supports.iter().filter(|own| at_wall(own.node)) {
+            let own = shares.entry(support.node).or_default();
+            for (k, modulus) in [compression, shear].into_iter().enumerate() {
+                own.impedance[k] += support.value * (mass * volume * modulus).sqrt();
+                own.modulus[k] += support.value * volume * modulus;
+            }
+        }
+    }
+    shares
+}

@@ -1,0 +1,165 @@
+//! Walls of the grid behind which the ground goes on, and ground that moves, in a stage that takes time (theory, eqs. 69 to 74).
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use igimp_assembly::{
+    AbsorbingWall, AssemblyError, Constraints, GroundMotion, Method, Stencils, StepConditions,
+    System, TimeScheme, WallNode, Walls,
+};
+use igimp_material::TangentKind;
+use igimp_model::{Base, Dynamic};
+use igimp_shape::Grid;
+
+use crate::error::CaseError;
+use crate::run::model::Model;
+use crate::run::state::{Controls, State, WallTrack};
+
+/// The walls whose supports a stage lets go, by axis and whether it is the upper end.
+fn released(dynamic: &Dynamic) -> Vec<(usize, bool)> {
+    let mut walls = dynamic.walls.absorbing.clone();
+    if dynamic.walls.tied {
+        walls.extend([(0, false), (0, true)]);
+    }
+    walls
+}
+
+/// The components of displacement by node that the supports of these walls hold, and nothing else does.
+fn held_by_walls<const D: usize>(
+    model: &Model<'_, D>,
+    grid: &Grid<D>,
+    walls: &[(usize, bool)],
+) -> Result<Vec<(usize, [bool; D])>, AssemblyError> {
+    if walls.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (all, others) = (model.supports(grid, &[])?, model.supports(grid, walls)?);
+    let is_at = |place: &[usize; D]| {
+        walls.iter().any(|&(axis, upper)| {
+            let last = grid.axes[axis].node_count() - 1;
+            place[axis] == if upper { last } else { 0 }
+        })
+    };
+    let of = |constraints: &Constraints<D>, node, axis| constraints.of(node, axis).is_some();
+    Ok((0..grid.node_count())
+        .filter(|&node| is_at(&grid.node_place(node)))
+        .map(|node| {
+            let own = |axis| of(&all, node, axis) && !of(&others, node, axis);
+            (node, std::array::from_fn(own))
+        })
+        .collect())
+}
+
+/// What stands at the nodes of the walls as a stage begins: the forces of the supports that it lets go. Nodes that the
+/// motion before had already let go keep what they have.
+pub(super) fn begin<const D: usize>(
+    model: &Model<'_, D>,
+    state: &State<D>,
+    method: &Method,
+    dynamic: &Dynamic,
+) -> Result<Vec<WallTrack>, CaseError> {
+    let controls = &state.controls;
+    let conditions = model.conditions(controls, controls, 0.0)?;
+    let nodes = held_by_walls(model, &conditions.grid, &released(dynamic))?;
+    if nodes.is_empty() {
+        return Ok(Vec::new());
+    }
+    let particles = &state.body.particles;
+    let stencils = Stencils::build(particles, method, &conditions)?;
+    let structures = (&state.body.rigid[..], &state.body.reinforcement[..]);
+    let system = System::with_structures(particles, structures, &stencils, &conditions, method)?
+        .with_load_points(&state.body.load_points)?;
+    let still = vec![[0.0; D]; system.node_count()];
+    let trial = system.evaluate(&still, TangentKind::Elastic)?;
+    let reactions = system.reactions(&trial);
+    let before: BTreeMap<usize, &WallTrack> =
+        controls.walls.iter().map(|own| (own.node, own)).collect();
+    Ok(nodes
+        .into_iter()
+        .map(|(node, is_held)| {
+            if let Some(&own) = before.get(&node) {
+                return own.clone();
+            }
+            let mut force = [0.0; 3];
+            for axis in (0..D).filter(|&axis| is_held[axis]) {
+                force[axis] = reactions[node][axis];
+            }
+            WallTrack {
+                node,
+                force,
+                displacement: [0.0; 3],
+            }
+        })
+        .collect())
+}
+
+/// The conditions of a step with the walls, the motion of the ground and the damping of its stage.
+pub(crate) fn shaken<const D: usize>(
+    model: &Model<'_, D>,
+    dynamic: &Dynamic,
+    (began, before, after): (f64, &Controls, &Controls),
+    mut conditions: StepConditions<D>,
+) -> Result<StepConditions<D>, AssemblyError> {
+    let walls = released(dynamic);
+    for (node, is_held) in held_by_walls(model, &conditions.grid, &walls)? {
+        for axis in (0..D).filter(|&axis| is_held[axis]) {
+            conditions.constraints.release(node, axis)?;
+        }
+    }
+    let walls = (!walls.is_empty()).then(|| walls_of(model, dynamic, before));
+    let scheme = dynamic.scheme;
+    let ground = dynamic.ground_motion.as_ref().map(|motion| {
+        let along = |acceleration: f64| {
+            let mut all = [0.0; D];
+            all[motion.axis] = acceleration;
+            all
+        };
+        let [from, to] = [before.time - began, after.time - began];
+        GroundMotion {
+            before: along(motion.acceleration(from)),
+            after: along(match scheme {
+                // The velocity of the ground at the end of the step is then that of the record.
+                TimeScheme::BackwardEuler => {
+                    (motion.velocity(to) - motion.velocity(from)) / (to - from)
+                }
+                TimeScheme::Newmark | TimeScheme::GeneralisedAlpha => motion.acceleration(to),
+            }),
+        }
+    });
+    conditions
+        .with_walls(walls)?
+        .with_ground(ground)?
+        .with_damping(dynamic.rayleigh)
+}
+
+/// The walls as a step begins.
+fn walls_of<const D: usize>(
+    model: &Model<'_, D>,
+    dynamic: &Dynamic,
+    controls: &Controls,
+) -> Walls<D> {
+    let (lower, upper) = (model.case.grid.lower(), model.case.grid.upper());
+    let length = (0..D).map(|axis| upper[axis] - lower[axis]);
+    let spring = dynamic.walls.springs / length.fold(0.0, f64::max);
+    let compliant = (dynamic.ground_motion.as_ref())
+        .filter(|motion| motion.base == Base::Compliant)
+        .map(|motion| motion.axis);
+    let wall = |&(normal, upper): &(usize, bool)| AbsorbingWall {
+        normal,
+        upper,
+        spring: std::array::from_fn(|axis| {
+            let moves = compliant == Some(axis) && (normal, upper) == (D - 1, false);
+            if moves { 0.0 } else { spring }
+        }),
+    };
+    let node = |own: &WallTrack| WallNode {
+        node: own.node,
+        force: std::array::from_fn(|axis| own.force[axis]),
+        displacement: std::array::from_fn(|axis| own.displacement[axis]),
+    };
+    Walls {
+        absorbing: dynamic.walls.absorbing.iter().map(wall).collect(),
+        tied: dynamic.walls.tied.then_some(0),
+        nodes: Arc::new(controls.walls.iter().map(node).collect()),
+    }
+}

@@ -1,0 +1,189 @@
+//! Earthquakes: walls, the motion of the ground, and what a sliding block does by it.
+
+use igimp_assembly::Rayleigh;
+use igimp_model::{Base, GroundMotion, StageWalls};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::grid::Side;
+use igimp_schema::schema::ground_motion::{self as keys, BaseKind, MotionAxis, Wall};
+use igimp_schema::schema::stages::{Dynamic, StageForm};
+use igimp_schema::tree::read::At;
+
+use crate::build::context::About;
+
+/// What lies beyond the walls.
+pub(super) fn walls<const D: usize>(
+    about: &About<'_, D>,
+    own: &Dynamic,
+    problems: &mut Problems,
+) -> Option<StageWalls> {
+    let mut absorbing = Vec::new();
+    for wall in own.absorbing.iter() {
+        let known = match **wall {
+            Wall::Left => Some((0, false)),
+            Wall::Right => Some((0, true)),
+            Wall::Front => (D == 3).then_some((1, false)),
+            Wall::Back => (D == 3).then_some((1, true)),
+            Wall::Bottom => Some((D - 1, false)),
+            Wall::Top => Some((D - 1, true)),
+        };
+        let Some(known) = known else {
+            let message = format!("there is no side {} in plane strain", wall.name());
+            problems
+                .error(wall.place, message)
+                .help("write left, right, bottom or top");
+            return None;
+        };
+        if *own.tied_sides && known.0 == 0 {
+            problems
+                .error(
+                    wall.place,
+                    "this side has dashpots and moves with the other",
+                )
+                .help("keep one of absorbing and tied_sides for left and right");
+            return None;
+        }
+        if !absorbing.contains(&known) {
+            absorbing.push(known);
+        }
+    }
+    let motion = own.ground_motion.as_ref();
+    let below = (D - 1, false);
+    if motion.is_some_and(|own| *own.base == BaseKind::Compliant) && !absorbing.contains(&below) {
+        absorbing.push(below);
+    }
+    let first = own.absorbing.iter().next().map(|wall| wall.place);
+    let tied = own.tied_sides.then_some(own.tied_sides.place);
+    if about.index == 0
+        && let Some(place) = first.or(tied).or(motion.map(|own| own.place))
+    {
+        problems
+            .error(
+                place,
+                "the first stage has no supports yet that walls could take the place of",
+            )
+            .help("begin with a stage of type gravity or k0, and let this one follow");
+        return None;
+    }
+    Some(StageWalls {
+        absorbing,
+        springs: *own.wall_springs,
+        tied: *own.tied_sides,
+    })
+}
+
+/// The motion of the ground.
+pub(super) fn motion<const D: usize>(
+    about: &About<'_, D>,
+    own: &At<keys::GroundMotion>,
+    problems: &mut Problems,
+) -> Option<GroundMotion> {
+    let (Some(time), Some(values), Some(unit)) = (&own.time, &own.values, &own.unit) else {
+        problems
+            .error(own.place, "the motion of the ground has no samples")
+            .help("write file = \"record.csv\", or unit, time and values");
+        return None;
+    };
+    if time.len() != values.len() {
+        let message = format!("{} times and {} values", time.len(), values.len());
+        problems
+            .error(values.place, message)
+            .help("every time has one value");
+        return None;
+    }
+    let mut times = time.windows(2);
+    if let Some(pair) = times.find(|pair| *pair[1] <= *pair[0]) {
+        problems
+            .error(pair[1].place, "this time is not after the one before")
+            .help("times of a record ascend, each once");
+        return None;
+    }
+    let axis = match *own.axis {
+        MotionAxis::X => Some(0),
+        MotionAxis::Y => Some(1),
+        MotionAxis::Z => (D == 3).then_some(2),
+    };
+    let Some(axis) = axis else {
+        problems
+            .error(own.axis.place, "there is no axis z in plane strain")
+            .help("write x or y");
+        return None;
+    };
+    let base = match *own.base {
+        BaseKind::Rigid => Base::Rigid,
+        BaseKind::Compliant => Base::Compliant,
+    };
+    let sides = Root::<D>::boundaries(about.context.tree).ok();
+    if base == Base::Rigid
+        && let Some(sides) = sides
+        && *sides.bottom != Side::Fixed
+    {
+        problems
+            .error(
+                own.place,
+                "the bottom of the grid does not take the soil along",
+            )
+            .help("write bottom = \"fixed\" in [boundaries], or base = \"compliant\" here");
+        return None;
+    }
+    let (size, is_velocity) = unit.in_si();
+    Some(GroundMotion {
+        times: time.iter().map(|own| **own).collect(),
+        values: (values.iter())
+            .map(|value| size * *own.scale * **value)
+            .collect(),
+        is_velocity,
+        axis,
+        base,
+    })
+}
+
+/// Damping of soil.
+pub(super) fn rayleigh(own: &keys::Rayleigh, problems: &mut Problems) -> Option<Rayleigh> {
+    let periods = own.periods.value;
+    if (periods[0] - periods[1]).abs() < 1e-9 * periods[0] {
+        problems
+            .error(own.periods.place, "the two periods are the same")
+            .help("name two periods between which the motion has most of its energy");
+        return None;
+    }
+    Some(Rayleigh::at(
+        [*own.ratio; 2],
+        periods.map(|period| 1.0 / period),
+    ))
+}
+
+/// The stage whose yield acceleration a sliding block goes by.
+pub(super) fn newmark_from<const D: usize>(
+    about: &About<'_, D>,
+    own: &Dynamic,
+    problems: &mut Problems,
+) -> Result<Option<usize>, ()> {
+    let Some(named) = &own.newmark_from else {
+        return Ok(None);
+    };
+    let who = format!("stage `{}` takes the yield acceleration from", about.name);
+    let stages = &about.context.names.stages;
+    let index = stages.find(named, &who, problems).ok_or(())?;
+    if own.ground_motion.is_none() {
+        problems
+            .error(named.place, "a block slides on ground that moves")
+            .help("add ground_motion, or remove newmark_from");
+        return Err(());
+    }
+    let stage = about.context.stages.get(index).and_then(Option::as_ref);
+    let pushes = stage.is_some_and(|stage| match &*stage.form {
+        StageForm::Gravity(Ok(own)) => own.horizontal.as_ref().is_some_and(|own| **own != 0.0),
+        _ => false,
+    });
+    if index >= about.index || !pushes {
+        problems
+            .error(named.place, "this stage tells no yield acceleration")
+            .help(
+                "name an earlier stage of type gravity with horizontal = ..., geometry = \"given\" and \
+                 stop_when = { no_equilibrium = true }",
+            );
+        return Err(());
+    }
+    Ok(Some(index))
+}
