@@ -18,7 +18,7 @@ use crate::run::model::Model;
 use crate::run::output::records::Moment;
 use crate::run::resume::Resumption;
 use crate::run::session::{Session, StageEnd, StagePath, TimeIntegration, march_path};
-use crate::run::state::State;
+use crate::run::state::{Controls, State};
 
 /// The first step over the time in which a wave crosses a cell \[-\].
 const FIRST_STEP: f64 = 1.0;
@@ -77,6 +77,9 @@ pub(crate) fn dynamic<const D: usize>(
     if resumption.is_none() {
         begin(session, state, number)?;
     }
+    let on_ground = |before: &Controls, after: &Controls, conditions| {
+        walls::shaken(model, dynamic, (from.time, before, after), conditions)
+    };
     let path = StagePath {
         from: &from,
         to: &to,
@@ -84,7 +87,7 @@ pub(crate) fn dynamic<const D: usize>(
         time: Some(TimeIntegration {
             scheme: dynamic.scheme,
             mass: dynamic.mass,
-            stage: dynamic,
+            on_ground: &on_ground,
         }),
         method,
         settings: pace(model, state, dynamic, stage.steps)?,
