@@ -3,6 +3,7 @@
 pub(crate) mod batches;
 pub(crate) mod blocks;
 pub(crate) mod damping;
+pub(crate) mod ground;
 pub(crate) mod kinematics;
 pub(crate) mod linearised;
 pub(crate) mod mirror;

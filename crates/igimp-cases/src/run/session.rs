@@ -7,10 +7,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use igimp_assembly::{
-    Geometry, Method, Particles, StepEnergy, TimeScheme, TimeStep, UnbalancedForces,
+    AssemblyError, Geometry, Method, Particles, StepConditions, StepEnergy, TimeScheme, TimeStep,
+    UnbalancedForces,
 };
 use igimp_linear::LinearEffort;
-use igimp_model::Dynamic;
 use igimp_results::ending::EndReason;
 use igimp_results::fields;
 use igimp_results::summary::{StageSummary, Summary};
@@ -25,7 +25,6 @@ use super::output::Output;
 use super::output::export::Export;
 use super::output::records::{Moment, Records, largest_displacement};
 use super::resume::Resumption;
-use super::stages::walls::shaken;
 use super::state::{Controls, RigidTrack, State, WallTrack};
 use super::{Event, Listener, rigid};
 use crate::error::CaseError;
@@ -247,7 +246,7 @@ pub(crate) struct StagePath<'a, const D: usize> {
     /// Drag of a step between two load factors, for overdamped motion \[1/s²\].
     pub(crate) drag: &'a dyn Fn(f64, f64) -> f64,
     /// The time integration, where the march takes time.
-    pub(crate) time: Option<TimeIntegration<'a>>,
+    pub(crate) time: Option<TimeIntegration<'a, D>>,
     /// The method, with the geometry that its steps are computed on.
     pub(crate) method: Method,
     /// Sizes of steps.
@@ -258,13 +257,17 @@ pub(crate) struct StagePath<'a, const D: usize> {
     pub(crate) left: Option<&'a Resumption>,
 }
 
+/// Adds to the conditions of a step between two controls what the ground does.
+pub(crate) type OnGround<'a, const D: usize> = dyn Fn(&Controls, &Controls, StepConditions<D>) -> Result<StepConditions<D>, AssemblyError>
+    + 'a;
+
 /// How a march that takes time integrates motion.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TimeIntegration<'a> {
+#[derive(Clone, Copy)]
+pub(crate) struct TimeIntegration<'a, const D: usize> {
     pub(crate) scheme: TimeScheme,
     pub(crate) lumped: f64,
-    /// The stage, with its walls and the motion of its ground.
-    pub(crate) stage: &'a Dynamic,
+    /// The conditions of a step between two controls with walls, motion of the ground and damping.
+    pub(crate) on_ground: &'a OnGround<'a, D>,
 }
 
 /// How a march ended.
@@ -307,10 +310,7 @@ pub(crate) fn march_path<const D: usize>(
         }));
         let conditions = model.conditions_on(grid, (&before, &after), (path.drag)(from, to))?;
         let conditions = match path.time {
-            Some(own) => {
-                let controls = (path.from.time, &before, &after);
-                shaken(model, own.stage, controls, conditions)?
-            }
+            Some(own) => (own.on_ground)(&before, &after, conditions)?,
             None => conditions,
         };
         conditions

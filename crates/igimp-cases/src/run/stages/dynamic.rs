@@ -19,7 +19,7 @@ use crate::run::model::Model;
 use crate::run::output::records::Moment;
 use crate::run::resume::Resumption;
 use crate::run::session::{Session, StageEnd, StagePath, TimeIntegration, march_path};
-use crate::run::state::State;
+use crate::run::state::{Controls, State};
 
 /// The first step over the time in which a wave crosses a cell \[-\].
 const FIRST_STEP: f64 = 1.0;
@@ -86,12 +86,8 @@ pub(crate) fn dynamic<const D: usize>(
     if resumption.is_none() {
         begin(session, state, number)?;
     }
-    let mut method = flowing(model);
-    method.geometry = stage.geometry;
-    method.small_cuts = SmallCuts {
-        below: dynamic.tied_below,
-        remedy: Remedy::Extrapolate,
-        ..method.small_cuts
+    let on_ground = |before: &Controls, after: &Controls, conditions| {
+        walls::shaken(model, dynamic, (from.time, before, after), conditions)
     };
     let path = StagePath {
         from: &from,
@@ -100,7 +96,7 @@ pub(crate) fn dynamic<const D: usize>(
         time: Some(TimeIntegration {
             scheme: dynamic.scheme,
             lumped: dynamic.lumped_share,
-            stage: dynamic,
+            on_ground: &on_ground,
         }),
         method,
         settings: pace(model, state, dynamic, stage.steps)?,
