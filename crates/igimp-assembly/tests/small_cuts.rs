@@ -658,3 +658,68 @@ fn forces_that_hold_tied_nodes_act_on_their_masters() {
         assert!((sum(f_ext) - share * sum(&held)).abs() < 1e-13);
     }
 }
+
+// GOAL: small cuts whose motion is extrapolated keep linear fields, also beside a wall, and forces on them act with their moment.
+// BODY: the outlines above moved by slivers, and one on a wall of rollers.
+// ORACLE: sums over supports that no tie has changed: Σ S x, Σ ∇S ⊗ x and Σ ∇S̄ ⊗ x are the same, Σ S is one.
+#[test]
+fn extrapolated_small_cuts_keep_linear_fields() {
+    let grid = unit_grid([6, 6]);
+    let law = elastic();
+    let mut on_rollers = free(&grid, &law);
+    (on_rollers.constraints.fix_wall(&grid, 1, false, 1)).unwrap();
+    let mut extrapolated = 0;
+    for method in methods() {
+        let drop = with_remedy(&method, Remedy::Drop);
+        let extrapolate = with_remedy(&method, Remedy::Extrapolate);
+        for (conditions, outline) in [
+            (free(&grid, &law), cells([1, 1], [4, 4])),
+            (free(&grid, &law), outlines().remove(1)),
+            (on_rollers.clone(), cells([1, 0], [4, 3])),
+        ] {
+            for shift in shifts(&method) {
+                let shift = match conditions.constraints.of(0, 1) {
+                    Some(_) => [shift[0], 0.0],
+                    None => shift,
+                };
+                let body = body(&outline, shift);
+                let plain = Stencils::build(&body, &drop, &conditions).unwrap();
+                let tied = Stencils::build(&body, &extrapolate, &conditions).unwrap();
+                let cuts: Vec<usize> = (0..grid.node_count())
+                    .filter(|&node| tied.is_tied(node))
+                    .collect();
+                for &cut in &cuts {
+                    let carriers: Vec<_> = tied.carriers(cut).collect();
+                    extrapolated += usize::from(carriers.len() > 1);
+                    for own in carriers {
+                        assert!(!tied.is_tied(own.node));
+                        if conditions.constraints.of(cut, 1).is_some() {
+                            assert!(conditions.constraints.of(own.node, 1).is_some());
+                        }
+                    }
+                }
+                for particle in 0..body.len() {
+                    let sums = |stencils: &Stencils<2>| {
+                        let mut sums = [0.0; 11];
+                        for own in stencils.of(particle) {
+                            let x = grid.node_position(own.node);
+                            sums[0] += own.value;
+                            for a in 0..2 {
+                                sums[1 + a] += own.value * x[a];
+                                for b in 0..2 {
+                                    sums[3 + 2 * a + b] += own.grad[a] * x[b];
+                                    sums[7 + 2 * a + b] += own.grad_bar[a] * x[b];
+                                }
+                            }
+                        }
+                        sums
+                    };
+                    for (found, expected) in std::iter::zip(sums(&tied), sums(&plain)) {
+                        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(extrapolated > 20, "{extrapolated}");
+}

@@ -70,6 +70,8 @@ shipped! {
     "slope_3d": "undrained slope between rough valley sides under rising weight, held against limit analysis",
     "landslide_3d": "slope of clay from an elevation grid: factor of safety in space, held against limit analysis",
     "earthquake_slope": "clay slope in an earthquake: displacement of a sliding block and of the soil in motion",
+    "landslide_dynamic": "slope of clay that fails and slides until it rests, with inertia",
+    "impact": "boulder that falls on clay, digs itself in and rests",
     "column_collapse": "column of dry sand that is let go: motion in time until it rests",
     "block": "block of clay that loses its strength and spreads until it rests",
 }

@@ -1,9 +1,11 @@
 //! Stages that take time.
 
 use igimp_assembly::TimeScheme;
-use igimp_model::{Dynamic, StageKind};
+use igimp_model::{Dynamic, RigidDrive, RigidMove, StageKind};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
 use igimp_schema::schema::stages as keys;
+use igimp_schema::text::clip;
 
 use super::ground_motion::{motion, newmark_from, rayleigh, walls};
 use super::safety::{materials, reduction_of};
@@ -17,6 +19,7 @@ pub(crate) fn stage<const D: usize>(
     problems: &mut Problems,
 ) -> Option<StageKind> {
     let bodies = moves(about, problems);
+    has_mass(about, bodies.as_deref().unwrap_or_default(), problems);
     let reduction = match own.reduction.as_ref().ok()? {
         None => None,
         Some(stated) => Some((
@@ -52,4 +55,33 @@ pub(crate) fn stage<const D: usize>(
         bodies: bodies?,
         at_rest: own.at_rest.as_ref().map(|own| **own),
     }))
+}
+
+/// Refuses forces on rigid bodies without mass.
+fn has_mass<const D: usize>(about: &About<'_, D>, moved: &[RigidMove], problems: &mut Problems) {
+    let Ok(bodies) = Root::<D>::rigid(about.context.tree) else {
+        return;
+    };
+    let loaded = moved.iter().filter(|own| {
+        let mut drives = own.drives.iter().flatten();
+        drives.any(|drive| matches!(drive, RigidDrive::Force(_)))
+    });
+    for own in loaded {
+        let Some(Ok(body)) = bodies.get(own.body) else {
+            continue;
+        };
+        let weight = body.common.as_ref().map_or(0.0, |common| *common.weight);
+        if weight == 0.0 {
+            let name = clip(&body.name, 40);
+            problems
+                .error(
+                    body.name.place,
+                    format!(
+                        "the rigid body `{name}` is loaded or free in stage `{}`, which takes time, and has no mass",
+                        about.name
+                    ),
+                )
+                .help("state its weight: its mass is that over gravity");
+        }
+    }
 }
