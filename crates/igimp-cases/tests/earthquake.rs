@@ -296,3 +296,89 @@ fn records_that_make_no_sense() {
     }
     std::fs::remove_dir_all(&path).unwrap();
 }
+
+/// GOAL: keys that contradict each other are refused with their place and a remedy.
+#[test]
+fn earthquakes_that_make_no_sense() {
+    let motion = "ground_motion = { unit = \"g\", time = [\"0 s\", \"1 s\"], values = [0, 1]";
+    for (keys, said) in [
+        (
+            "tied_sides = true\nabsorbing = [\"left\"]".to_owned(),
+            "dashpots and moves with the other",
+        ),
+        (
+            "absorbing = [\"front\"]".to_owned(),
+            "no side front in plane strain",
+        ),
+        (
+            format!("{motion}, axis = \"z\" }}"),
+            "no axis z in plane strain",
+        ),
+        (
+            "ground_motion = { unit = \"g\" }".to_owned(),
+            "has no samples",
+        ),
+        (
+            "ground_motion = { unit = \"g\", time = [\"0 s\", \"1 s\"], values = [0, 1, 2] }"
+                .to_owned(),
+            "2 times and 3 values",
+        ),
+        (
+            "ground_motion = { unit = \"g\", time = [\"1 s\", \"1 s\"], values = [0, 1] }"
+                .to_owned(),
+            "not after the one before",
+        ),
+        (
+            format!("newmark_from = \"weight\"\n{motion} }}"),
+            "tells no yield acceleration",
+        ),
+        (
+            "newmark_from = \"weight\"".to_owned(),
+            "a block slides on ground that moves",
+        ),
+        (
+            "rayleigh = { ratio = 0.02, periods = [\"1 s\", \"1 s\"] }".to_owned(),
+            "the two periods are the same",
+        ),
+    ] {
+        let text = layer(&format!("duration = \"1 s\"\n{keys}"));
+        let error = CaseFile::parse("layer.toml", &text, &[]).err();
+        let error = error.map(|error| error.to_string()).unwrap_or_default();
+        assert!(
+            error.contains(said) && error.contains("help:"),
+            "{keys}: {error}"
+        );
+    }
+    let free = layer(&format!("duration = \"1 s\"\n{motion} }}")).replace(
+        "[materials.soil]",
+        "[boundaries]\nbottom = \"roller\"\n[materials.soil]",
+    );
+    let error = CaseFile::parse("layer.toml", &free, &[]).err().unwrap();
+    assert!(
+        error.to_string().contains("does not take the soil along"),
+        "{error}"
+    );
+}
+
+/// GOAL: a slide within walls of dashpots: on moving cells, its energy closes with what leaves through the walls.
+#[test]
+fn a_slope_that_slides_between_dashpots_closes_its_energy() {
+    let file = slope(&[
+        "grid.cell = 2 m",
+        "grid.domain.y = [\"0 m\", \"14 m\"]",
+        "stages.earthquake.tied_sides = false",
+        "stages.earthquake.absorbing = [\"left\", \"right\"]",
+        "stages.earthquake.duration = 1.2 s",
+        "stages.earthquake.steps = 4",
+    ]);
+    let run = in_memory(file.case()).unwrap();
+    let stage = run.summary.stages.last().unwrap();
+    assert_eq!(stage.outcome, StageOutcome::Completed, "{}", stage.reason);
+    let energy = stage.energy.as_ref().unwrap();
+    let size = energy.most_kinetic + energy.loads.abs();
+    assert!(imbalance(energy).abs() < 1e-9 * size, "{energy:?}");
+    assert!(
+        energy.boundaries.abs() > 1e-3 * size && energy.damping > 0.0,
+        "{energy:?}"
+    );
+}
