@@ -344,6 +344,8 @@ impl Group {
             Dimension::Strain => "strain",
             Dimension::Share => "share",
             Dimension::Angle => "angle",
+            Dimension::Velocity => "velocity",
+            Dimension::Acceleration => "acceleration",
         }
     }
 

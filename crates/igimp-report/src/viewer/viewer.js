@@ -4,8 +4,12 @@
 const KEPT = 8;
 // Frames of more particles are not asked for but by the user.
 const LARGE = 200000;
+// Time that a frame stays where the case has no time [ms].
+const STAY = 250;
+// A motion is played so fast at first that it takes no less than this [s].
+const SHORTEST = 4;
 // Colours of a scale.
-const LEVELS = 128;
+const LEVELS = 256;
 
 function mixed(anchors) {
   return Array.from({ length: LEVELS }, (_, level) => {
@@ -16,11 +20,21 @@ function mixed(anchors) {
   });
 }
 
+// The same colours in steps between places on the scale, each in the colour of its middle.
+function banded(colours, shares) {
+  const edges = [0, ...shares.filter((share) => share > 0.001 && share < 0.999), 1];
+  const last = colours.length - 1;
+  return colours.map((_, level) => {
+    const k = Math.min(edges.findLastIndex((edge) => edge <= level / last), edges.length - 2);
+    return colours[Math.round(0.5 * (edges[k] + edges[k + 1]) * last)];
+  });
+}
+
 class Viewer {
   // `wish` may name a frame (from 1), a field, a place to point at (in space a point of the canvas, as shares of
-  // its sides), a view and a cut; `changed` hears of every frame shown.
+  // its sides), a view, a cut, arrows and the ends of a section; `changed` hears of every frame shown.
   constructor(wish, changed) {
-    this.part = Object.fromEntries(["soil", "field", "map", "state", "state-label", "space", "view", "cut", "cut-row", "cut-at", "cut-told", "cut-side", "canvas", "surface", "bar", "ticks", "bar-label", "play", "slider", "when", "found", "keys", "clamp", "fixed"].map((id) => [id, document.getElementById(id)]));
+    this.part = Object.fromEntries(["soil", "field", "map", "state", "state-label", "space", "view", "cut", "cut-row", "cut-at", "cut-told", "cut-side", "canvas", "surface", "bar", "ticks", "bar-label", "play", "slider", "pace", "pace-label", "when", "found", "keys", "clamp", "fixed", "bands", "arrows", "picture", "film", "draw-section", "section", "section-curve", "section-told", "section-table", "section-end"].map((id) => [id, document.getElementById(id)]));
     this.scene = new Scene(this.part.canvas, this.part.surface);
     this.wish = wish;
     this.changed = changed;
@@ -30,12 +44,14 @@ class Viewer {
     this.ranges = new Map();
     this.turn = 0;
     this.pointed = -1;
+    this.longest = new Map();
     this.listen();
+    this.section = new SectionTool(this);
   }
 
-  // Takes up frames: each with a key that names its content, a label and a way to load its text, and that of
-  // its rigid bodies where there are some. Who
-  // looks at the last frame goes on to look at the last.
+  // Takes up frames: each with a key that names its content, a label and a way to load its text, that of its rigid bodies
+  // where there are some, and its time in seconds where the soil moves in time. Who looks at the last frame goes on to look
+  // at the last.
   take(frames, states) {
     const { slider } = this.part;
     const wasLast = this.frames.length === 0 || Number(slider.value) === this.frames.length;
@@ -51,11 +67,15 @@ class Viewer {
     }
     slider.disabled = frames.length < 2;
     this.part.play.disabled = frames.length < 2;
+    this.setPace();
     const { state } = this.part;
     const chosen = state.value;
     state.replaceChildren(new Option("frame by frame", ""), ...states.map((own) => new Option(own.label, own.name)));
     state.value = states.some((own) => own.name === chosen) ? chosen : "";
     this.part["state-label"].hidden = states.length === 0;
+    // A run that ends with a search opens on the way in which the body fails.
+    const mechanism = states.find((own) => own.isMechanism);
+    if (mechanism && !this.shown && !this.wish.framed) state.value = mechanism.name;
     this.show();
   }
 
@@ -65,11 +85,18 @@ class Viewer {
       part.state.value = "";
       this.show();
     });
-    for (const name of ["field", "state", "map", "clamp", "fixed"]) part[name].addEventListener("change", () => this.show());
+    for (const name of ["field", "state", "map", "clamp", "fixed", "bands", "arrows"]) part[name].addEventListener("change", () => this.show());
     part.play.addEventListener("click", () => (this.playing ? this.stop() : this.play()));
     document.getElementById("in").addEventListener("click", () => scene.zoom(1.6));
     document.getElementById("out").addEventListener("click", () => scene.zoom(1 / 1.6));
     document.getElementById("whole").addEventListener("click", () => this.look("whole"));
+    part.picture.addEventListener("click", () => savePicture(this));
+    part.film.addEventListener("click", async () => {
+      this.stop();
+      part.film.disabled = true;
+      await saveFilm(this);
+      part.film.disabled = false;
+    });
     part.view.addEventListener("change", () => this.look(part.view.value));
     part.cut.addEventListener("change", () => this.layCut());
     part["cut-at"].addEventListener("input", () => this.cutThere());
@@ -87,6 +114,26 @@ class Viewer {
     if (name === "whole") this.scene.whole();
     else if (name) this.scene.look(name);
     this.part.view.value = name === "whole" ? "isometric" : name;
+  }
+
+  // Lets the pace be chosen where frames have times; at first it is the fastest that is slow enough to be followed.
+  setPace() {
+    const { part } = this;
+    const times = this.frames.map((entry) => entry.seconds).filter(Number.isFinite);
+    const lasts = times.length > 1 ? Math.max(...times) - Math.min(...times) : 0;
+    part["pace-label"].hidden = lasts === 0;
+    if (lasts === 0 || part.pace.dataset.set) return;
+    const paces = [...part.pace.options].map((option) => option.value).filter((value) => Number(value) <= 1);
+    part.pace.value = paces.find((value) => lasts / Number(value) >= SHORTEST) || paces[paces.length - 1];
+    part.pace.dataset.set = "by itself";
+  }
+
+  // How long a frame stays until the next one [ms].
+  stay() {
+    const { slider, pace } = this.part;
+    const [own, next] = [0, -1].map((k) => this.frames[Number(slider.value) - 1 - k]);
+    const lasts = own && next ? next.seconds - own.seconds : NaN;
+    return lasts >= 0 ? (1000 * lasts) / Number(pace.value) : STAY;
   }
 
   // What depends on the first frame: its dimension and its size.
@@ -161,7 +208,7 @@ class Viewer {
     part.state.value = "";
     part.play.textContent = "❚❚";
     part.play.setAttribute("aria-label", "Pause");
-    await Promise.all([this.show(), new Promise((done) => setTimeout(done, 250))]);
+    await Promise.all([this.show(), new Promise((done) => setTimeout(done, this.stay()))]);
     if (!this.playing) return;
     if (Number(part.slider.value) === this.frames.length) {
       this.stop();
@@ -183,10 +230,10 @@ class Viewer {
     return state || this.frames[Number(this.part.slider.value) - 1];
   }
 
-  // A frame, with its rigid bodies where there are some.
+  // A frame, with its rigid bodies and reinforcement where there are some.
   static async read(entry) {
-    const [soil, bodies] = await Promise.all([entry.load(), entry.bodies ? entry.bodies() : null]);
-    return Object.assign(new Frame(soil), { bodies: bodies && new Frame(bodies) });
+    const [soil, bodies, members] = await Promise.all([entry.load(), entry.bodies ? entry.bodies() : null, entry.members ? entry.members() : null]);
+    return Object.assign(new Frame(soil), { bodies: bodies && new Frame(bodies), members: members && new Frame(members) });
   }
 
   // A frame as a promise; those looked at last are kept.
@@ -219,7 +266,9 @@ class Viewer {
       const frame = await this.frame(entry);
       const field = this.choose(frame.shown());
       const [shapes, values] = [await frame.shapes(), await frame.values(field)];
-      const bodies = { lines: [], triangles: [] };
+      const bodies = { lines: [], triangles: [], members: [], water: entry.water || [] };
+      if (frame.members && frame.members.count > 0) bodies.members = (await frame.members.shapes()).corners;
+      const arrows = await this.arrowsOf(frame);
       if (frame.bodies && frame.bodies.count > 0) bodies[frame.bodies.kind] = (await frame.bodies.shapes()).corners;
       this.ranges.set(this.named(entry, field), frame.range(field));
       if (turn !== this.turn) return;
@@ -230,13 +279,45 @@ class Viewer {
         this.scene.show(frame.dimension, shapes, bodies);
         if (isFirst) this.furnish(frame.dimension);
       }
+      this.scene.overlay.arrows = arrows;
       this.paint();
+      this.section.tell();
       await this.describe();
       this.changed(entry, field, Number(this.part.slider.value));
       if (this.part.fixed.checked) await this.gather(field, turn);
     } catch (error) {
       if (turn === this.turn) this.part.when.textContent = `${entry.label}: cannot be read (${error.message})`;
     }
+  }
+
+  // The arrows that are chosen; their list is filled once.
+  async arrowsOf(frame) {
+    const { part, wish } = this;
+    const all = frame.vectors();
+    if (part.arrows.options.length < 2) {
+      part.arrows.append(...all.map((own) => new Option(own.title, own.name)));
+      if (wish.arrows) part.arrows.value = wish.arrows;
+      if (part.arrows.selectedIndex < 0) part.arrows.selectedIndex = 0;
+    }
+    const own = all.find((vector) => vector.name === part.arrows.value);
+    if (!own) return null;
+    const array = frame.arrayOf(own.name);
+    const numbers = await frame.numbers(array);
+    const { components } = array;
+    let most = own.kind === "vector" ? array.range[3][1] : 0;
+    for (let at = 0; own.kind === "stress" && at < numbers.length; at += components) {
+      for (const { value } of principal(numbers[at], numbers[at + 1], numbers[at + 3])) if (Math.abs(value) > most) most = Math.abs(value);
+    }
+    // The same length means the same in all frames that were seen.
+    const largest = Math.max(most, this.longest.get(own.name) || 0);
+    this.longest.set(own.name, largest);
+    return { numbers, components, largest, kind: own.kind };
+  }
+
+  // A picture of what is chosen, once it is drawn.
+  settled() {
+    this.scene.paint();
+    return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(pictureOf(this)))));
   }
 
   named(entry, field) {
@@ -271,22 +352,34 @@ class Viewer {
     const isOfBothSigns = !field.whole && Math.min(below, above) > 0.15 * Math.max(below, above);
     const map = part.map.value === "auto" ? (isOfBothSigns ? "diverging" : "viridis") : part.map.value;
     if (map === "diverging") [low, high] = [-Math.max(Math.abs(low), Math.abs(high)), Math.max(Math.abs(low), Math.abs(high))];
-    const colours = mixed(MAPS[map]);
     this.unit = unitFor(field.unit, Math.max(Math.abs(low), Math.abs(high)));
+    this.barTicks = this.ticksOfBar(low, high);
+    let colours = mixed(MAPS[map]);
+    if (part.bands.checked && !field.whole) colours = banded(colours, this.ticksOfBar(low, high, 10).map((tick) => tick.share));
+    this.colours = colours;
     this.scene.colour(this.values, [low, high], colours);
-    const stops = colours.filter((_, k) => k % 8 === 0 || k === LEVELS - 1).map((colour) => `rgb(${colour})`);
-    part.bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
-    const count = field.whole ? Math.min(high - low, 8) : 4;
-    const shares = high > low ? Array.from({ length: count + 1 }, (_, k) => k / count) : [0.5];
-    const tick = (share) => {
-      const value = low + share * (high - low);
-      if (field.whole) return Math.round(value);
-      return Math.abs(value) < 1e-4 * Math.max(-low, high) ? 0 : value / this.unit[0];
-    };
-    part.ticks.replaceChildren(...shares.map((share) => Object.assign(document.createElement("span"), { textContent: Number.isFinite(low) ? short(tick(share)) : "–" })));
+    const every = part.bands.checked ? 1 : 8;
+    const stops = colours.map((colour, k) => [colour, k]).filter(([, k]) => k % every === 0 || k === LEVELS - 1);
+    part.bar.style.background = `linear-gradient(to right, ${stops.map(([colour, k]) => `rgb(${colour}) ${((100 * k) / (LEVELS - 1)).toFixed(2)}%`).join(", ")})`;
+    part.ticks.replaceChildren(...this.barTicks.map(({ share, text }) => {
+      const mark = Object.assign(document.createElement("span"), { textContent: text });
+      mark.style.left = `${(100 * share).toFixed(3)}%`;
+      return mark;
+    }));
     part["bar-label"].textContent = `${field.title}${this.unit[1] ? ` [${this.unit[1]}]` : ""}${field.rest}`;
     part.when.textContent = this.shownEntry.label;
     part.slider.setAttribute("aria-valuetext", this.shownEntry.label);
+  }
+
+  // Ticks of the colour bar at round values, about so many: their place on it, and their text.
+  ticksOfBar(low, high, about = 7) {
+    const { field, unit } = this;
+    if (!Number.isFinite(low)) return [{ share: 0.5, text: "–" }];
+    if (!(high > low)) return [{ share: 0.5, text: short(field.whole ? Math.round(low) : low / unit[0]) }];
+    const divide = field.whole ? 1 : unit[0];
+    let values = ticksOf(low / divide, high / divide, about);
+    if (field.whole) values = values.filter((value) => Number.isInteger(value));
+    return values.map((value) => ({ share: (value * divide - low) / (high - low), text: field.whole ? String(value) : tickText(value, values) }));
   }
 
   pointAt(box) {

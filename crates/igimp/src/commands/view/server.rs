@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::io;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::sync::Arc;
+use std::time::Duration;
 
 use igimp_report::viewer;
 
@@ -11,8 +12,9 @@ use super::http::{self, Body, Request, Status};
 use super::results::Results;
 use crate::error::ProgramError;
 
-/// Connections that are served at the same time; a browser makes six. Others wait.
-const WORKERS: usize = 8;
+/// Connections that are held at the same time. A browser makes six, and may leave some open without asking for anything: they
+/// end by themselves, and keep nobody else out. Beyond this many, new ones are cut.
+const MOST_CONNECTIONS: usize = 256;
 
 /// The page; its parts take the place of the comments that name them.
 const PAGE: &str = include_str!("page/page.html");
@@ -71,23 +73,30 @@ impl Server {
 
     /// Begins to serve, in threads that last as long as the program.
     pub(super) fn start(self) -> Result<(), ProgramError> {
-        let site = Arc::new(self.site);
-        for _ in 0..WORKERS {
-            let listener = self.listener.try_clone().map_err(network)?;
-            let site = Arc::clone(&site);
-            std::thread::spawn(move || {
-                loop {
-                    match listener.accept() {
-                        // Of a client that goes away there is nothing to tell.
-                        Ok((mut stream, _)) => drop(site.serve(&mut stream)),
-                        // Out of file handles, say: no reason to spin.
-                        Err(_) => std::thread::sleep(std::time::Duration::from_millis(100)),
-                    }
+        let Self { listener, site } = self;
+        let site = Arc::new(site);
+        let accept = move || {
+            loop {
+                match listener.accept() {
+                    Ok((stream, _)) => serve_apart(&site, stream),
+                    // Out of file handles, say: no reason to spin.
+                    Err(_) => std::thread::sleep(Duration::from_millis(100)),
                 }
-            });
-        }
+            }
+        };
+        std::thread::Builder::new().spawn(accept).map_err(network)?;
         Ok(())
     }
+}
+
+/// Serves a connection in a thread of its own, or cuts it where there are too many.
+fn serve_apart(site: &Arc<Site>, mut stream: TcpStream) {
+    if Arc::strong_count(site) > MOST_CONNECTIONS {
+        return;
+    }
+    let site = Arc::clone(site);
+    // Of a client that goes away there is nothing to tell; without room for a thread the connection is cut.
+    let _ = std::thread::Builder::new().spawn(move || drop(site.serve(&mut stream)));
 }
 
 impl Site {

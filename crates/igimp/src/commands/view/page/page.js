@@ -45,14 +45,19 @@ function stageName(k) {
   return own ? own.name : index.planned[k] || "";
 }
 
-// The way to load the rigid bodies of a frame, where there are some.
-function bodiesOf(name) {
-  const own = name.includes("particles_") ? name.replace("particles_", "rigid_") : name.replace(".vtu", "-rigid.vtu");
+// The way to load the rigid bodies or the reinforcement of a frame, where there are some.
+function besideOf(name, what) {
+  const own = name.includes("particles_") ? name.replace("particles_", `${what}_`) : name.replace(".vtu", `-${what}.vtu`);
   return index.files[own] ? () => fetched(`packed/${own}`) : null;
 }
 
+// The water tables of a stage.
+function waterOf(stage) {
+  return (index.water && index.water[stage]) || [];
+}
+
 function entryOf(name, label, more) {
-  return { name, bodies: bodiesOf(name), label, key: `${name} ${index.files[name]}`, load: () => fetched(`packed/${name}`), ...more };
+  return { name, bodies: besideOf(name, "rigid"), members: besideOf(name, "reinforcement"), label, key: `${name} ${index.files[name]}`, load: () => fetched(`packed/${name}`), ...more };
 }
 
 async function framesOf() {
@@ -64,8 +69,11 @@ async function framesOf() {
     const time = Number(set.getAttribute("timestep"));
     const moment = momentOf(time);
     const own = index.stages[moment.stage];
-    const label = `Frame ${k + 1} of ${sets.length}: stage ${moment.stage + 1} “${stageName(moment.stage)}”, ${own && own.search ? "trial" : "step"} ${moment.step}`;
-    return entryOf(`paraview/${set.getAttribute("file")}`, label, { moment });
+    const name = `paraview/${set.getAttribute("file")}`;
+    const seconds = index.seconds[name];
+    const when = seconds === undefined ? "" : `t = ${short(seconds)} s, `;
+    const label = `Frame ${k + 1} of ${sets.length}: ${when}stage ${moment.stage + 1} “${stageName(moment.stage)}”, ${own && own.search ? "trial" : "step"} ${Math.ceil(moment.step)}`;
+    return entryOf(name, label, { moment, seconds, water: waterOf(moment.stage) });
   });
 }
 
@@ -75,7 +83,11 @@ function statesOf() {
     const found = /^paraview\/stage-(\d+)-(last-stable|first-unstable)\.vtu$/.exec(name);
     if (!found) return null;
     const stage = Number(found[1]) - 1;
-    return entryOf(name, `${stageName(stage)}: ${what[found[2]]}`, { moment: { stage, step: Infinity } });
+    // The state that failed has moved most; where it was not written, the other one tells.
+    const other = name.replace("last-stable", "first-unstable");
+    const isLast = stage === index.planned.length - 1 && stage === index.stages.length - 1;
+    const isMechanism = isLast && (other === name || !index.files[other]);
+    return entryOf(name, `${stageName(stage)}: ${what[found[2]]}`, { moment: { stage, step: Infinity }, isMechanism, water: waterOf(stage) });
   }).filter(Boolean).sort((a, b) => b.name.localeCompare(a.name));
 }
 
@@ -138,6 +150,9 @@ const viewer = new Viewer(
     frame: Number(asked.get("frame")),
     field: asked.get("field"),
     hover: numbersOf("hover"),
+    framed: asked.has("frame"),
+    arrows: asked.get("arrows"),
+    section: numbersOf("section"),
     view: asked.get("view"),
     cut: numbersOf("cut"),
   },
