@@ -153,6 +153,9 @@ pub(crate) struct Report {
 pub(crate) struct View {
     /// Results folder; its run may still be going on.
     pub(crate) folder: PathBuf,
+    /// Results folder of another run, shown beside it: frames and fields are chosen for both.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) beside: Option<PathBuf>,
     /// Print the address, and open no browser.
     #[arg(long)]
     pub(crate) no_open: bool,

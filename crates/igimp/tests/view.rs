@@ -66,8 +66,13 @@ struct View {
 
 impl View {
     fn of(folder: &Folder, results: &str) -> Self {
+        Self::with(folder, &[results])
+    }
+
+    fn with(folder: &Folder, words: &[&str]) -> Self {
         let mut program = Command::new(env!("CARGO_BIN_EXE_igimp"))
-            .args(["view", results, "--no-open"])
+            .args(["view", "--no-open"])
+            .args(words)
             .current_dir(&folder.0)
             .stdout(Stdio::piped())
             .spawn()
@@ -774,4 +779,43 @@ fn water_tables_are_drawn() {
     };
     let page = looked_at(browser, &folder, &view, "frame=2");
     assert_eq!(attribute(&page, "canvas", "data-water"), "1");
+}
+
+/// GOAL: two runs stand side by side, each with its own files, and what is chosen in the first is chosen in the second.
+/// ORACLE: the third of four frames, of both.
+#[test]
+fn two_runs_stand_side_by_side() {
+    let folder = Folder::with_results("beside", &[]);
+    let softer = ["--set", "materials.clay.young=5 MPa", "--out", "softer"];
+    let run = folder.igimp(&[&["run", "case.toml", "--quiet"], &softer[..]].concat());
+    assert!(run.status.success());
+    let view = View::with(&folder, &["results", "--beside", "softer"]);
+    let (status, head, page) = view.get("");
+    assert_eq!(status, 200);
+    assert!(head.contains("frame-src 'self'") && head.contains("frame-ancestors 'none'"));
+    assert!(!page.contains("NONCE"));
+    for (run, name) in [(1, "results"), (2, "softer")] {
+        let (_, head, _) = view.get(&format!("{run}/"));
+        assert!(head.contains("frame-ancestors 'self'"), "{head}");
+        let index = view.get(&format!("{run}/index.json")).2;
+        let index: serde_json::Value = serde_json::from_str(&index).unwrap();
+        assert_eq!(index["folder"], name);
+        assert_eq!(view.get(&format!("{run}/curves/settlement.csv")).0, 200);
+    }
+    for name in [
+        "index.json",
+        "3/index.json",
+        "1/../2/index.json",
+        "curves/settlement.csv",
+    ] {
+        assert_eq!(view.get(name).0, 404, "{name}");
+    }
+    let Some(browser) = browser() else {
+        return;
+    };
+    let page = looked_at(browser, &folder, &view, "frame=3");
+    for run in ["data-run1", "data-run2"] {
+        let (_, label) = page.split_once(&format!("{run}=\"")).unwrap();
+        assert!(label.starts_with("Frame 3 of 4"), "{label:.40}");
+    }
 }

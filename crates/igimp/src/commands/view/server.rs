@@ -26,6 +26,9 @@ const PARTS: [(&str, &str); 5] = [
     ("/* page.js */", include_str!("page/page.js")),
 ];
 
+/// The page of two runs, which has the page of each in a frame.
+const BOTH: &str = include_str!("page/both.html");
+
 /// Before the name of a frame that is asked for as the page takes it.
 const PACKED: &str = "packed/";
 
@@ -51,17 +54,20 @@ struct Site {
     port: u16,
     token: String,
     results: Results,
+    /// Those of another run beside it; addresses then begin with the number of the run.
+    beside: Option<Results>,
 }
 
 impl Server {
     /// Takes a free port of 127.0.0.1 and thinks of a token.
-    pub(super) fn bind(results: Results) -> Result<Self, ProgramError> {
+    pub(super) fn bind(results: Results, beside: Option<Results>) -> Result<Self, ProgramError> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).map_err(network)?;
         let port = listener.local_addr().map_err(network)?.port();
         let site = Site {
             port,
             token: random()?,
             results,
+            beside,
         };
         Ok(Self { listener, site })
     }
@@ -132,15 +138,22 @@ impl Site {
         if !is_same(token, &self.token) {
             return Err(Status::NotFound);
         }
+        let (results, name) = match (&self.beside, name.split_once('/')) {
+            (None, _) => (&self.results, name),
+            (Some(_), None) if name.is_empty() => return both().ok_or(Status::NotFound),
+            (Some(_), Some(("1", rest))) => (&self.results, rest),
+            (Some(beside), Some(("2", rest))) => (beside, rest),
+            _ => return Err(Status::NotFound),
+        };
         match name {
-            "" => page().ok_or(Status::NotFound),
+            "" => page(self.beside.is_some()).ok_or(Status::NotFound),
             "index.json" => Ok(Answer {
                 kind: "application/json",
                 policy: None,
-                body: Body::Text(self.results.index()),
+                body: Body::Text(results.index()),
             }),
             _ if name.starts_with(PACKED) => {
-                let frame = self.results.packed(&name[PACKED.len()..]);
+                let frame = results.packed(&name[PACKED.len()..]);
                 Ok(Answer {
                     kind: "application/json",
                     policy: None,
@@ -148,7 +161,7 @@ impl Site {
                 })
             }
             _ => {
-                let (file, length, kind) = self.results.file(name).ok_or(Status::NotFound)?;
+                let (file, length, kind) = results.file(name).ok_or(Status::NotFound)?;
                 Ok(Answer {
                     kind,
                     policy: None,
@@ -167,8 +180,8 @@ struct Answer {
     body: Body,
 }
 
-/// The page, whose script and style are those with a number that is used once.
-fn page() -> Option<Answer> {
+/// The page, whose script and style are those with a number that is used once; it may stand `beside` another one in ours.
+fn page(beside: bool) -> Option<Answer> {
     let nonce = random().ok()?;
     let mut text = PAGE.replace("NONCE", &nonce);
     for (mark, part) in PARTS {
@@ -177,12 +190,27 @@ fn page() -> Option<Answer> {
     text = text.replace("/* viewer.js */", &viewer::script());
     let policy = format!(
         "default-src 'none'; connect-src 'self'; img-src data:; script-src 'nonce-{nonce}'; \
-         style-src 'nonce-{nonce}'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+         style-src 'nonce-{nonce}'; base-uri 'none'; form-action 'none'; frame-ancestors {}",
+        if beside { "'self'" } else { "'none'" }
     );
     Some(Answer {
         kind: "text/html; charset=utf-8",
         policy: Some(policy),
         body: Body::Text(text),
+    })
+}
+
+/// The page of two runs.
+fn both() -> Option<Answer> {
+    let nonce = random().ok()?;
+    let policy = format!(
+        "default-src 'none'; frame-src 'self'; img-src data:; script-src 'nonce-{nonce}'; style-src 'nonce-{nonce}'; \
+         base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    );
+    Some(Answer {
+        kind: "text/html; charset=utf-8",
+        policy: Some(policy),
+        body: Body::Text(BOTH.replace("NONCE", &nonce)),
     })
 }
 

@@ -159,11 +159,43 @@ const viewer = new Viewer(
   (entry, field, frame) => {
     current = entry;
     pointCharts();
+    if (isBeside) window.parent.postMessage({ frame, frames: viewer.frames.length, seconds: entry.seconds, field: field.key, label: entry.label, isOwn: chosen(frame, field.key) !== followed }, location.origin);
     const isLast = frame === viewer.frames.length;
     const kept = new URLSearchParams({ ...(isLast ? {} : { frame }), field: field.key });
     history.replaceState(null, "", `#${kept}`);
   },
 );
+
+// Beside another run the page follows what is chosen there: the frame of the same time, or at the same share of all, and the
+// field. What was followed is not handed back.
+const isBeside = window.parent !== window;
+let followed = "";
+
+function chosen(frame, field) {
+  return `${frame} ${field}`;
+}
+
+function frameLike({ frame, frames, seconds }) {
+  const own = viewer.frames;
+  const times = own.map((entry) => (seconds === undefined || entry.seconds === undefined ? Infinity : Math.abs(entry.seconds - seconds)));
+  const nearest = Math.min(...times);
+  if (Number.isFinite(nearest)) return times.indexOf(nearest) + 1;
+  return Math.round(((frame - 1) / Math.max(frames - 1, 1)) * (own.length - 1)) + 1;
+}
+
+window.addEventListener("message", (event) => {
+  if (!isBeside || event.source !== window.parent || event.origin !== location.origin || viewer.frames.length === 0) return;
+  const { slider, field, state } = viewer.part;
+  const frame = frameLike(event.data);
+  const isKnown = [...field.options].some((option) => option.value === event.data.field);
+  const wanted = isKnown ? event.data.field : field.value;
+  if (Number(slider.value) === frame && field.value === wanted && state.value === "") return;
+  followed = chosen(frame, wanted);
+  slider.value = frame;
+  field.value = wanted;
+  state.value = "";
+  viewer.show();
+});
 
 function tell(text) {
   const message = document.getElementById("message");
