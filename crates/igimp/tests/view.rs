@@ -619,6 +619,13 @@ fn a_run_in_space_is_shown() {
         "cut=1,0.55&view=front&hover=0.5,0.5",
     );
     assert_eq!(attribute(&page, "canvas", "data-faces"), "384");
+    // A plane that dips by 45° through the middle of the cube crosses it in a rectangle of 2 m by 2√2 m.
+    let slanted = looked_at(browser, &folder, &view, "cut=3,0.5,1,0,45&view=front");
+    if attribute(&slanted, "canvas", "data-by") == "webgl2" {
+        let area = attribute(&slanted, "canvas", "data-cut-area");
+        let area: f64 = area.parse().unwrap();
+        assert!((area - 4.0 * 2.0_f64.sqrt()).abs() < 0.01 * area, "{area}");
+    }
     let value: f64 = attribute(&page, "found", "data-value").parse().unwrap();
     let (_, text) = page.split_once("m: displacement length ").unwrap();
     let z: f64 = page

@@ -95,13 +95,13 @@ void main() {
 
 const PIECES = `#version 300 es
 precision highp float;
-layout(location = 0) in vec2 low;
+layout(location = 0) in vec3 low;
 layout(location = 1) in vec4 colour;
 out vec4 tint;
 ${LIGHT}
 void main() {
   tint = colour;
-  gl_Position = seen(vec3(low, 0.0));
+  gl_Position = seen(low);
 }`;
 
 const PLAIN = `#version 300 es
@@ -148,9 +148,9 @@ class Surface {
     if (!this.gl) throw new Error("no WebGL2");
     const { gl } = this;
     this.programs = { boxes: program(gl, [BOXES, INK]), bodies: program(gl, [BODIES, GREY]), pieces: program(gl, [PIECES, PLAIN]) };
-    this.arrays = { faces: gl.createVertexArray(), caps: gl.createVertexArray(), bodies: gl.createVertexArray(), pieces: gl.createVertexArray() };
+    this.arrays = { faces: gl.createVertexArray(), caps: gl.createVertexArray(), bodies: gl.createVertexArray(), pieces: gl.createVertexArray(), slices: gl.createVertexArray() };
     this.buffers = new Map();
-    this.count = { faces: 0, caps: 0, bodies: 0, pieces: 0 };
+    this.count = { faces: 0, caps: 0, bodies: 0, pieces: 0, slices: 0 };
   }
 
   // Hands numbers over: `per` components of a type at a place of the program, for every instance.
@@ -187,7 +187,7 @@ class Surface {
     this.hand("caps", 1, 3, gl.FLOAT, ends);
     this.hand("bodies", 0, 3, gl.FLOAT, near(triangles), 0);
     const corners = pieces ? this.fans(pieces, origin) : 0;
-    this.count = { faces: faces.box.length, caps: own.length / 3, bodies: triangles.length / 3, pieces: corners };
+    this.count = { faces: faces.box.length, caps: own.length / 3, bodies: triangles.length / 3, pieces: corners, slices: 0 };
   }
 
   // Pieces as triangles around their first corners, and whose each corner is; the number of corners.
@@ -209,8 +209,27 @@ class Surface {
     return this.owners.length;
   }
 
+  // The faces of a slanted cut: triangles by their corners, and whose each corner is.
+  slice({ places, owners }, origin) {
+    const { gl } = this;
+    this.hand("slices", 0, 3, gl.FLOAT, Float32Array.from(places, (x, k) => x - origin[k % 3]), 0);
+    this.sliced = owners;
+    this.count.slices = owners.length;
+    this.colourSlices();
+  }
+
+  colourSlices() {
+    const { gl, colours } = this;
+    if (this.count.slices === 0 || !colours) return;
+    const own = new Uint8Array(4 * this.sliced.length);
+    this.sliced.forEach((box, k) => own.set(colours.subarray(4 * box, 4 * box + 4), 4 * k));
+    this.hand("slices", 1, 4, gl.UNSIGNED_BYTE, own, 0);
+  }
+
   colour(colours) {
     const { gl } = this;
+    this.colours = colours;
+    this.colourSlices();
     if (this.count.pieces > 0) {
       const own = new Uint8Array(4 * this.owners.length);
       this.owners.forEach((box, k) => own.set(colours.subarray(4 * box, 4 * box + 4), 4 * k));
@@ -273,7 +292,12 @@ class Surface {
     gl.uniform1f(at.caps, 0);
     gl.bindVertexArray(this.arrays.faces);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.count.faces);
-    if (cut) {
+    if (cut && cut.axis < 0) {
+      if (this.count.slices === 0) return;
+      use(this.programs.pieces);
+      gl.bindVertexArray(this.arrays.slices);
+      gl.drawArrays(gl.TRIANGLES, 0, this.count.slices);
+    } else if (cut) {
       gl.uniform1f(at.caps, 1);
       gl.bindVertexArray(this.arrays.caps);
       gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.count.caps);

@@ -68,12 +68,21 @@ class Scene {
     const edges = shapes.edges ? { corners: shapes.edges, ends: shapes["edge-ends"] } : null;
     this.boxes = { low, high, lie, faces, origin, count, pieces, edges };
     if (this.surface) this.surface.shape(this.boxes, bodies.triangles);
+    this.slice();
     this.canvas.dataset.faces = faces.box.length;
     this.canvas.dataset.lines = bodies.lines.length / 6;
     this.canvas.dataset.members = bodies.members.length / 6;
     this.canvas.dataset.water = bodies.water.length;
     this.canvas.dataset.pieces = pieces ? pieces.ends.length : 0;
     this.canvas.dataset.edges = edges ? edges.ends.length : 0;
+  }
+
+  // The face of a slanted cut; an ordinary canvas has none.
+  slice() {
+    if (!this.surface || !this.cut || this.cut.axis >= 0) return;
+    const face = sliceOf(this.boxes, this.cut);
+    this.surface.slice(face, this.boxes.origin);
+    this.canvas.dataset.cutArea = face.area;
   }
 
   // The faces that are seen, by box and number.
@@ -171,7 +180,9 @@ class Scene {
   // Boxes without WebGL2: faces from the farthest to the nearest, and those of the cut.
   drawn(pen, place) {
     const { faces, lie, count } = this.boxes;
-    const { cut, camera } = this;
+    const { camera } = this;
+    // A slanted cut asks for WebGL2.
+    const cut = this.cut && this.cut.axis >= 0 ? this.cut : null;
     const quads = [];
     const add = (box, face, light, corners) => {
       const points = corners.map((corner) => projected(place, camera, corner));

@@ -34,7 +34,7 @@ class Viewer {
   // `wish` may name a frame (from 1), a field, a place to point at (in space a point of the canvas, as shares of
   // its sides), a view, a cut, arrows and the ends of a section; `changed` hears of every frame shown.
   constructor(wish, changed) {
-    this.part = Object.fromEntries(["soil", "field", "map", "state", "state-label", "space", "view", "cut", "cut-row", "cut-at", "cut-told", "cut-side", "canvas", "surface", "bar", "ticks", "bar-label", "play", "slider", "pace", "pace-label", "when", "found", "keys", "clamp", "fixed", "bands", "arrows", "picture", "film", "draw-section", "section", "section-curve", "section-told", "section-table", "section-end"].map((id) => [id, document.getElementById(id)]));
+    this.part = Object.fromEntries(["soil", "field", "map", "state", "state-label", "space", "view", "cut", "cut-row", "cut-at", "cut-told", "cut-side", "slant-row", "slant-turn", "slant-dip", "slant-told", "canvas", "surface", "bar", "ticks", "bar-label", "play", "slider", "pace", "pace-label", "when", "found", "keys", "clamp", "fixed", "bands", "arrows", "picture", "film", "draw-section", "section", "section-curve", "section-told", "section-table", "section-end"].map((id) => [id, document.getElementById(id)]));
     this.scene = new Scene(this.part.canvas, this.part.surface);
     this.wish = wish;
     this.changed = changed;
@@ -100,6 +100,7 @@ class Viewer {
     part.view.addEventListener("change", () => this.look(part.view.value));
     part.cut.addEventListener("change", () => this.layCut());
     part["cut-at"].addEventListener("input", () => this.cutThere());
+    for (const name of ["slant-turn", "slant-dip"]) part[name].addEventListener("input", () => this.layCut(this.shareOfCut()));
     part["cut-side"].addEventListener("click", () => {
       this.side = -(this.side || 1);
       this.cutThere();
@@ -142,6 +143,8 @@ class Viewer {
     // A scale for all frames asks for all of them.
     if (this.shown.particles > LARGE) part.fixed.checked = false;
     part.space.hidden = dimension === 2;
+    // Of a thinned body only some planes have all that they cross.
+    part.cut.querySelector("option[value='3']").disabled = Boolean(this.shown.planes) || !this.scene.surface;
     part.canvas.style.touchAction = dimension === 2 ? "pan-y" : "none";
     part.keys.textContent = dimension === 2
       ? "Buttons, or the wheel on the drawing once it was clicked (or with Ctrl), zoom; drag to move. Keys: arrows, + − 0."
@@ -151,7 +154,8 @@ class Viewer {
       wish.view = "";
     }
     if (dimension === 3 && wish.cut) {
-      const [axis, share, side] = wish.cut;
+      const [axis, share, side, turn, dip] = wish.cut;
+      if (turn !== undefined) [part["slant-turn"].value, part["slant-dip"].value] = [turn, dip];
       part.cut.value = String(axis);
       this.side = side || 1;
       this.layCut(share);
@@ -165,7 +169,12 @@ class Viewer {
     const { part, scene } = this;
     const axis = part.cut.value === "" ? -1 : Number(part.cut.value);
     part["cut-row"].hidden = axis < 0;
-    if (axis >= 0) {
+    part["slant-row"].hidden = axis !== 3;
+    if (axis === 3) {
+      const [low, high] = offsetsOf(this.slant(), scene.extent);
+      const slider = Object.assign(part["cut-at"], { min: low, max: high, step: (high - low) / 500 || 1 });
+      slider.value = low + share * (high - low);
+    } else if (axis >= 0) {
       const { planes } = this.shown;
       const slider = part["cut-at"];
       const { low, high } = scene.extent;
@@ -176,10 +185,29 @@ class Viewer {
     this.cutThere();
   }
 
+  // The normal of a slanted cut.
+  slant() {
+    const { part } = this;
+    return slantOf(Number(part["slant-turn"].value), Number(part["slant-dip"].value));
+  }
+
+  // Where the slider of the cut stands, as a share of its way.
+  shareOfCut() {
+    const { min, max, value } = this.part["cut-at"];
+    return max > min ? (value - min) / (max - min) : 0.5;
+  }
+
   cutThere() {
     const { part, scene } = this;
     if (part.cut.value === "") scene.cut = null;
-    else {
+    else if (part.cut.value === "3") {
+      const [normal, at] = [this.slant(), Number(part["cut-at"].value)];
+      const side = this.side || 1;
+      scene.cut = { axis: -1, own: this.side, normal: normal.map((x) => side * x), offset: side * at };
+      part["slant-told"].textContent = `${part["slant-turn"].value}° from x, ${part["slant-dip"].value}°`;
+      part["cut-told"].textContent = "";
+      scene.slice();
+    } else {
       const axis = Number(part.cut.value);
       const { planes } = this.shown;
       const at = planes ? planes[axis][Math.min(Number(part["cut-at"].value), planes[axis].length - 1)] : Number(part["cut-at"].value);

@@ -108,6 +108,16 @@ impl Results {
             .flat_map(|case| case.stages())
             .map(|stage| &*stage.name)
             .collect();
+        let motions: Vec<Value> = case
+            .iter()
+            .flat_map(|case| case.stages())
+            .map(|stage| match &stage.kind {
+                StageKind::Dynamic(own) => {
+                    json!({ "from": stage.start_from, "lasts": own.duration })
+                }
+                _ => Value::Null,
+            })
+            .collect();
         let recorded: serde_json::Map<String, Value> = case
             .iter()
             .flat_map(|case| case.curves())
@@ -123,6 +133,7 @@ impl Results {
             "folder": self.root.file_name().map(|name| name.to_string_lossy()),
             "stages": stages,
             "planned": planned,
+            "motions": motions,
             "stage_of_curve": recorded,
             "never": case.is_some_and(|case| case.output().paraview == Every::Never),
             "seconds": self.seconds(),

@@ -110,6 +110,18 @@ function pointCharts() {
   for (const { chart, name } of charts.values()) chart.point(rowOf(name, tables.get(name), current.moment));
 }
 
+// The times of the rows of a history [s]; null where a stage among them takes no time.
+function timesOf({ rows }) {
+  const ends = [];
+  const times = rows.map(([stage, , progress]) => {
+    const motion = (index.motions || [])[stage - 1];
+    if (!motion) return NaN;
+    ends[stage - 1] = (ends[motion.from] || 0) + progress * motion.lasts;
+    return ends[stage - 1];
+  });
+  return rows.length > 0 && times.every(Number.isFinite) ? times : null;
+}
+
 async function drawTables() {
   const names = Object.keys(index.files).filter((name) => name.endsWith(".csv") && !isContact(name));
   for (const name of names) {
@@ -118,17 +130,18 @@ async function drawTables() {
     const own = { ...table(await fetched(name)), version: index.files[name] };
     tables.set(name, own);
     const title = name.replace(/^.*?\//, "").replace(/\.csv$/, "");
+    const times = isHistory(name) ? timesOf(own) : null;
     const columns = isHistory(name) ? own.header.slice(3).map((label, k) => [label, k + 3]) : [[own.header[1], 1]];
     for (const [label, column] of columns) {
       const id = `${name} ${column}`;
       if (!charts.has(id)) {
         const head = isHistory(name) ? `${title}: ${plain(label)}` : title;
-        const chart = new Chart(document.getElementById("curves"), head, [isHistory(name) ? "row of the table" : own.header[0], label]);
+        const chart = new Chart(document.getElementById("curves"), head, [isHistory(name) ? (times ? "time [s]" : "row of the table") : own.header[0], label]);
         charts.set(id, { chart, name });
       }
       // The displacement may begin anew with a stage: lines of histories do not cross from one to the next.
       const part = (row) => (isHistory(name) ? row[0] : 0);
-      charts.get(id).chart.show(own.rows.map((row, k) => [isHistory(name) ? k : row[0], row[column], part(row)]));
+      charts.get(id).chart.show(own.rows.map((row, k) => [times ? times[k] : isHistory(name) ? k : row[0], row[column], part(row)]));
     }
   }
   for (const [id, { chart, name }] of charts) {
