@@ -74,6 +74,11 @@ fn a_motion_makes_a_film() {
         "stages.collapse.steps=5",
     ];
     folder.run("column_collapse", &short);
+    // What it takes was said before.
+    let settings = short.iter().flat_map(|setting| ["--set", setting]);
+    let check: Vec<&str> = ["check", "case.toml"].into_iter().chain(settings).collect();
+    let said = String::from_utf8(folder.igimp(&check).stdout).unwrap();
+    assert!(said.contains("up to 7, about 5 MiB in paraview/"), "{said}");
     let film = folder.igimp(&["film", "results", "--pace", "0.1", "--width", "320"]);
     let said = String::from_utf8(film.stdout).unwrap();
     assert!(film.status.success(), "{said}");

@@ -123,12 +123,24 @@ class Overlay {
     pen.lineCap = "butt";
   }
 
+  // The boxes with a face towards the eye, that no cut takes away.
+  facing(place) {
+    const { boxes, cut } = this.scene;
+    const seen = new Set();
+    for (let k = 0; k < boxes.faces.box.length; k += 1) {
+      const [box, face] = [boxes.faces.box[k], boxes.faces.face[k]];
+      const isFront = (2 * (face % 2) - 1) * place.eye[Math.floor(face / 2)] > 1e-6;
+      if (isFront && (!cut || dot(cut.normal, this.scene.centre(box)) <= cut.offset)) seen.add(box);
+    }
+    return seen;
+  }
+
   // The particles that have an arrow: those nearest to the middles of a raster of the canvas, on the skin in space.
   rastered(place) {
     const { boxes } = this.scene;
     const spacing = Math.max(12, Math.sqrt((place.width * place.height) / MOST_ARROWS));
     const found = new Map();
-    const seen = this.scene.dimension === 2 ? null : new Set(boxes.faces.box);
+    const seen = this.scene.dimension === 2 ? null : this.facing(place);
     for (let box = 0; box < boxes.count; box += 1) {
       if (seen && !seen.has(box)) continue;
       const [x, y] = this.see(place, ...this.scene.centre(box));
