@@ -5,7 +5,7 @@
 //! | [`CurvePlot`] | stress along a section, load-settlement, convergence, strength reduction |
 //! | [`FieldPlot`] | a field on the particle domains of one state |
 //! | [`SpacePlot`] | the surface of a body in space |
-//! | [`film`] | pictures one after another, as an animated GIF |
+//! | [`film()`] | pictures one after another, as an animated GIF |
 //! | [`FieldPanel`] | the same field for several variants or steps, with one colour bar |
 //!
 //! Each is a plain value with public fields: fill it in and call `write`, or `draw` to get a

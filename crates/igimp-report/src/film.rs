@@ -67,13 +67,14 @@ struct Scene {
 /// Draws the frames of a results folder as a film.
 ///
 /// # Errors
-/// [`ReportError::NoFilm`] where there are no frames, or none with the field; [`ReportError::Results`], [`ReportError::Figure`].
+/// [`ReportError::NoFilm`] where there are fewer than two frames, or none with the field; [`ReportError::Results`], [`ReportError::Figure`].
 pub fn film_of(folder: &Path, case: &Case<2>, request: &FilmRequest) -> Result<Film, ReportError> {
     let folder = folder.join("paraview");
     let frames = chosen(&folder, case, request.stage);
-    if frames.is_empty() {
+    if frames.len() < 2 {
+        let why = "the folder has fewer than two frames of it; paraview = { every = \"film\" } in [output] writes some tens";
         return Err(ReportError::NoFilm {
-            why: "the folder has no frames of it".to_owned(),
+            why: why.to_owned(),
         });
     }
     let is_motion = frames.iter().all(|own| own.1);

@@ -128,9 +128,9 @@ fn a_run_at_rest_makes_a_film() {
     error: there is no film: its frames have no speed
     ");
     std::fs::remove_dir_all(folder.0.join("results/paraview")).unwrap();
-    insta::assert_snapshot!(folder.refusal(&[]).1, @r"
-    error: there is no film: the folder has no frames of it
-    ");
+    insta::assert_snapshot!(folder.refusal(&[]).1, @r#"
+    error: there is no film: the folder has fewer than two frames of it; paraview = { every = "film" } in [output] writes some tens
+    "#);
 }
 
 /// GOAL: fields of motion are refused where nothing moves in time.
