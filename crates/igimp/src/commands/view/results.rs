@@ -217,7 +217,7 @@ impl Results {
     }
 }
 
-/// By stage: the water tables at its end as lines of points [m]; none in space.
+/// By stage: the water tables at its end as lines of points \[m\]; none in space.
 fn water_tables(case: &AnyCase) -> Vec<Vec<Vec<[f64; 2]>>> {
     let AnyCase::Plane(case) = case else {
         return Vec::new();
