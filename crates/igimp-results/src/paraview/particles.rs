@@ -81,10 +81,7 @@ pub fn of_particles<const D: usize>(
         ]);
     }
     if extras.motion {
-        cell_data.extend([
-            DataArray::vectors("velocity [m/s]", &particles.velocity),
-            DataArray::vectors("acceleration [m/s2]", &particles.acceleration),
-        ]);
+        cell_data.extend(of_motion(particles));
     }
     if let Some(utilisation) = extras.utilisation {
         assert_eq!(utilisation.len(), n, "every particle has a utilisation");
@@ -108,6 +105,14 @@ pub fn of_particles<const D: usize>(
         cell_data,
         field_data: Vec::new(),
     }
+}
+
+/// Velocity and acceleration.
+fn of_motion<const D: usize>(particles: &Particles<D>) -> [DataArray; 2] {
+    [
+        DataArray::vectors("velocity [m/s]", &particles.velocity),
+        DataArray::vectors("acceleration [m/s2]", &particles.acceleration),
+    ]
 }
 
 /// The corners of the domains, particle after particle.
