@@ -23,6 +23,10 @@ REGIMES = (
 )
 
 
+# Shapes of a particle's entry in arrays that are handed over where something uses them, and zero else; None: as of x.
+OPTIONAL: dict[str, tuple[int, ...] | None] = {"internal": (4,), "velocity": None, "acceleration": None}
+
+
 class Body:
     """The particles of a body: one entry a particle in every array, ``d`` being 2 or 3.
 
@@ -35,6 +39,8 @@ class Body:
         Position of the centre [m].
     displacement : ndarray (n, d)
         Displacement since the start, or since the last stage that reset it [m].
+    velocity, acceleration : ndarray (n, d)
+        Velocity [m/s] and acceleration [m/s^2] of a body that moves in time, else zero.
     sigma : ndarray (n, 3, 3)
         Cauchy stress that the law answers, tension positive; effective where there is water [Pa].
     def_grad : ndarray (n, d, d)
@@ -67,6 +73,8 @@ class Body:
 
     x: NDArray[np.float64]
     displacement: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    acceleration: NDArray[np.float64]
     sigma: NDArray[np.float64]
     def_grad: NDArray[np.float64]
     b_e: NDArray[np.float64]
@@ -86,16 +94,16 @@ class Body:
 
     def __init__(self, arrays: Mapping[str, NDArray[Any]], materials: tuple[str, ...] = ()) -> None:
         self.__dict__.update(arrays)
-        if "internal" not in arrays:
-            self.internal = np.zeros((len(self.x), 4))
+        for name, shape in OPTIONAL.items():
+            if name not in arrays:
+                self.__dict__[name] = np.zeros((len(self.x), *(shape or self.x.shape[1:])))
         self.materials = materials
 
     @classmethod
     def load(cls, folder: str | Path, materials: tuple[str, ...] = ()) -> Body:
         """Reads the arrays of a checkpoint, such as ``results/slope/checkpoint/stage-01-end/current``."""
         files = {name: Path(folder) / f"{name}.npy" for name in cls.__annotations__ if name != "materials"}
-        if not files["internal"].exists():
-            del files["internal"]
+        files = {name: file for name, file in files.items() if name not in OPTIONAL or file.exists()}
         return cls({name: np.load(file) for name, file in files.items()}, materials)
 
     def __len__(self) -> int:
@@ -108,6 +116,11 @@ class Body:
     def volume(self) -> NDArray[np.float64]:
         """Volume now [m^3/m in plane strain, m^3 in space]."""
         return self.volume0 * np.linalg.det(self.def_grad)
+
+    @property
+    def speed(self) -> NDArray[np.float64]:
+        """Length of the velocity [m/s]."""
+        return np.linalg.norm(self.velocity, axis=1)
 
     @property
     def total_stress(self) -> NDArray[np.float64]:
@@ -140,6 +153,9 @@ class Body:
         axes = "xyz"[: self.x.shape[1]]
         columns: dict[str, Any] = {f"{a} [m]": self.x[:, k] for k, a in enumerate(axes)}
         columns |= {f"u_{a} [m]": self.displacement[:, k] for k, a in enumerate(axes)}
+        if self.velocity.any() or self.acceleration.any():
+            columns |= {f"v_{a} [m/s]": self.velocity[:, k] for k, a in enumerate(axes)}
+            columns |= {f"a_{a} [m/s2]": self.acceleration[:, k] for k, a in enumerate(axes)}
         for i, a in enumerate("xyz"):
             for j, b in enumerate("xyz"[i:], start=i):
                 columns[f"sigma_{a}{b} [Pa] tension +"] = self.sigma[:, i, j]

@@ -404,6 +404,15 @@ class Results:
         return self._table("sections")
 
     @property
+    def energy(self) -> Any:
+        """Where the work of stages that move in time went, a row a step, as ``energy.csv`` has it; columns carry units.
+
+        None where nothing moves in time.
+        """
+        path = self._need("energy") / "energy.csv"
+        return Tables({"energy": _read(path)})["energy"] if path.exists() else None
+
+    @property
     def body(self) -> Body:
         """The particles at the end of the run; stresses tension positive."""
         if self._body is None:
@@ -445,10 +454,26 @@ class Results:
     @property
     def frames(self) -> tuple[tuple[float, Path], ...]:
         """Frames for ParaView: pseudo-time and ``.vtu`` file of the particles."""
+        return self._collection("particles.pvd")
+
+    def motion(self, stage: str | None = None) -> tuple[tuple[float, Path], ...]:
+        """Frames of a stage that moves in time, of the last one without a name: time [s] and ``.vtu`` file of the particles.
+
+        Raises
+        ------
+        InputError
+            If no stage of that name moves in time.
+        """
+        own = [k for k, one in enumerate(self.stages, 1) if one.kind == "dynamic" and stage in (None, one.name)]
+        if not own:
+            raise InputError(f"error: no stage {'' if stage is None else repr(stage) + ' '}moves in time")
+        return self._collection(f"stage-{own[-1]:02}.pvd")
+
+    def _collection(self, name: str) -> tuple[tuple[float, Path], ...]:
         folder = self._need("frames") / "paraview"
-        if not (folder / "particles.pvd").exists():
+        if not (folder / name).exists():
             return ()
-        sets = ElementTree.parse(folder / "particles.pvd").iter("DataSet")
+        sets = ElementTree.parse(folder / name).iter("DataSet")
         return tuple((float(own.get("timestep", "nan")), folder / own.get("file", "")) for own in sets)
 
     def frame(self, number: int = -1) -> Any:

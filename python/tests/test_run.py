@@ -208,3 +208,26 @@ def test_tables_are_dicts_of_arrays_without_pandas(folder, monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
     history = folder.monitors["crest"]
     assert isinstance(history, dict) and all(isinstance(own, np.ndarray) for own in history.values())
+
+
+def test_a_motion_has_velocity_energy_and_times(tmp_path):
+    """GOAL: what moves in time is read by name. ORACLE: ½ Σ m v² of the arrays is the kinetic energy of the table."""
+    case = igimp.new("column_collapse").with_values({"grid.cell": "2 cm", "stages.collapse.duration": "0.1 s"})
+    short = case.with_values({"stages.collapse.steps": 5, "output.paraview": {"every": 1}})
+    results = short.run(out=tmp_path / "results", progress=False)
+    body, energy = results.body, results.energy
+    assert body.velocity.shape == body.acceleration.shape == body.x.shape
+    kinetic = 0.5 * (body.mass * body.speed**2).sum()
+    last = np.asarray(energy["kinetic_[J/m]"])[-1]
+    assert last > 0 and abs(kinetic - last) < 1e-8 * last
+    times = [seconds for seconds, _ in results.motion("collapse")]
+    assert np.allclose(times, [0, 0.02, 0.04, 0.06, 0.08, 0.1])
+    assert all(file.exists() for _, file in results.motion())
+    with pytest.raises(igimp.InputError):
+        results.motion("another")
+
+
+def test_a_body_at_rest_has_no_velocity(tmp_path):
+    results = igimp.new("column").run(out=tmp_path / "results", progress=False)
+    assert not results.body.velocity.any() and results.energy is None
+    assert not any(name.startswith("v_") for name in results.body.to_frame().columns)

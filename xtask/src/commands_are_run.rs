@@ -32,10 +32,11 @@ const fn printed(
 const CI: &str = ".ci/run";
 const WEEKLY: &str = ".github/workflows/ci.yml";
 const REVIEW: &str = "validation/tests/review.rs";
+const FILM: &str = "crates/igimp/tests/film.rs";
 const CASES: &str = "benchmarks/tests/cases.rs";
 
 #[rustfmt::skip]
-const PRINTED: [Printed; 39] = [
+const PRINTED: [Printed; 40] = [
     printed("cargo fmt --all --check", CI, "phase cargo fmt --all --check", ""),
     printed("cargo clippy --workspace --all-targets -- -D warnings", CI, "phase cargo clippy --workspace --all-targets -- -D warnings", ""),
     printed("cargo test --workspace", CI, "phase cargo test --workspace", ""),
@@ -47,6 +48,7 @@ const PRINTED: [Printed; 39] = [
     printed("cargo xtask book --open", CI, "phase cargo xtask book", "no browser"),
     printed("cargo xtask tidy", CI, "phase cargo xtask tidy", ""),
     printed("cargo xtask python", CI, "phase cargo xtask python", ""),
+    printed("cargo xtask film", FILM, "\"film\", \"results\", \"--pace\"", "the command that it draws with, on a coarse grid"),
     printed("cargo xtask fuzz", WEEKLY, "- run: cargo xtask fuzz", "once a week; on every change fuzz/tests/bounded.rs, with some ten thousand executions"),
     printed("cargo xtask campaign", CI, "phase cargo xtask campaign bodies --scenes 2", "two scenes for all parts"),
     printed("cargo xtask validate", WEEKLY, "- run: cargo xtask validate", "once a week; on every change with --quick"),

@@ -9,6 +9,7 @@ mod commands_are_run;
 #[cfg(test)]
 mod commands_on_pages;
 mod failure;
+mod film;
 mod fuzz;
 mod mdbook;
 mod metadata;
@@ -84,6 +85,8 @@ enum Task {
         #[arg(long)]
         open: bool,
     },
+    /// Draw the film of the pages anew: it runs a case, which takes seconds, and writes into `docs/`.
+    Film,
     /// Build the pages of the crates and set their mathematics.
     Doc {
         /// Show them in the browser.
@@ -100,6 +103,7 @@ fn main() -> ExitCode {
         Task::Bench(arguments) => bench::run(&arguments),
         Task::Python(arguments) => python::run(&arguments),
         Task::Tidy => tidy::run(),
+        Task::Film => film::run(),
         Task::Book { open } => book::book(open),
         Task::Doc { open } => book::crates(open),
     };

@@ -7,7 +7,10 @@ mod resuming;
 
 use igimp_cases::run::{Start, in_memory};
 use igimp_input::{CaseFile, shipped};
+use igimp_model::Field;
+use igimp_results::paraview::{pvd, read_back};
 use igimp_results::summary::{EnergySummary, StageOutcome};
+use igimp_results::vtu::read::Frame;
 use resuming::{assert_done, assert_equal, everything, folder, run_into};
 
 /// The shipped collapse with changes.
@@ -74,6 +77,75 @@ fn a_resumed_motion_leaves_the_same_files() {
         assert_done(&run_into((&file, file.case()), &resumed, Start::Resume, None).summary);
         assert_equal(&everything(&whole), &everything(&resumed), &scheme);
     }
+}
+
+/// GOAL: frames of a motion carry its velocity and its times in seconds, from the first moment on, stage by stage.
+/// ORACLE: a block that falls freely from rest has v = −g t and a = −g.
+#[test]
+fn frames_of_a_motion_have_velocities_and_times() {
+    let text = r#"
+        igimp = 1
+        [case]
+        title = "a block that falls"
+        gravity = "10 m/s2"
+        [grid]
+        cell = "1 m"
+        domain = { x = ["0 m", "4 m"], y = ["0 m", "12 m"] }
+        [materials.clay]
+        model = "elastic"
+        unit_weight = "20 kN/m3"
+        young = "10 MPa"
+        poisson = 0.3
+        [[bodies]]
+        name = "block"
+        material = "clay"
+        points_per_cell = 4
+        polygon = [["1 m", "8 m"], ["3 m", "8 m"], ["3 m", "10 m"], ["1 m", "10 m"]]
+        [[stages]]
+        name = "fall"
+        type = "dynamic"
+        duration = "0.3 s"
+        scheme = "newmark"
+        steps = 3
+        [[stages]]
+        name = "fall on"
+        type = "dynamic"
+        duration = "0.2 s"
+        scheme = "newmark"
+        steps = 2
+    "#;
+    let file = CaseFile::parse("fall.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let root = folder("dynamic-frames");
+    assert_done(&run_into((&file, file.case()), &root, Start::Afresh, None).summary);
+    let paraview = root.join("paraview");
+    let expected: [&[f64]; 2] = [&[0.0, 0.1, 0.2, 0.3], &[0.3, 0.4, 0.5]];
+    for (stage, expected) in expected.into_iter().enumerate() {
+        let frames = pvd::motion(&paraview, stage);
+        assert_eq!(frames.len(), expected.len(), "{frames:?}");
+        for (frame, time) in std::iter::zip(&frames, expected) {
+            assert!((frame.time - time).abs() < 1e-12, "{frame:?}");
+            let text = std::fs::read_to_string(paraview.join(&frame.file)).unwrap();
+            let read = Frame::of(&text).unwrap();
+            let holds = |field, value: f64| {
+                let values = read_back::values(&read, field).unwrap();
+                assert_eq!(values.len(), 16);
+                for own in values {
+                    assert!((own - value).abs() < 1e-8, "{field:?} at {time}: {own}");
+                }
+            };
+            holds(Field::VelocityY, -10.0 * time);
+            holds(Field::VelocityX, 0.0);
+            holds(Field::Speed, 10.0 * time);
+            if *time > 0.0 {
+                holds(Field::AccelerationY, -10.0);
+            }
+        }
+    }
+    // The second stage begins with the frame that the first one ended with.
+    let ends = [0, 1].map(|stage| pvd::motion(&paraview, stage));
+    assert_eq!(ends[0][3].file, ends[1][0].file);
+    let energy = std::fs::read_to_string(root.join("figures/energy-2-fall-on.svg")).unwrap();
+    assert!(energy.contains("kinetic") && energy.contains("loads"));
 }
 
 /// GOAL: threads change no bit.

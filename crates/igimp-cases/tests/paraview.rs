@@ -205,6 +205,7 @@ fn vtk_pyvista_and_meshio_read_what_is_written() {
         utilisation: Some(&utilisation),
         def_grad: true,
         pore_water: true,
+        motion: true,
     };
     let none = Extras::default();
     let mut of_plane = Collection::create(&folder, PARTICLES).unwrap();

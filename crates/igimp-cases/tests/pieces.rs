@@ -133,3 +133,21 @@ fn one_motion_leaves_no_gaps() {
     assert!((area(&pieces.now(&particles).0) - whole).abs() < 1e-12 * whole);
     assert!((area(&pieces.edges(&particles)) - whole).abs() < 1e-12 * whole);
 }
+
+/// GOAL: a side that round-off puts a hair beyond a line of the grid has no slivers: the edge of the body is one closed line.
+/// ORACLE: the square, ten cells of 1 cm wide; 10 · 0.01 is not 0.1 in binary.
+#[test]
+fn round_off_makes_no_slivers() {
+    let shipped = igimp_input::shipped::find("column_collapse").unwrap();
+    let file = CaseFile::parse("column_collapse.toml", shipped.text, &[]).unwrap();
+    let case = file.case().clone();
+    let side = 0.1;
+    let particles = Model::new(&case).unwrap().1.body.particles;
+    let pieces = Pieces::of(&case).unwrap();
+    let (polygons, _) = pieces.now(&particles);
+    assert!(polygons.iter().all(|polygon| polygon.len() > 2));
+    let edges = pieces.edges(&particles);
+    assert_eq!(edges.len(), 1);
+    assert_eq!(edges[0].first(), edges[0].last());
+    assert!((area(&edges) - side * side).abs() < 1e-9 * side * side);
+}

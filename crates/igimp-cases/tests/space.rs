@@ -113,7 +113,7 @@ fn results(name: &str, width: f64, frames: usize) -> (PathBuf, Particles<3>) {
     };
     let text = serde_json::to_string(&summary).unwrap();
     std::fs::write(folder.join("summary.json"), text).unwrap();
-    write_report(&folder).unwrap();
+    write_report(&folder, None).unwrap();
     (folder, last)
 }
 

@@ -1,5 +1,6 @@
 //! Curves: results as lines or markers, bounds as shaded bands, reference values as straight lines.
 
+mod ends;
 pub(crate) mod frame;
 pub(crate) mod sheet;
 
@@ -44,6 +45,16 @@ impl SeriesStyle {
     pub(super) fn has_markers(self) -> bool {
         !matches!(self, Self::Line(_))
     }
+}
+
+/// Where the labels of series stand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SeriesLabels {
+    /// In a legend.
+    #[default]
+    Legend,
+    /// To the right of the plot, each at the end of its series and in its colour.
+    AtCurves,
 }
 
 /// One curve or cloud of points.
@@ -179,6 +190,8 @@ pub struct CurvePlot {
     pub lines: Vec<ReferenceLine>,
     /// Curves, drawn in this order.
     pub series: Vec<Series>,
+    /// Where their labels stand; those of bands are in a legend always.
+    pub labels: SeriesLabels,
 }
 
 impl CurvePlot {

@@ -207,6 +207,14 @@ impl Drawing {
         raster::png(self)
     }
 
+    /// The pixels of the picture, so many of them wide; its height follows.
+    ///
+    /// # Errors
+    /// If the picture is too large for the memory.
+    pub fn to_rgb(&self, width: u32) -> Result<Rgb, FigureError> {
+        raster::rgb(self, width)
+    }
+
     /// Writes `<path>.svg` and `<path>.png`; the folder must exist.
     ///
     /// # Errors
@@ -231,6 +239,17 @@ fn write_new(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
         _ => {}
     }
     std::io::Write::write_all(&mut std::fs::File::create_new(path)?, bytes)
+}
+
+/// A picture as pixels.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rgb {
+    /// Width \[pixel\].
+    pub width: u32,
+    /// Height \[pixel\].
+    pub height: u32,
+    /// Red, green and blue of the pixels, row by row from the top.
+    pub pixels: Vec<[u8; 3]>,
 }
 
 /// Where the image of a surface lies in a drawing, and its pixels.

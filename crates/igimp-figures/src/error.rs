@@ -64,6 +64,15 @@ pub enum FigureError {
     /// The PNG encoder failed.
     #[error("the PNG could not be encoded")]
     Encode(#[from] png::EncodingError),
+    /// A film has no frames, or frames of different sizes.
+    #[error("a film of {frames} frames whose sizes differ, or without frames")]
+    MixedFilm {
+        /// Number of frames.
+        frames: usize,
+    },
+    /// The film encoder failed.
+    #[error("the film could not be encoded")]
+    EncodeFilm(#[from] gif::EncodingError),
     /// A file could not be written.
     #[error("cannot write {}", path.display())]
     Write {

@@ -5,6 +5,7 @@
 //! | [`CurvePlot`] | stress along a section, load-settlement, convergence, strength reduction |
 //! | [`FieldPlot`] | a field on the particle domains of one state |
 //! | [`SpacePlot`] | the surface of a body in space |
+//! | [`film()`] | pictures one after another, as an animated GIF |
 //! | [`FieldPanel`] | the same field for several variants or steps, with one colour bar |
 //!
 //! Each is a plain value with public fields: fill it in and call `write`, or `draw` to get a
@@ -26,6 +27,7 @@ mod curve;
 mod drawing;
 mod error;
 mod field;
+mod film;
 mod frame;
 mod geometry;
 mod legend;
@@ -36,8 +38,11 @@ mod tests;
 
 pub use axis::Scale;
 pub use colour::{Colour, ColourMap};
-pub use curve::{Band, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle};
-pub use drawing::{Drawing, PIXELS_PER_POINT};
+pub use curve::{
+    Band, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesLabels, SeriesStyle,
+};
+pub use drawing::{Drawing, PIXELS_PER_POINT, Rgb};
 pub use error::FigureError;
 pub use field::{FieldPanel, FieldPlot, KeyEntry, KeySample, Outline, OutlineStyle, Polygon};
+pub use film::film;
 pub use space::{Face, SpacePlot, View};

@@ -117,6 +117,12 @@ impl<const D: usize> Case<D> {
             ..self.clone()
         }
     }
+
+    /// Whether a stage moves soil in time, with inertia: only then is there velocity.
+    pub fn has_motion(&self) -> bool {
+        let moves = |stage: &Stage| matches!(stage.kind, StageKind::Dynamic(_));
+        self.stages.iter().any(moves)
+    }
 }
 
 /// A case in the dimension that its file states.
@@ -362,6 +368,8 @@ pub enum Every {
     Never,
     /// At the end of every stage.
     Stage,
+    /// Some tens of times in every stage, and at its end.
+    Film,
     /// Every so many steps, and at the end of every stage.
     Steps(usize),
 }

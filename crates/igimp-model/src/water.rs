@@ -26,6 +26,19 @@ impl<const D: usize> Case<D> {
         there
     }
 
+    /// The condition of the water at the end of a stage, by index; none without water.
+    pub fn water_after(&self, stage: usize) -> Option<usize> {
+        let stage = &self.stages[stage];
+        let before = match stage.start_from {
+            Some(from) => self.water_after(from),
+            None => (!self.water.is_empty()).then_some(0),
+        };
+        match &stage.kind {
+            StageKind::Construction(own) => own.water.or(before),
+            _ => before,
+        }
+    }
+
     /// Whether there is water in pores, given or held by undrained soil: only then do total and effective stress differ.
     pub fn has_pore_water(&self) -> bool {
         let holds = |drainage: Drainage| matches!(drainage, Drainage::Undrained { .. });

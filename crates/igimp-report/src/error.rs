@@ -17,6 +17,12 @@ pub enum ReportError {
     /// A body cannot be drawn in pieces.
     #[error(transparent)]
     Seed(#[from] SeedError),
+    /// A film cannot be made of the frames of a folder.
+    #[error("there is no film: {why}")]
+    NoFilm {
+        /// Why not.
+        why: String,
+    },
     /// A file cannot be written or read.
     #[error(transparent)]
     Results(#[from] ResultsError),

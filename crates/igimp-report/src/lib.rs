@@ -2,6 +2,7 @@
 
 mod error;
 pub mod failure_mechanism;
+pub mod film;
 pub mod patches;
 pub mod pictures;
 pub mod report;

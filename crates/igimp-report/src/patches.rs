@@ -56,15 +56,39 @@ impl Corner {
     }
 }
 
+/// What pieces need to know of particles: of a body, or of a frame that was read back.
+#[derive(Clone, Copy, Debug)]
+pub struct Carriers<'a> {
+    /// Centres \[m\].
+    pub x: &'a [[f64; 2]],
+    /// Deformation gradients \[-\].
+    pub def_grad: &'a [[[f64; 2]; 2]],
+    /// Half-lengths as seeded \[m\].
+    pub half_length0: &'a [[f64; 2]],
+    /// The numbers that particles keep.
+    pub number: &'a [usize],
+}
+
+impl<'a> From<&'a Particles<2>> for Carriers<'a> {
+    fn from(particles: &'a Particles<2>) -> Self {
+        Self {
+            x: &particles.x,
+            def_grad: &particles.def_grad,
+            half_length0: &particles.half_length0,
+            number: &particles.number,
+        }
+    }
+}
+
 /// The particles that are there, found by their numbers: bodies are placed and taken away.
 struct There<'a> {
-    particles: &'a Particles<2>,
+    particles: Carriers<'a>,
     /// Place by number.
     places: Vec<Option<usize>>,
 }
 
 impl<'a> There<'a> {
-    fn new(particles: &'a Particles<2>) -> Self {
+    fn new(particles: Carriers<'a>) -> Self {
         let count = particles.number.iter().max().map_or(0, |last| last + 1);
         let mut places = vec![None; count];
         for (place, &number) in particles.number.iter().enumerate() {
@@ -94,6 +118,8 @@ pub struct Pieces {
     edges: Vec<Vec<Corner>>,
     /// By body: the numbers of its particles.
     bodies: Vec<Range<usize>>,
+    /// By number of a particle: its half-lengths as seeded \[m\].
+    half_lengths: Vec<[f64; 2]>,
 }
 
 impl Pieces {
@@ -112,6 +138,7 @@ impl Pieces {
             places: 0,
             edges: Vec::new(),
             bodies: Vec::new(),
+            half_lengths: Vec::new(),
         };
         let mut first = 0;
         for body in &case.bodies {
@@ -133,20 +160,33 @@ impl Pieces {
                         });
                     }
                 }
-                all.particles.push(first + particle);
-                all.corners.push(corners);
+                if corners.len() > 1 && corners[0].place == corners[corners.len() - 1].place {
+                    corners.pop();
+                }
+                // A sliver of the width of round-off has no sides of its own.
+                if corners.len() > 2 {
+                    all.particles.push(first + particle);
+                    all.corners.push(corners);
+                }
             }
             all.edges.extend(outline(&all.corners[own..]));
             all.bodies.push(first..first + seeds.len());
+            all.half_lengths
+                .extend(seeds.iter().map(|seed| seed.half_length));
             first += seeds.len();
         }
         all.places = numbers.len();
         Ok(all)
     }
 
+    /// Half-lengths as seeded of the particle of a number \[m\]; none for numbers that the case has not.
+    pub fn half_length(&self, number: usize) -> Option<[f64; 2]> {
+        self.half_lengths.get(number).copied()
+    }
+
     /// The pieces of the bodies that are there as the particles carry them, each with the place of its particle.
-    pub fn now(&self, particles: &Particles<2>) -> (Vec<Polygon>, Vec<usize>) {
-        let there = There::new(particles);
+    pub fn now<'a>(&self, particles: impl Into<Carriers<'a>>) -> (Vec<Polygon>, Vec<usize>) {
+        let there = There::new(particles.into());
         let met = self.met(&there);
         std::iter::zip(&self.corners, &self.particles)
             .filter_map(|(corners, &number)| {
@@ -157,16 +197,16 @@ impl Pieces {
     }
 
     /// The edges of the bodies that are there as the particles carry them, closed lines.
-    pub fn edges(&self, particles: &Particles<2>) -> Vec<Polygon> {
-        let there = There::new(particles);
+    pub fn edges<'a>(&self, particles: impl Into<Carriers<'a>>) -> Vec<Polygon> {
+        let there = There::new(particles.into());
         let met = self.met(&there);
         let edges = self.edges.iter().filter(|edge| there.has(edge));
         edges.map(|edge| moved(edge, &met, &there)).collect()
     }
 
     /// By body of the case: whether it is there.
-    pub fn there(&self, particles: &Particles<2>) -> Vec<bool> {
-        let there = There::new(particles);
+    pub fn there<'a>(&self, particles: impl Into<Carriers<'a>>) -> Vec<bool> {
+        let there = There::new(particles.into());
         let is_there = |own: &Range<usize>| {
             let mut numbers = own.clone();
             numbers.any(|number| there.place_of(number).is_some())
@@ -192,7 +232,7 @@ impl Pieces {
             let reach = PARTED
                 * there
                     .place_of(corner.particle)
-                    .map_or(0.0, |place| size(there.particles, place));
+                    .map_or(0.0, |place| size(&there.particles, place));
             met[corner.place] = met[corner.place]
                 .filter(|middle| (middle[0] - at[0]).hypot(middle[1] - at[1]) <= reach);
         }
@@ -201,7 +241,7 @@ impl Pieces {
 }
 
 /// The sum of the two sides of a particle as F makes them, and no less than as they were.
-fn size(particles: &Particles<2>, particle: usize) -> f64 {
+fn size(particles: &Carriers<'_>, particle: usize) -> f64 {
     let f = particles.def_grad[particle];
     let sides = particles.half_length0[particle].map(|half| 2.0 * half);
     let side = |axis: usize| sides[axis] * f[0][axis].hypot(f[1][axis]).clamp(1.0, MOST_STRETCHED);

@@ -16,6 +16,7 @@ use serde::Serialize;
 
 use super::viewer::{Held, held};
 use crate::error::ReportError;
+use crate::patches::Pieces;
 
 /// The page; values are escaped as they are filled in.
 const TEMPLATE: &str = include_str!("report.html");
@@ -23,17 +24,18 @@ const TEMPLATE: &str = include_str!("report.html");
 /// Makes `report.html` of what lies in a results folder, and returns its path.
 ///
 /// `summary.json` must be there; pictures, tables, `convergence.csv` and the two texts of the case
-/// take part as far as they exist. Pictures are embedded, tables are linked by relative paths.
+/// take part as far as they exist. Pictures are embedded, tables are linked by relative paths. Frames of the plane show the
+/// pieces of the bodies where these are given, else the domains of the particles.
 ///
 /// # Errors
 /// [`ResultsError::File`] if the summary cannot be read or the report cannot be written.
-pub fn write_report(folder: &Path) -> Result<PathBuf, ReportError> {
+pub fn write_report(folder: &Path, pieces: Option<&Pieces>) -> Result<PathBuf, ReportError> {
     let path = folder.join("summary.json");
     let summary = std::fs::read(&path)
         .and_then(|bytes| Ok(serde_json::from_slice::<Summary>(&bytes)?))
         .map_err(|source| ResultsError::File { path, source })?;
     let path = folder.join("report.html");
-    let page = render(folder, &summary).map_err(|source| ResultsError::File {
+    let page = render(folder, &summary, pieces).map_err(|source| ResultsError::File {
         path: path.clone(),
         source: std::io::Error::other(source),
     })?;
@@ -44,7 +46,11 @@ pub fn write_report(folder: &Path) -> Result<PathBuf, ReportError> {
     Ok(path)
 }
 
-fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> {
+fn render(
+    folder: &Path,
+    summary: &Summary,
+    pieces: Option<&Pieces>,
+) -> Result<String, minijinja::Error> {
     let pictures = files::pictures(folder, summary);
     let tables = files::tables(folder);
     let inputs = files::inputs(folder);
@@ -59,7 +65,7 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
     let (convergence, pictures): (Vec<_>, Vec<_>) = pictures
         .into_iter()
         .partition(|group| group.id == "convergence");
-    let held = held(folder);
+    let held = held(folder, pieces);
     let reinforcement = rows::reinforcement(summary);
     let entries = contents(
         [

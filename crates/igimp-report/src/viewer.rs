@@ -11,9 +11,12 @@ use std::path::Path;
 
 use igimp_figures::ColourMap;
 use igimp_results::paraview::pvd;
+use igimp_text::short;
 pub use packed::{Keep, packed};
 use rayon::prelude::*;
 use serde::Serialize;
+
+use crate::patches::Pieces;
 
 /// The section `soil` of a page: choices, canvas, slider.
 pub const SECTION: &str = include_str!("viewer/soil.html");
@@ -22,12 +25,16 @@ pub const SECTION: &str = include_str!("viewer/soil.html");
 pub const STYLE: &str = include_str!("viewer/viewer.css");
 
 /// The script in parts.
-const PARTS: [&str; 7] = [
+const PARTS: [&str; 11] = [
     include_str!("viewer/frame.js"),
     include_str!("viewer/camera.js"),
+    include_str!("viewer/slant.js"),
     include_str!("viewer/gl.js"),
     include_str!("viewer/axes.js"),
+    include_str!("viewer/overlay.js"),
     include_str!("viewer/scene.js"),
+    include_str!("viewer/section.js"),
+    include_str!("viewer/saving.js"),
     include_str!("viewer/pointing.js"),
     include_str!("viewer/viewer.js"),
 ];
@@ -63,13 +70,14 @@ pub fn script() -> String {
     text
 }
 
-/// A frame of a results folder as pages take it, by its file; none where it cannot be read.
-pub fn frame(file: &Path, keep: Keep) -> Option<String> {
+/// A frame of a results folder as pages take it, by its file, with the pieces of the bodies of the plane where these are given;
+/// none where it cannot be read.
+pub fn frame(file: &Path, keep: Keep, pieces: Option<&Pieces>) -> Option<String> {
     let about = fs::symlink_metadata(file).ok()?;
     if !about.is_file() || about.len() > LARGEST_FILE {
         return None;
     }
-    packed(&fs::read_to_string(file).ok()?, keep)
+    packed(&fs::read_to_string(file).ok()?, keep, pieces)
 }
 
 /// The frames of a results folder, as a report holds them.
@@ -91,27 +99,37 @@ pub(super) struct Held {
 struct HeldFrame {
     /// Its name on the page.
     label: String,
+    /// Its time \[s\], where the soil moves in time.
+    seconds: Option<f64>,
     data: String,
     /// The rigid bodies of that frame, where the case has some.
     bodies: Option<String>,
+    /// The reinforcement of that frame, where the case has some.
+    members: Option<String>,
 }
 
 /// The last frame of particles, and as many before it as there is room for; none if it cannot be read.
-pub(super) fn held(folder: &Path) -> Option<Held> {
+pub(super) fn held(folder: &Path, pieces: Option<&Pieces>) -> Option<Held> {
     let folder = folder.join("paraview");
     let particles = pvd::frames(&folder, pvd::PARTICLES)?;
-    let bodies = pvd::frames(&folder, pvd::RIGID).unwrap_or_default();
+    let beside = |stem| pvd::frames(&folder, stem).unwrap_or_default();
+    let (bodies, members) = (beside(pvd::RIGID), beside(pvd::REINFORCEMENT));
+    let seconds = pvd::seconds(&folder);
     let all = particles.len();
     let of = |k: usize, keep| {
-        let body = bodies.get(k);
+        let packed = |own: Option<&pvd::Frame>| frame(&folder.join(&own?.file), keep, None);
+        let own = &particles[k];
+        let seconds = seconds.get(&own.file).copied();
+        let when = match seconds {
+            Some(seconds) => format!("t = {} s, stage “{}”", short(seconds), own.stage),
+            None => format!("after {} steps and trials", own.time),
+        };
         Some(HeldFrame {
-            label: format!(
-                "Frame {} of {all}, after {} steps and trials",
-                k + 1,
-                particles[k].time
-            ),
-            data: frame(&folder.join(&particles[k].file), keep)?,
-            bodies: body.and_then(|body| frame(&folder.join(&body.file), keep)),
+            label: format!("Frame {} of {all}, {when}", k + 1),
+            seconds,
+            data: frame(&folder.join(&own.file), keep, pieces)?,
+            bodies: packed(bodies.get(k)),
+            members: packed(members.get(k)),
         })
     };
     let last = all.checked_sub(1)?;

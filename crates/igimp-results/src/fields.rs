@@ -38,6 +38,8 @@ pub fn value<const D: usize>(
     let effective = &particles.sigma[particle];
     let total = || particles.total_stress(particle);
     let displacement = &particles.displacement[particle];
+    let velocity = &particles.velocity[particle];
+    let acceleration = &particles.acceleration[particle];
     // Not `-sigma`: zero stays without a sign.
     match field {
         Field::Displacement => length(displacement),
@@ -71,6 +73,14 @@ pub fn value<const D: usize>(
         }
         Field::Young if particles.law[particle] < laws.len() => particles.young(particle, laws),
         Field::Young => f64::NAN,
+        Field::Speed => length(velocity),
+        Field::VelocityX => velocity[0],
+        Field::VelocityY => velocity[1],
+        Field::VelocityZ => component(velocity, 2),
+        Field::Acceleration => length(acceleration),
+        Field::AccelerationX => acceleration[0],
+        Field::AccelerationY => acceleration[1],
+        Field::AccelerationZ => component(acceleration, 2),
     }
 }
 
@@ -168,7 +178,8 @@ pub struct Scale {
 
 impl Scale {
     /// The unit that keeps the largest of the values (not counting those that are not finite)
-    /// within about 1 and 1000: Pa, kPa or MPa for stresses, mm or m for displacements; degrees for angles.
+    /// within about 1 and 1000: Pa, kPa or MPa for stresses, mm or m for displacements, mm/s or m/s for velocities; degrees
+    /// for angles.
     pub fn of(dimension: Dimension, values: impl IntoIterator<Item = f64>) -> Self {
         let largest = values
             .into_iter()
@@ -182,6 +193,9 @@ impl Scale {
             Dimension::Stress => (1.0, "Pa"),
             Dimension::Strain | Dimension::Share => (1.0, "−"),
             Dimension::Angle => (1.0_f64.to_radians(), "°"),
+            Dimension::Velocity if largest > 0.0 && largest < 0.1 => (1e-3, "mm/s"),
+            Dimension::Velocity => (1.0, "m/s"),
+            Dimension::Acceleration => (1.0, "m/s²"),
         };
         Self { divide_by, unit }
     }
@@ -275,6 +289,8 @@ mod tests {
         fields.sigma[0][0][1] = 15e3;
         fields.sigma[0][1][0] = 15e3;
         fields.displacement[0] = [3.0, -4.0];
+        fields.velocity[0] = [-5.0, 12.0];
+        fields.acceleration[0] = [8.0, -15.0];
         fields.eps_p_eq[0] = 0.2;
         Particles::from_fields(fields).unwrap()
     }
@@ -303,6 +319,12 @@ mod tests {
             (Field::Strength, 40e3),
             (Field::Friction, 0.0),
             (Field::Young, 1e7),
+            (Field::Speed, 13.0),
+            (Field::VelocityX, -5.0),
+            (Field::VelocityY, 12.0),
+            (Field::Acceleration, 17.0),
+            (Field::AccelerationX, 8.0),
+            (Field::AccelerationY, -15.0),
         ];
         for (field, expected) in cases {
             let found = first(field);
@@ -407,6 +429,8 @@ mod tests {
         assert_eq!(unit(Dimension::Displacement, 0.02), "mm");
         assert_eq!(unit(Dimension::Displacement, 0.2), "m");
         assert_eq!(unit(Dimension::Displacement, 0.0), "m");
+        assert_eq!(unit(Dimension::Velocity, 0.02), "mm/s");
+        assert_eq!(unit(Dimension::Velocity, 2.0), "m/s");
         let scale = Scale::of(Dimension::Stress, [25e3]);
         assert_eq!(scale.apply(&[25e3]), [25.0]);
         assert_eq!(

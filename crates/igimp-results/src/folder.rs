@@ -8,7 +8,7 @@
 //! | `energy.csv` | where the work of stages that take time went |
 //! | `convergence.csv` | residuals of all steps, accepted or cut |
 //! | `curves/`, `monitors/`, `reinforcement/`, `rigid/`, `sections/`, `slip_lines/` | tables (`.csv`) |
-//! | `figures/` | pictures (`.svg`, `.png`) |
+//! | `figures/` | pictures (`.svg`, `.png`), films (`.gif`) |
 //! | `paraview/` | particles and grid (`.pvd`, `.vtu`) |
 //! | `checkpoint/`, `last-converged/` | states ([`checkpoint`]) |
 //! | `mesh-1/`, `mesh-2/`, … | of a study of the mesh error: a folder like this for each mesh |
@@ -357,7 +357,7 @@ fn clear(root: &Path) -> Result<(), ResultsError> {
         remove_files(&root.join(folder), |name| has_extension(name, &["csv"]))?;
     }
     remove_files(&root.join(FIGURES), |name| {
-        has_extension(name, &["svg", "png"])
+        has_extension(name, &["svg", "png", "gif"])
     })?;
     remove_files(&root.join(PARAVIEW), pvd::is_our_name)?;
     checkpoint::remove_all(&root.join(CHECKPOINT))?;

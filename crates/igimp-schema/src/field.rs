@@ -19,6 +19,10 @@ pub enum Dimension {
     Share,
     /// An angle \[rad\].
     Angle,
+    /// A velocity \[m/s\].
+    Velocity,
+    /// An acceleration \[m/s²\].
+    Acceleration,
 }
 
 impl Dimension {
@@ -29,6 +33,8 @@ impl Dimension {
             Self::Stress => "Pa",
             Self::Strain | Self::Share => "-",
             Self::Angle => "rad",
+            Self::Velocity => "m/s",
+            Self::Acceleration => "m/s2",
         }
     }
 }
@@ -167,6 +173,32 @@ fields! {
         => "angle of friction that soil carries [rad]";
     /// Young's modulus \[Pa\].
     Young "young" Stress Own "Young's modulus E" => "Young's modulus that soil carries [Pa]";
+    /// Speed: length of the velocity \[m/s\]; in motion.
+    Speed "speed" Velocity Own "speed |v|" => "length of the velocity, in motion [m/s]";
+    /// Velocity in x \[m/s\]; in motion.
+    VelocityX "velocity_x" Velocity Own
+        "horizontal velocity v_{x}" in_space "velocity v_{x}" => "velocity in x, in motion [m/s]";
+    /// Velocity in y \[m/s\]; in motion.
+    VelocityY "velocity_y" Velocity Own
+        "vertical velocity v_{y}" in_space "velocity v_{y}" => "velocity in y, in motion [m/s]";
+    /// Velocity in z \[m/s\]; in motion in space.
+    VelocityZ "velocity_z" Velocity Own
+        only_in_space "vertical velocity v_{z}" => "velocity in z, in motion in space [m/s]";
+    /// Length of the acceleration \[m/s²\]; in motion.
+    Acceleration "acceleration" Acceleration Own "acceleration |a|"
+        => "length of the acceleration, in motion [m/s2]";
+    /// Acceleration in x \[m/s²\]; in motion.
+    AccelerationX "acceleration_x" Acceleration Own
+        "horizontal acceleration a_{x}" in_space "acceleration a_{x}"
+        => "acceleration in x, in motion [m/s2]";
+    /// Acceleration in y \[m/s²\]; in motion.
+    AccelerationY "acceleration_y" Acceleration Own
+        "vertical acceleration a_{y}" in_space "acceleration a_{y}"
+        => "acceleration in y, in motion [m/s2]";
+    /// Acceleration in z \[m/s²\]; in motion in space.
+    AccelerationZ "acceleration_z" Acceleration Own
+        only_in_space "vertical acceleration a_{z}"
+        => "acceleration in z, in motion in space [m/s2]";
 }
 
 impl Read for Field {
@@ -204,6 +236,14 @@ impl Field {
     /// Whether there is such a number in so many dimensions.
     pub fn exists_in(self, dimensions: usize) -> bool {
         dimensions == 3 || self.declaration().titles.0.is_some()
+    }
+
+    /// Whether only bodies that move in time have it.
+    pub fn is_of_motion(self) -> bool {
+        matches!(
+            self.dimension(),
+            Dimension::Velocity | Dimension::Acceleration
+        )
     }
 
     /// Whether it is one of total stress that has a counterpart of effective stress.
@@ -250,6 +290,8 @@ mod tests {
         assert_eq!(Field::Utilisation.header(), "utilisation_[-]");
         assert_eq!(Field::Strength.header(), "strength_[Pa]");
         assert_eq!(Field::Friction.header(), "friction_[rad]");
+        assert_eq!(Field::Speed.header(), "speed_[m/s]");
+        assert_eq!(Field::AccelerationY.header(), "acceleration_y_[m/s2]");
     }
 
     #[test]
@@ -269,6 +311,16 @@ mod tests {
             .filter(|field| !field.exists_in(2))
             .map(|field| field.name())
             .collect();
-        assert_eq!(only, ["displacement_z", "z", "tau_yz", "tau_xz"]);
+        assert_eq!(
+            only,
+            [
+                "displacement_z",
+                "z",
+                "tau_yz",
+                "tau_xz",
+                "velocity_z",
+                "acceleration_z"
+            ]
+        );
     }
 }

@@ -34,6 +34,8 @@ pub(crate) enum Command {
     Report(Report),
     /// Look at a results folder in the browser.
     View(View),
+    /// Make a film of the frames of a results folder.
+    Film(FilmArguments),
     /// Run a parameter study.
     Sweep(SweepArguments),
     /// Gather the results of a parameter study in one table.
@@ -151,9 +153,33 @@ pub(crate) struct Report {
 pub(crate) struct View {
     /// Results folder; its run may still be going on.
     pub(crate) folder: PathBuf,
+    /// Results folder of another run, shown beside it: frames and fields are chosen for both.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) beside: Option<PathBuf>,
     /// Print the address, and open no browser.
     #[arg(long)]
     pub(crate) no_open: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FilmArguments {
+    /// Results folder of a run in plane strain.
+    pub(crate) folder: PathBuf,
+    /// Field that is shown; the speed of a motion, else the displacement, when not given.
+    #[arg(long, value_name = "FIELD")]
+    pub(crate) field: Option<String>,
+    /// Stage that is shown; the last motion, else the whole run, when not given.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) stage: Option<String>,
+    /// How fast a motion is shown: 1 as fast as it was, 0.1 ten times slower.
+    #[arg(long, value_name = "FACTOR", value_parser = a_pace)]
+    pub(crate) pace: Option<f64>,
+    /// Width in pixels.
+    #[arg(long, value_name = "N", default_value = "800", value_parser = clap::value_parser!(u32).range(200..=4000))]
+    pub(crate) width: u32,
+    /// File of the film, an animated GIF; figures/film-FIELD.gif in the folder when not given.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -229,6 +255,13 @@ fn at_least_one(text: &str) -> Result<usize, String> {
         Ok(0) => Err("must be at least 1".to_owned()),
         Ok(number) => Ok(number),
         Err(_) => Err("expected a whole number".to_owned()),
+    }
+}
+
+fn a_pace(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(pace) if (1e-6..=1e6).contains(&pace) => Ok(pace),
+        _ => Err("expected a number such as 1 or 0.1".to_owned()),
     }
 }
 

@@ -51,6 +51,7 @@ fn dispatch(command: &Command) -> Result<Exit, ProgramError> {
         Command::Run(arguments) => commands::run::run(arguments),
         Command::Report(arguments) => commands::report::report(arguments),
         Command::View(arguments) => commands::view::view(arguments),
+        Command::Film(arguments) => commands::film::film(arguments),
         Command::Sweep(arguments) => commands::sweep::sweep(arguments),
         Command::Collect(arguments) => commands::sweep::collect(arguments),
         Command::Validate(arguments) => commands::validate::validate(arguments),

@@ -69,6 +69,7 @@ fn help_is_as_agreed() {
         "run",
         "report",
         "view",
+        "film",
         "sweep",
         "collect",
         "validate",

@@ -7,7 +7,7 @@ use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Elastic soil under its own weight, a frame a step.
 const BLOCK: &str = "igimp = 1\n[case]\ntitle = \"a <b>block</b>\"\ngravity = \"9.81 m/s2\"\n\
@@ -18,7 +18,7 @@ const BLOCK: &str = "igimp = 1\n[case]\ntitle = \"a <b>block</b>\"\ngravity = \"
     polygon = [[\"0 m\", \"0 m\"], [\"2 m\", \"0 m\"], [\"2 m\", \"2 m\"], [\"0 m\", \"2 m\"]]\n\
     [boundaries]\nleft = \"roller\"\nright = \"roller\"\nbottom = \"fixed\"\n\
     [[stages]]\nname = \"own weight\"\ntype = \"gravity\"\nsteps = 3\n\
-    [[monitors]]\nname = \"top ü\"\npoint = [\"1 m\", \"2 m\"]\nrecord = [\"displacement\", \"sigma_yy\"]\n\
+    [[monitors]]\nname = \"top ü\"\npoint = [\"0.875 m\", \"1.875 m\"]\nrecord = [\"displacement\", \"sigma_yy\"]\n\
     [[curves]]\nname = \"settlement\"\nx = { of = \"step\", label = \"step [-]\" }\n\
     y = { of = \"top ü.displacement\", label = \"u [m]\" }\n\
     [output]\nfolder = \"results\"\nparaview = { every = 1 }\nfigures = []\n";
@@ -66,8 +66,13 @@ struct View {
 
 impl View {
     fn of(folder: &Folder, results: &str) -> Self {
+        Self::with(folder, &[results])
+    }
+
+    fn with(folder: &Folder, words: &[&str]) -> Self {
         let mut program = Command::new(env!("CARGO_BIN_EXE_igimp"))
-            .args(["view", results, "--no-open"])
+            .args(["view", "--no-open"])
+            .args(words)
             .current_dir(&folder.0)
             .stdout(Stdio::piped())
             .spawn()
@@ -292,11 +297,13 @@ fn foreign_hosts_paths_and_methods_get_nothing() {
     );
     let response = view.send(long.as_bytes());
     assert!(!response.contains("200 OK"));
-    // Slow clients, more than are served at a time, are cut off and leave room for others.
+    // Clients that never ask are cut off after some seconds, and keep nobody out meanwhile.
+    let clock = Instant::now();
     let idle: Vec<TcpStream> = (0..12)
         .map(|_| TcpStream::connect(("127.0.0.1", view.port)).unwrap())
         .collect();
     assert_eq!(view.get("").0, 200);
+    assert!(clock.elapsed() < Duration::from_secs(4));
     drop(idle);
     assert_eq!(view.interrupt(), Some(0));
 }
@@ -400,7 +407,7 @@ fn the_page_works_in_a_browser() {
         line.split(',').nth(column).unwrap().parse().unwrap()
     };
     let view = View::of(&folder, "results");
-    // The monitor follows the particle next to (1, 2); compression is positive in tables alone.
+    // The monitor stands in the middle of a particle; compression is positive in tables alone.
     let fields = [
         ("displacement%20[m],%20length", 3, 1.0),
         ("sigma%20[Pa],%20tension%20%2B,%20yy", 4, -1.0),
@@ -528,7 +535,7 @@ fn a_report_holds_its_frames() {
         let page = dumped(browser, &folder, &address, 15);
         assert!(page.contains("<p id=\"bar-label\" class=\"soft\">displacement length [mm]</p>"));
         let (_, ticks) = page.split_once("id=\"ticks\">").unwrap();
-        assert!(ticks.starts_with("<span>"), "the scale was drawn");
+        assert!(ticks.starts_with("<span"), "the scale was drawn");
     }
     // A name that would end the script is a text within it.
     let name = "Name=\"mass [kg/m]\"";
@@ -612,6 +619,13 @@ fn a_run_in_space_is_shown() {
         "cut=1,0.55&view=front&hover=0.5,0.5",
     );
     assert_eq!(attribute(&page, "canvas", "data-faces"), "384");
+    // A plane that dips by 45° through the middle of the cube crosses it in a rectangle of 2 m by 2√2 m.
+    let slanted = looked_at(browser, &folder, &view, "cut=3,0.5,1,0,45&view=front");
+    if attribute(&slanted, "canvas", "data-by") == "webgl2" {
+        let area = attribute(&slanted, "canvas", "data-cut-area");
+        let area: f64 = area.parse().unwrap();
+        assert!((area - 4.0 * 2.0_f64.sqrt()).abs() < 0.01 * area, "{area}");
+    }
     let value: f64 = attribute(&page, "found", "data-value").parse().unwrap();
     let (_, text) = page.split_once("m: displacement length ").unwrap();
     let z: f64 = page
@@ -628,4 +642,187 @@ fn a_run_in_space_is_shown() {
         (value - settled).abs() < 0.02 * settled,
         "{value} for {settled}: {text:.20}"
     );
+}
+
+/// Elastic soil that falls freely under 10 m/s², by Newmark's method, which is exact there; a frame every 0.1 s.
+const FALL: &str = "igimp = 1\n[case]\ntitle = \"a fall\"\ngravity = \"10 m/s2\"\n\
+    [grid]\ncell = \"1 m\"\ndomain = { x = [\"0 m\", \"4 m\"], y = [\"0 m\", \"8 m\"] }\n\
+    [materials.clay]\nmodel = \"elastic\"\nunit_weight = \"20 kN/m3\"\nyoung = \"10 MPa\"\npoisson = 0.3\n\
+    [[bodies]]\nname = \"block\"\nmaterial = \"clay\"\npoints_per_cell = 4\n\
+    polygon = [[\"1 m\", \"4 m\"], [\"3 m\", \"4 m\"], [\"3 m\", \"6 m\"], [\"1 m\", \"6 m\"]]\n\
+    [[stages]]\nname = \"fall\"\ntype = \"dynamic\"\nduration = \"0.4 s\"\nscheme = \"newmark\"\nsteps = 4\n\
+    [output]\nfolder = \"results\"\nfigures = [\"speed\"]\n";
+
+/// A folder with the results of a case of its own.
+fn results_of(name: &str, case: &str, more: &[&str]) -> Folder {
+    let folder = Folder::new(name);
+    std::fs::write(folder.0.join("case.toml"), case).unwrap();
+    let mut words = vec!["run", "case.toml", "--quiet", "--out", "results"];
+    words.extend(more);
+    let run = folder.igimp(&words);
+    let said = String::from_utf8_lossy(&run.stderr).into_owned();
+    assert!(run.status.success(), "{said}");
+    folder
+}
+
+/// GOAL: frames of a motion say their times and have its fields, on the page and in the report; the report draws the energy.
+/// ORACLE: a body that falls freely has the speed g t.
+#[test]
+fn a_motion_is_shown_with_its_times() {
+    let folder = results_of("motion", FALL, &[]);
+    let report = std::fs::read_to_string(folder.0.join("results/report.html")).unwrap();
+    for (frame, time) in [(1, "0"), (3, "0.2"), (5, "0.4")] {
+        let label = format!("data-label=\"Frame {frame} of 5, t = {time} s, stage “fall”\"");
+        assert!(report.contains(&label), "{label}");
+    }
+    assert!(report.contains("data-seconds=\"0.4\""));
+    assert!(report.contains("Energy of stage “fall” over time"));
+    assert!(report.contains("Speed |v| at the end of stage “fall”, at t = 0.4 s."));
+    let Some(browser) = browser() else {
+        return;
+    };
+    let view = View::of(&folder, "results");
+    for (frame, seconds) in [(1, 0.0), (3, 0.2), (5, 0.4)] {
+        let wishes = format!(
+            "frame={frame}&field=velocity%20[m/s],%20length&hover=2.1,{}&arrows=velocity%20[m/s]",
+            5.1 - 5.0 * seconds * seconds
+        );
+        let page = looked_at(browser, &folder, &view, &wishes);
+        let value: f64 = attribute(&page, "found", "data-value").parse().unwrap();
+        assert!(
+            (value - 10.0 * seconds).abs() < 1e-5,
+            "{value} at {seconds} s"
+        );
+        let label = attribute(&page, "slider", "aria-valuetext");
+        assert!(
+            label.starts_with(&format!("Frame {frame} of 5: t = {seconds} s, ")),
+            "{label}"
+        );
+        assert!(
+            page.contains(">speed [m/s]<"),
+            "the length of a velocity has its name"
+        );
+        assert_eq!(attribute(&page, "canvas", "data-pieces"), "16");
+        if seconds > 0.0 {
+            assert!(
+                attribute(&page, "canvas", "data-arrows")
+                    .parse::<usize>()
+                    .unwrap()
+                    > 10
+            );
+        }
+    }
+    // Four seconds or more at first: 0.4 s are shown ten times slower.
+    let page = looked_at(browser, &folder, &view, "frame=1&play=1");
+    assert!(!page.contains("id=\"pace-label\" hidden"));
+    assert!(attribute(&page, "slider", "aria-valuetext").starts_with("Frame 5 of 5"));
+}
+
+/// GOAL: a section across a body has the stress of its weight; the edges of the body are drawn.
+/// ORACLE: γ times the depth, within half a particle of 0.25 m.
+#[test]
+fn a_section_is_drawn_by_hand() {
+    let Some(browser) = browser() else {
+        return;
+    };
+    let folder = Folder::with_results("section", &[]);
+    let view = View::of(&folder, "results");
+    let field = "sigma%20[Pa],%20tension%20%2B,%20yy";
+    let wishes = format!("frame=3&field={field}&section=1.1,1.7,1.1,0.3");
+    let page = looked_at(browser, &folder, &view, &wishes);
+    for (end, depth) in [("data-first", 0.3), ("data-last", 1.7)] {
+        let value: f64 = attribute(&page, "section", end).parse().unwrap();
+        assert!(
+            (value + 18e3 * depth).abs() < 0.5 * 0.25 * 18e3,
+            "{end}: {value}"
+        );
+    }
+    assert_eq!(attribute(&page, "section", "data-places"), "201");
+    assert_eq!(attribute(&page, "canvas", "data-edges"), "1");
+    assert!(page.contains("sigma yy [kPa], tension + along A–B, from (1.1, 1.7) to (1.1, 0.3) m"));
+}
+
+/// GOAL: a run that ends with a search opens on the way in which the body fails, with the nails where they are.
+#[test]
+fn a_search_opens_on_its_mechanism() {
+    let Some(browser) = browser() else {
+        return;
+    };
+    let case = include_str!("../../igimp-input/cases/nailed_cut.toml");
+    let folder = results_of(
+        "mechanism",
+        case,
+        &[
+            "--set",
+            "grid.cell=0.5 m",
+            "--set",
+            "checks.0.between=[1, 2]",
+        ],
+    );
+    let view = View::of(&folder, "results");
+    let page = looked_at(browser, &folder, &view, "");
+    let label = attribute(&page, "slider", "aria-valuetext");
+    assert!(label.starts_with("factor of safety: "), "{label}");
+    let bars: usize = attribute(&page, "canvas", "data-members").parse().unwrap();
+    assert!(bars > 10, "{bars}");
+    let page = looked_at(browser, &folder, &view, "frame=1");
+    assert!(attribute(&page, "slider", "aria-valuetext").starts_with("Frame 1 of "));
+}
+
+/// GOAL: the water table of a stage is drawn over its frames.
+#[test]
+fn water_tables_are_drawn() {
+    let water = "[[water]]\nname = \"table\"\nline = [[\"0 m\", \"1 m\"], [\"2 m\", \"1.5 m\"]]\n[boundaries]";
+    let case = BLOCK.replace("[boundaries]", water);
+    let folder = results_of("water", &case, &[]);
+    let view = View::of(&folder, "results");
+    let index: serde_json::Value = serde_json::from_str(&view.get("index.json").2).unwrap();
+    assert_eq!(
+        index["water"],
+        serde_json::json!([[[[0.0, 1.0], [2.0, 1.5]]]])
+    );
+    let Some(browser) = browser() else {
+        return;
+    };
+    let page = looked_at(browser, &folder, &view, "frame=2");
+    assert_eq!(attribute(&page, "canvas", "data-water"), "1");
+}
+
+/// GOAL: two runs stand side by side, each with its own files, and what is chosen in the first is chosen in the second.
+/// ORACLE: the third of four frames, of both.
+#[test]
+fn two_runs_stand_side_by_side() {
+    let folder = Folder::with_results("beside", &[]);
+    let softer = ["--set", "materials.clay.young=5 MPa", "--out", "softer"];
+    let run = folder.igimp(&[&["run", "case.toml", "--quiet"], &softer[..]].concat());
+    assert!(run.status.success());
+    let view = View::with(&folder, &["results", "--beside", "softer"]);
+    let (status, head, page) = view.get("");
+    assert_eq!(status, 200);
+    assert!(head.contains("frame-src 'self'") && head.contains("frame-ancestors 'none'"));
+    assert!(!page.contains("NONCE"));
+    for (run, name) in [(1, "results"), (2, "softer")] {
+        let (_, head, _) = view.get(&format!("{run}/"));
+        assert!(head.contains("frame-ancestors 'self'"), "{head}");
+        let index = view.get(&format!("{run}/index.json")).2;
+        let index: serde_json::Value = serde_json::from_str(&index).unwrap();
+        assert_eq!(index["folder"], name);
+        assert_eq!(view.get(&format!("{run}/curves/settlement.csv")).0, 200);
+    }
+    for name in [
+        "index.json",
+        "3/index.json",
+        "1/../2/index.json",
+        "curves/settlement.csv",
+    ] {
+        assert_eq!(view.get(name).0, 404, "{name}");
+    }
+    let Some(browser) = browser() else {
+        return;
+    };
+    let page = looked_at(browser, &folder, &view, "frame=3");
+    for run in ["data-run1", "data-run2"] {
+        let (_, label) = page.split_once(&format!("{run}=\"")).unwrap();
+        assert!(label.starts_with("Frame 3 of 4"), "{label:.40}");
+    }
 }

@@ -31,6 +31,8 @@ const ROWS: f64 = 5e-4;
 const PICTURE: [f64; 2] = [2e-2, 7e-6];
 /// A checkpoint or a frame \[s\], and its part by particle.
 const STATE: [f64; 2] = [4e-3, 1.5e-6];
+/// Most frames of a stage whose frames make a film.
+const MOST_FRAMES: f64 = 40.0;
 /// Start, model, report \[s\].
 const BEGINNING: f64 = 6e-2;
 /// Shares of the time that more threads divide: of marching, of output \[-\].
@@ -192,9 +194,11 @@ fn of_stages<const D: usize>(
         if case.output.checkpoint_every > 0 {
             states += stage.trials + stage.steps / case.output.checkpoint_every as f64;
         }
-        if let Every::Steps(every) = case.output.paraview {
-            states += stage.steps / every.max(1) as f64;
-        }
+        states += match case.output.paraview {
+            Every::Never | Every::Stage => 0.0,
+            Every::Steps(every) => stage.steps / every.max(1) as f64,
+            Every::Film => stage.steps.min(MOST_FRAMES),
+        };
     }
     let [picture, field] = PICTURE;
     let (pictures, fields) = pictures(case);

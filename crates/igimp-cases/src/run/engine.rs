@@ -448,6 +448,9 @@ fn dispatch<const D: usize>(
             run_out::run_out(session, state, number, spec, summary, resumption)
         }
         StageKind::Dynamic(spec) => {
+            if let (Some(output), None) = (&mut session.output, resumption) {
+                output.begin_motion(session.model, number, state)?;
+            }
             dynamic::dynamic(session, state, number, spec, summary, resumption)
         }
     }

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use igimp_model::{Case, Every, Stage, StageKind};
+use igimp_model::{Case, Every, Stage, StageKind, in_plane};
 use igimp_report::patches::Pieces;
-use igimp_report::pictures::{self, Shown};
+use igimp_report::pictures;
 use igimp_report::report;
 use igimp_results::atomic::write_whole;
 use igimp_results::checkpoint;
@@ -32,6 +32,7 @@ mod difference;
 mod drawn;
 pub(crate) mod entry;
 pub(crate) mod export;
+mod motion;
 pub(crate) mod outlines;
 pub(crate) mod place;
 pub(crate) mod records;
@@ -253,25 +254,23 @@ impl<const D: usize> Output<D> {
     /// Counts a step, and writes a frame when one is due: all that there is to write after a step that no march goes on from.
     pub(crate) fn frame_of_step(
         &mut self,
-        stage: usize,
+        number: usize,
         model: &Model<'_, D>,
         summary: &StageSummary,
         taken: &AcceptedStep<'_, D>,
     ) -> Result<(), CaseError> {
         self.steps += 1;
-        let stage = &model.case.stages[stage];
-        if let Every::Steps(every) = self.every
-            && frame_number(stage, summary, taken)
-                .is_some_and(|own| own.is_multiple_of(every.max(1)))
-        {
+        let stage = &model.case.stages[number];
+        if motion::has_frame(self.every, stage, summary, taken) {
             let (body, conditions) = (taken.accepted.body, &taken.accepted.conditions);
             let scene = Scene {
                 particles: &body.particles,
                 laws: &conditions.laws,
                 structures: &outlines::structures(model.case, taken.controls, body),
             };
+            let time = (self.steps as f64, taken.controls.time);
             self.frames
-                .add(self.steps as f64, &stage.name, &scene, &conditions.grid)?;
+                .add(time, (number, &stage.name), &scene, &conditions.grid)?;
         }
         Ok(())
     }
@@ -352,7 +351,8 @@ impl<const D: usize> Output<D> {
                 table.write_csv(&self.folder.reinforcement())?;
             }
         }
-        if self.every != Every::Never {
+        // The last step of a motion may have left the frame of its end.
+        if self.every != Every::Never && !self.frames.is_at(number, state.controls.time) {
             let grid = model.grid(model.lowered(&state.controls))?;
             let scene = Scene {
                 particles: &state.body.particles,
@@ -360,8 +360,9 @@ impl<const D: usize> Output<D> {
                 structures: &structures,
             };
             // The time of a frame is the number of steps and trials so far.
+            let time = (self.steps as f64, state.controls.time);
             self.frames
-                .add(self.steps as f64, &summary.name, &scene, &grid)?;
+                .add(time, (number, &summary.name), &scene, &grid)?;
         }
         if let Some(safety) = &summary.safety {
             self.factor_of_safety = match (safety.stable, safety.failed) {
@@ -376,7 +377,7 @@ impl<const D: usize> Output<D> {
         }
         self.ends_of_search(model, number, summary)?;
         if summary.safety.is_none() {
-            self.field_pictures(model, &Shown::end_of_stage(case, number), state, &[])?;
+            self.field_pictures(model, &motion::shown(case, number, state), state, &[])?;
         }
         let (root, title) = (self.folder.root(), &case.title);
         if self.draws {
@@ -452,7 +453,8 @@ impl<const D: usize> Output<D> {
                 || histories(root, case, records),
                 || pictures::convergence_pictures(root, title, tolerance),
             );
-            figures.splice(at..at, histories?);
+            let energy = self.energy_pictures(case, records)?;
+            figures.splice(at..at, histories?.into_iter().chain(energy));
             figures.extend(convergence?);
         }
         summary.figures = figures;
@@ -461,7 +463,8 @@ impl<const D: usize> Output<D> {
         summary.output_seconds = self.seconds;
         self.write_summary(summary)?;
         if self.report {
-            report::write_report(self.folder.root())?;
+            let pieces = in_plane(case).and_then(|case| self.pieces(case).ok());
+            report::write_report(self.folder.root(), pieces.as_deref())?;
         }
         if !summary.interrupted {
             folder::mark(self.folder.root(), &self.claim, true)?;
@@ -472,22 +475,6 @@ impl<const D: usize> Output<D> {
     fn write_summary(&self, summary: &Summary) -> Result<(), CaseError> {
         Ok(write_summary(self.folder.root(), summary)?)
     }
-}
-
-/// The number of an accepted step among those that frames are counted by: of a stage that takes time the parts of its duration
-/// that steps land on, else all.
-fn frame_number<const D: usize>(
-    stage: &Stage,
-    summary: &StageSummary,
-    taken: &AcceptedStep<'_, D>,
-) -> Option<usize> {
-    let report = taken.accepted.report;
-    if report.energy.is_none() {
-        return Some(summary.steps);
-    }
-    let part = report.to * stage.steps as f64;
-    let lands = (part - part.round()).abs() < 1e-6;
-    lands.then_some(part.round() as usize)
 }
 
 /// The pictures of curves and monitors.

@@ -303,7 +303,7 @@ fn write<const D: usize>(
     summary.seconds = clock.elapsed().as_secs_f64();
     write_summary(root, summary)?;
     if case.output.report {
-        report::write_report(root)?;
+        report::write_report(root, None)?;
     }
     Ok(())
 }

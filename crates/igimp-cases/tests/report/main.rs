@@ -18,7 +18,7 @@ use igimp_results::summary::{FigureNote, SafetySummary, SetupTable, StageOutcome
 use igimp_results::tables::table::Table;
 
 fn page(folder: &Path) -> String {
-    let path = write_report(folder).unwrap();
+    let path = write_report(folder, None).unwrap();
     assert_eq!(path, folder.join("report.html"));
     std::fs::read_to_string(path).unwrap()
 }
@@ -271,13 +271,13 @@ fn a_bare_summary_is_enough() {
 #[test]
 fn a_folder_without_summary_is_refused_by_name() {
     let folder = example::folder("none");
-    let error = write_report(&folder).unwrap_err();
+    let error = write_report(&folder, None).unwrap_err();
     assert!(
         matches!(&error, ReportError::Results(ResultsError::File { path, .. }) if path.ends_with("summary.json"))
     );
     std::fs::write(folder.join("summary.json"), "{").unwrap();
     assert!(matches!(
-        write_report(&folder),
+        write_report(&folder, None),
         Err(ReportError::Results(ResultsError::File { .. }))
     ));
 }

@@ -1,9 +1,10 @@
 //! Drawing of a [`CurvePlot`]: bands, reference lines, series, legend, in this order.
 
+use super::ends::{End, draw_ends};
 use super::frame::{
     HEIGHT, WIDTH, frame_of, hidden_points, shows, title_lines, x_label_lines, y_label_lines,
 };
-use super::{CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series};
+use super::{CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesLabels};
 use crate::FigureError;
 use crate::axis::{Axis, Scale, ticks};
 use crate::colour::Colour;
@@ -298,10 +299,34 @@ impl<'a> Sheet<'a> {
         });
     }
 
+    /// Writes the labels of series at their ends, to the right of the plot.
+    fn label_ends(&mut self) {
+        let ends = self.plot.series.iter().zip(looks(self.plot));
+        let ends = ends.filter_map(|(series, look)| {
+            let last = self.runs(&series.points).concat().pop()?;
+            (!series.label.is_empty()).then(|| End {
+                at: last,
+                label: series.label.clone(),
+                colour: look.colour,
+            })
+        });
+        let ends = ends.collect();
+        draw_ends(&mut self.drawing, self.frame.area, ends);
+    }
+
     /// Draws the legend inside where there is room, at the right of the plot otherwise.
     fn place_legend(&mut self) {
+        let at_curves = self.plot.labels == SeriesLabels::AtCurves;
+        if at_curves {
+            self.label_ends();
+        }
         let mut legend = Legend::default();
-        for (series, look) in self.plot.series.iter().zip(looks(self.plot)) {
+        let in_legend = if at_curves {
+            &[][..]
+        } else {
+            &self.plot.series
+        };
+        for (series, look) in in_legend.iter().zip(looks(self.plot)) {
             let marker = look
                 .marker
                 .map(|(marker, radius)| (marker, radius.max(2.8), look.colour));

@@ -1,4 +1,4 @@
-//! A drawing as a PNG.
+//! A drawing as pixels, and as a PNG.
 
 use tiny_skia::{
     FillRule, LineJoin, Mask, Paint, Path, PathBuilder, Pixmap, Stroke as SkiaStroke, StrokeDash,
@@ -9,7 +9,7 @@ use super::font::{self, Pen};
 use super::{Anchor, Contour, Drawing, Item, PIXELS_PER_POINT, Shape, Text};
 use crate::FigureError;
 use crate::colour::Colour;
-use crate::drawing::Image;
+use crate::drawing::{Image, Rgb};
 use crate::geometry::Point;
 
 const NO_CLIP: Option<&Mask> = None;
@@ -34,16 +34,7 @@ fn single(value: f64) -> f32 {
 
 /// The bytes of the PNG file.
 pub(crate) fn png(drawing: &Drawing) -> Result<Vec<u8>, FigureError> {
-    let (width, height) = drawing.pixel_size();
-    let mut pixmap = Pixmap::new(width, height).ok_or(FigureError::TooLarge { width, height })?;
-    pixmap.fill(tiny_skia::Color::WHITE);
-    for item in &drawing.items {
-        match item {
-            Item::Shape(shape) => draw_shape(&mut pixmap, shape),
-            Item::Text(text) => draw_text(&mut pixmap, text),
-            Item::Image(image) => draw_image(&mut pixmap, image),
-        }
-    }
+    let pixmap = painted(drawing, drawing.pixel_size(), f64::from(PIXELS_PER_POINT))?;
     let is_flat = !drawing
         .items
         .iter()
@@ -51,8 +42,46 @@ pub(crate) fn png(drawing: &Drawing) -> Result<Vec<u8>, FigureError> {
     encode(&pixmap, is_flat)
 }
 
+/// The pixels of a drawing that is as many of them wide, by red, green and blue: a frame of a film.
+pub(crate) fn rgb(drawing: &Drawing, width: u32) -> Result<Rgb, FigureError> {
+    let scale = f64::from(width) / drawing.width.max(1.0);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the cast saturates; a picture too large is refused when its pixels are allocated"
+    )]
+    let height = (drawing.height * scale).ceil() as u32;
+    let pixmap = painted(drawing, (width, height), scale)?;
+    let own = pixmap.data().as_chunks::<4>().0;
+    let rgb = own.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
+    Ok(Rgb {
+        width,
+        height,
+        pixels: rgb,
+    })
+}
+
+/// A drawing on a white ground, in so many pixels by point.
+fn painted(
+    drawing: &Drawing,
+    (width, height): (u32, u32),
+    scale: f64,
+) -> Result<Pixmap, FigureError> {
+    let mut pixmap = Pixmap::new(width, height).ok_or(FigureError::TooLarge { width, height })?;
+    pixmap.fill(tiny_skia::Color::WHITE);
+    let to_pixels = Transform::from_scale(single(scale), single(scale));
+    for item in &drawing.items {
+        match item {
+            Item::Shape(shape) => draw_shape(&mut pixmap, shape, to_pixels),
+            Item::Text(text) => draw_text(&mut pixmap, text, to_pixels),
+            Item::Image(image) => draw_image(&mut pixmap, image, scale),
+        }
+    }
+    Ok(pixmap)
+}
+
 /// An image whose area begins at a whole point, over what is there.
-fn draw_image(pixmap: &mut Pixmap, image: &Image) {
+fn draw_image(pixmap: &mut Pixmap, image: &Image, scale: f64) {
     let (left, top) = (pixels(image.area.left), pixels(image.area.top));
     let Some(mut shown) = Pixmap::new(image.width, image.height) else {
         return;
@@ -61,16 +90,18 @@ fn draw_image(pixmap: &mut Pixmap, image: &Image) {
         let [r, g, b, a] = *rgba;
         *pixel = tiny_skia::ColorU8::from_rgba(r, g, b, a).premultiply();
     }
-    let how = tiny_skia::PixmapPaint::default();
+    let share = single(scale / f64::from(PIXELS_PER_POINT));
+    let (how, shrunk) = if (share - 1.0).abs() < 1e-6 {
+        (tiny_skia::PixmapPaint::default(), Transform::identity())
+    } else {
+        let how = tiny_skia::PixmapPaint {
+            quality: tiny_skia::FilterQuality::Bilinear,
+            ..tiny_skia::PixmapPaint::default()
+        };
+        (how, Transform::from_scale(share, share))
+    };
     let (left, top) = (left.cast_signed(), top.cast_signed());
-    pixmap.draw_pixmap(
-        left,
-        top,
-        shown.as_ref(),
-        &how,
-        Transform::identity(),
-        NO_CLIP,
-    );
+    pixmap.draw_pixmap(left, top, shown.as_ref(), &how, shrunk, NO_CLIP);
 }
 
 /// An image as a PNG file with opacity.
@@ -115,11 +146,6 @@ fn encode(pixmap: &Pixmap, is_flat: bool) -> Result<Vec<u8>, FigureError> {
     Ok(bytes)
 }
 
-fn to_pixels() -> Transform {
-    let scale = single(f64::from(PIXELS_PER_POINT));
-    Transform::from_scale(scale, scale)
-}
-
 fn paint(Colour([r, g, b]): Colour, opacity: f64) -> Paint<'static> {
     let mut paint = Paint {
         anti_alias: true,
@@ -133,7 +159,7 @@ fn paint(Colour([r, g, b]): Colour, opacity: f64) -> Paint<'static> {
     paint
 }
 
-fn draw_shape(pixmap: &mut Pixmap, shape: &Shape) {
+fn draw_shape(pixmap: &mut Pixmap, shape: &Shape, to_pixels: Transform) {
     // A path that is empty or has a coordinate that is not finite has nothing to show.
     let Some(path) = path_of(&shape.contours) else {
         return;
@@ -143,7 +169,7 @@ fn draw_shape(pixmap: &mut Pixmap, shape: &Shape) {
             &path,
             &paint(colour, opacity),
             FillRule::Winding,
-            to_pixels(),
+            to_pixels,
             NO_CLIP,
         );
     }
@@ -154,13 +180,7 @@ fn draw_shape(pixmap: &mut Pixmap, shape: &Shape) {
             dash: StrokeDash::new(stroke.dash.iter().map(|&d| single(d)).collect(), 0.0),
             ..SkiaStroke::default()
         };
-        pixmap.stroke_path(
-            &path,
-            &paint(stroke.colour, 1.0),
-            &line,
-            to_pixels(),
-            NO_CLIP,
-        );
+        pixmap.stroke_path(&path, &paint(stroke.colour, 1.0), &line, to_pixels, NO_CLIP);
     }
 }
 
@@ -194,7 +214,7 @@ fn push_points(path: &mut PathBuilder, points: &[Point]) {
     }
 }
 
-fn draw_text(pixmap: &mut Pixmap, text: &Text) {
+fn draw_text(pixmap: &mut Pixmap, text: &Text, to_pixels: Transform) {
     let mut pen = PathPen(PathBuilder::new());
     font::outline(&text.content, text.size, &mut pen);
     // Blank text has no outline.
@@ -208,7 +228,7 @@ fn draw_text(pixmap: &mut Pixmap, text: &Text) {
     let place = Transform::from_translate(single(shift), 0.0)
         .post_rotate(turn)
         .post_translate(single(text.at[0]), single(text.at[1]))
-        .post_concat(to_pixels());
+        .post_concat(to_pixels);
     pixmap.fill_path(
         &path,
         &paint(text.colour, 1.0),

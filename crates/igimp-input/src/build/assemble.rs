@@ -5,7 +5,7 @@ use std::path::Path;
 use igimp_assembly::Method;
 use igimp_model::{
     BodyPart, Boundaries, Case, GridSpec, Material, MeshStudy, ReinforcementPart, RigidPart, Stage,
-    WaterCondition,
+    StageKind, WaterCondition,
 };
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::bodies::Body;
@@ -107,13 +107,20 @@ pub(super) fn assemble<const D: usize>(
     let solver =
         Root::<D>::solver(tree).map(|own| outputs::solver(&own, &basics.materials, problems));
     let output = Root::<D>::output(tree);
+    // A stage that was found wrong may be one.
+    let is_motion = |stage: &Option<Stage>| {
+        let kind = stage.as_ref().map(|stage| &stage.kind);
+        matches!(kind, None | Some(StageKind::Dynamic(_)))
+    };
+    let moves = stages.iter().any(is_motion);
     let monitors = each(Root::<D>::monitors(tree), |own| {
-        outputs::monitor(own, soil, problems)
+        outputs::monitor(own, soil, moves, problems)
     });
     let about = outputs::About {
         names,
         stages: &stages,
         file,
+        moves,
         has_cuts: (output.iter()).any(|own| own.cuts.as_ref().is_some_and(|cuts| !cuts.is_empty())),
     };
     let sections = each(Root::<D>::sections(tree), |own| {
@@ -127,7 +134,7 @@ pub(super) fn assemble<const D: usize>(
     });
     let output = output
         .ok()
-        .and_then(|own| outputs::output::<D>(&own, problems));
+        .and_then(|own| outputs::output::<D>(&own, moves, problems));
     let meshes = Root::<D>::mesh_study(tree).map(|own| own.value.meshes);
 
     let (case, meshes) = (Root::<D>::case(tree).ok()?, meshes.ok()?);

@@ -80,14 +80,7 @@ pub(super) fn derive(tree: &mut Node, file: &Path) {
             }
         }
     }
-    if let Some(output) = tree.get_mut("output")
-        && output.get("folder").is_none()
-    {
-        let stem = file.file_stem().map(|stem| stem.to_string_lossy());
-        let stem = stem.filter(|stem| !stem.is_empty());
-        let folder = format!("results/{}", stem.as_deref().unwrap_or("case"));
-        output.add_derived("folder", Value::Text(folder));
-    }
+    derive_output(tree, file);
     let analysis = tree.get("case").and_then(|case| case.text_at("analysis"));
     let dimensions = if analysis == Some(SPACE) { 3 } else { 2 };
     if let Some(curves) = tree.get_mut("curves") {
@@ -101,6 +94,28 @@ pub(super) fn derive(tree: &mut Node, file: &Path) {
                 }
             }
         }
+    }
+}
+
+/// The results folder, and when frames are written.
+fn derive_output(tree: &mut Node, file: &Path) {
+    let is_motion = |stage: &Node| stage.text_at("type") == Some("dynamic");
+    let moves = tree.items_at("stages").iter().any(is_motion);
+    if let Some(frames) = tree
+        .get_mut("output")
+        .and_then(|output| output.get_mut("paraview"))
+        && frames.get("every").is_none()
+    {
+        let every = if moves { "film" } else { "stage" };
+        frames.add_derived("every", Value::Text(every.to_owned()));
+    }
+    if let Some(output) = tree.get_mut("output")
+        && output.get("folder").is_none()
+    {
+        let stem = file.file_stem().map(|stem| stem.to_string_lossy());
+        let stem = stem.filter(|stem| !stem.is_empty());
+        let folder = format!("results/{}", stem.as_deref().unwrap_or("case"));
+        output.add_derived("folder", Value::Text(folder));
     }
 }
 

@@ -88,6 +88,7 @@ pub(super) fn solver(
 pub(super) fn monitor<const D: usize>(
     own: &keys::Monitor<D>,
     soil: &dyn Soil<D>,
+    moves: bool,
     problems: &mut Problems,
 ) -> Option<Monitor<D>> {
     let place = *own.point;
@@ -102,7 +103,7 @@ pub(super) fn monitor<const D: usize>(
     Some(Monitor {
         name: own.name.value.clone(),
         point: place,
-        record: fields::<D>(&own.record, problems)?,
+        record: fields::<D>(&own.record, moves, problems)?,
     })
 }
 
@@ -133,7 +134,7 @@ pub(super) fn section<const D: usize>(
             )
             .help("give the section another name");
     }
-    let record = fields::<D>(&own.record, problems);
+    let record = fields::<D>(&own.record, about.moves, problems);
     let references: Option<Vec<_>> = (own.references.iter())
         .map(|reference| {
             section_reference::<D>(reference.as_ref().ok()?, record.as_deref(), about, problems)
@@ -158,6 +159,8 @@ pub(super) struct About<'a> {
     pub(super) names: &'a AllNames,
     pub(super) stages: &'a [Option<Stage>],
     pub(super) file: &'a Path,
+    /// Whether a stage moves soil in time.
+    pub(super) moves: bool,
     /// Whether planes are drawn.
     pub(super) has_cuts: bool,
 }
@@ -169,7 +172,7 @@ fn section_reference<const D: usize>(
     about: &About<'_>,
     problems: &mut Problems,
 ) -> Option<SectionReference> {
-    let of = fields::<D>(std::slice::from_ref(&own.of), problems)?.pop()?;
+    let of = fields::<D>(std::slice::from_ref(&own.of), about.moves, problems)?.pop()?;
     if record.is_some_and(|record| !record.contains(&of)) {
         let name = of.name();
         problems
@@ -225,6 +228,7 @@ fn cut(own: &keys::Cut) -> Cut {
 /// What is written, and where.
 pub(super) fn output<const D: usize>(
     own: &keys::Output,
+    moves: bool,
     problems: &mut Problems,
 ) -> Option<Output> {
     let folder = own.folder.as_ref()?;
@@ -236,12 +240,13 @@ pub(super) fn output<const D: usize>(
     }
     Some(Output {
         folder: PathBuf::from(&folder.value),
-        paraview: match *own.paraview.every {
+        paraview: match **own.paraview.every.as_ref()? {
             Either::First(OutputTime::Never) => Every::Never,
             Either::First(OutputTime::Stage) => Every::Stage,
+            Either::First(OutputTime::Film) => Every::Film,
             Either::Second(steps) => Every::Steps(steps),
         },
-        figures: fields::<D>(&own.figures, problems)?,
+        figures: fields::<D>(&own.figures, moves, problems)?,
         cuts: (own.cuts.iter())
             .flat_map(|cuts| cuts.iter())
             .map(|own| cut(own))

@@ -7,10 +7,11 @@ use igimp_figures::{ColourMap, FieldPlot, Outline, OutlineStyle};
 use igimp_model::{Case, Field};
 use igimp_results::fields::{self, Scale};
 use igimp_results::summary::FigureNote;
+use igimp_text::short;
 
 use super::{file_name, sentence, titled, water, write};
 use crate::error::ReportError;
-use crate::patches::Pieces;
+use crate::patches::{Carriers, Pieces};
 
 /// A range this many times that of all but [`FEW`] of the values is cut to theirs.
 const OUTLYING: f64 = 1.2;
@@ -36,6 +37,17 @@ impl Shown {
             name: format!("{}-{}", stage + 1, file_name(name)),
             title: name.to_owned(),
             when: format!("at the end of stage “{name}”"),
+        }
+    }
+
+    /// The same with its time \[s\], of a stage that takes time.
+    #[must_use]
+    pub fn at_time(self, time: f64) -> Self {
+        let time = short(time);
+        Self {
+            title: format!("{}, t = {time} s", self.title),
+            when: format!("{}, at t = {time} s", self.when),
+            ..self
         }
     }
 }
@@ -111,7 +123,7 @@ pub fn field_picture(
         label: format!("{total}{}{}", fields::label(field, scale), colours.told()),
         range: colours.range,
         map: colours.map,
-        outlines: edges(canvas, particles)
+        outlines: edges(case, canvas.pieces, particles)
             .into_iter()
             .chain(over.outlines.iter().cloned())
             .collect(),
@@ -139,16 +151,21 @@ pub fn field_picture(
 }
 
 /// The edges of the bodies as they were, and as the particles carry them.
-pub(super) fn edges(canvas: &Canvas<'_>, particles: &Particles<2>) -> Vec<Outline> {
-    let there = canvas.pieces.there(particles);
-    let former = std::iter::zip(body_outlines(canvas.case), there);
+pub(crate) fn edges<'a>(
+    case: &Case<2>,
+    pieces: &Pieces,
+    particles: impl Into<Carriers<'a>>,
+) -> Vec<Outline> {
+    let particles = particles.into();
+    let there = pieces.there(particles);
+    let former = std::iter::zip(body_outlines(case), there);
     let former = former
         .filter(|(_, there)| *there)
         .map(|(outline, _)| Outline {
             style: OutlineStyle::Former,
             ..outline
         });
-    let moved = canvas.pieces.edges(particles).into_iter();
+    let moved = pieces.edges(particles).into_iter();
     let moved = moved.map(|points| Outline {
         points,
         style: OutlineStyle::Edge,
@@ -171,17 +188,17 @@ pub(super) fn body_outlines(case: &Case<2>) -> impl Iterator<Item = Outline> {
 
 /// How values become colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Colours {
-    pub(super) map: ColourMap,
-    pub(super) range: Option<(f64, f64)>,
+pub(crate) struct Colours {
+    pub(crate) map: ColourMap,
+    pub(crate) range: Option<(f64, f64)>,
     /// Whether the range leaves out the outermost values at its low and at its high end.
-    cut: (bool, bool),
+    pub(crate) cut: (bool, bool),
 }
 
 impl Colours {
     /// From zero where a field has no sign, about zero where both signs matter, without the few values
     /// that would pale all others.
-    pub(super) fn of(field: Field, values: &[f64]) -> Self {
+    pub(crate) fn of(field: Field, values: &[f64]) -> Self {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
         let whole = Self {
@@ -203,6 +220,12 @@ impl Colours {
                 | Field::TauYz
                 | Field::TauXz
                 | Field::UExcess
+                | Field::VelocityX
+                | Field::VelocityY
+                | Field::VelocityZ
+                | Field::AccelerationX
+                | Field::AccelerationY
+                | Field::AccelerationZ
         );
         if signed && -low.min(0.0) > 0.1 * high && high.max(0.0) > -0.1 * low {
             let (reach, inner) = (
@@ -221,7 +244,7 @@ impl Colours {
                 range: Some((0.0, 1.0)),
                 ..whole
             },
-            Field::PlasticStrain | Field::Displacement => {
+            Field::PlasticStrain | Field::Displacement | Field::Speed | Field::Acceleration => {
                 let cut = inner_high > 0.0 && high > OUTLYING * inner_high;
                 let top = if cut { inner_high } else { high };
                 Self {
@@ -251,7 +274,7 @@ impl Colours {
     }
 
     /// A note on the colour bar for values beyond its range.
-    pub(super) fn told(&self) -> &'static str {
+    pub(crate) fn told(&self) -> &'static str {
         match self.cut {
             (false, false) => "",
             (true, false) => "; bar from 0.5 % of the particles",

@@ -5,7 +5,9 @@ use std::path::Path;
 use igimp_figures::{
     Band, Colour, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle,
 };
-use igimp_model::{Average, Case, Field, Monitor, ReferenceValues, Section, SectionReference};
+use igimp_model::{
+    Average, Case, Field, Monitor, ReferenceValues, Section, SectionReference, StageKind,
+};
 use igimp_results::fields::{self, Dimension, Scale};
 use igimp_results::summary::FigureNote;
 use igimp_results::tables::table::Table;
@@ -18,7 +20,7 @@ use crate::error::ReportError;
 const MOST_MARKS: usize = 12;
 
 /// The pictures of a monitor: what its table holds under the [headers](igimp_model::Field::header) of the
-/// recorded fields, over the accepted steps. Where a column `stage` changes stands a line, and what does
+/// recorded fields, over the accepted steps, or over time where every stage moves in time. Where a column `stage` changes stands a line, and what does
 /// not go on there is not joined: displacements that count anew, a stage that starts from another one
 /// than that before it.
 ///
@@ -30,8 +32,13 @@ pub fn monitor_pictures<const D: usize>(
     monitor: &Monitor<D>,
     table: &Table,
 ) -> Result<Vec<FigureNote>, ReportError> {
-    let along: Vec<f64> = (1..=table.rows.len()).map(|row| row as f64).collect();
-    let marks = stage_marks(table);
+    let times = times(case, table);
+    let (over, x_label) = match times {
+        Some(_) => ("over time", "time [s]"),
+        None => ("over the accepted steps", "accepted step"),
+    };
+    let marks = stage_marks(table, times.as_deref());
+    let along = times.unwrap_or_else(|| (1..=table.rows.len()).map(|row| row as f64).collect());
     let marked = if marks.is_empty() {
         ""
     } else {
@@ -48,14 +55,14 @@ pub fn monitor_pictures<const D: usize>(
         let (label, series) = group.series(table, &along, &breaks, false);
         let plot = CurvePlot {
             title: titled(&case.title, &format!("monitor {}", monitor.name)),
-            x_label: "accepted step".into(),
+            x_label: x_label.to_owned(),
             y_label: label,
             lines: marks.clone(),
             series,
             ..CurvePlot::default()
         };
         let caption = format!(
-            "{} at monitor “{}” over the accepted steps{marked}{broken}.",
+            "{} at monitor “{}” {over}{marked}{broken}.",
             group.words(),
             monitor.name
         );
@@ -63,6 +70,25 @@ pub fn monitor_pictures<const D: usize>(
         notes.push(write(folder, &name, &plot.draw()?, caption)?);
     }
     Ok(notes)
+}
+
+/// The times of the rows of a table \[s\]; none where a stage among them takes no time.
+fn times<const D: usize>(case: &Case<D>, table: &Table) -> Option<Vec<f64>> {
+    let column = |name: &str| table.header.iter().position(|own| own.starts_with(name));
+    let (stage, progress) = (column("stage")?, column("progress")?);
+    // By stage: the time at its last row so far.
+    let mut ends = vec![0.0; case.stages.len()];
+    let time = |row: &Vec<f64>| {
+        let number = (row[stage] as usize).checked_sub(1)?;
+        let own = case.stages.get(number)?;
+        let StageKind::Dynamic(motion) = &own.kind else {
+            return None;
+        };
+        let begun = own.start_from.map_or(0.0, |before| ends[before]);
+        ends[number] = begun + row[progress] * motion.duration;
+        Some(ends[number])
+    };
+    table.rows.iter().map(time).collect()
 }
 
 /// The changes of stage of a table: the row before, and the stages before and after, from 1.
@@ -99,13 +125,13 @@ fn breaks<const D: usize>(case: &Case<D>, table: &Table, of: Dimension) -> Vec<u
         .collect()
 }
 
-/// Lines between rows of different stages.
-fn stage_marks(table: &Table) -> Vec<ReferenceLine> {
+/// Lines between rows of different stages; over time at the ends of stages.
+fn stage_marks(table: &Table, times: Option<&[f64]>) -> Vec<ReferenceLine> {
     let marks: Vec<_> = changes(table)
         .into_iter()
         .map(|(row, _)| ReferenceLine {
             label: String::new(),
-            at: ReferenceValue::X(row as f64 + 1.5),
+            at: ReferenceValue::X(times.map_or(row as f64 + 1.5, |times| times[row])),
         })
         .collect();
     if marks.len() > MOST_MARKS {
@@ -344,6 +370,8 @@ impl Group {
             Dimension::Strain => "strain",
             Dimension::Share => "share",
             Dimension::Angle => "angle",
+            Dimension::Velocity => "velocity",
+            Dimension::Acceleration => "acceleration",
         }
     }
 
@@ -374,6 +402,37 @@ mod tests {
     use super::*;
     use igimp_input::CaseFile;
     use igimp_input::shipped::SHIPPED;
+
+    /// GOAL: histories of a motion are over time, of a stage that follows another one too; of other stages over steps.
+    /// ORACLE: the first motion ends at rest after half of its 0.6 s, the second lasts 0.2 s.
+    #[test]
+    fn histories_of_a_motion_are_over_time() {
+        let shipped = |name: &str| {
+            let found = SHIPPED.iter().find(|case| case.name == name).unwrap();
+            let file = CaseFile::parse(&format!("{name}.toml"), found.text, &[]);
+            file.unwrap().case().clone()
+        };
+        let mut case = shipped("column_collapse");
+        let mut second = case.stages[0].clone();
+        second.start_from = Some(0);
+        if let StageKind::Dynamic(motion) = &mut second.kind {
+            motion.duration = 0.2;
+        }
+        case.stages.push(second);
+        let mut table = Table::new("corner", &["stage", "step", "progress_[-]", "speed_[m/s]"]);
+        for (stage, progress) in [(1.0, 0.0), (1.0, 0.25), (1.0, 0.5), (2.0, 0.5), (2.0, 1.0)] {
+            table.push(vec![stage, 1.0, progress, 0.0]);
+        }
+        let found = times(&case, &table).unwrap();
+        for (a, b) in std::iter::zip(&found, [0.0, 0.15, 0.3, 0.4, 0.5]) {
+            assert!((a - b).abs() < 1e-12, "{found:?}");
+        }
+        let marks = stage_marks(&table, Some(&found));
+        assert!(
+            matches!(marks[..], [ReferenceLine { at: ReferenceValue::X(x), .. }] if (x - 0.3).abs() < 1e-12)
+        );
+        assert_eq!(times(&shipped("slope"), &table), None);
+    }
 
     /// GOAL: a fall to zero that nothing made is not drawn: the slope's displacements count anew after its
     /// first stage, and its run-out starts from there.

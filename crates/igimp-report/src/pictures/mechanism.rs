@@ -107,7 +107,7 @@ pub fn mechanism_picture(
     let most = sorted.get(place).copied().unwrap_or(0.0);
     let most = if most > 0.0 { most } else { 1.0 };
     let window = window(failing.last, found, most);
-    let mut outlines = edges(canvas, failing.last);
+    let mut outlines = edges(canvas.case, canvas.pieces, failing.last);
     outlines.extend_from_slice(&over.outlines);
     outlines.push(arrows(failing.last, found, &window));
     let mut told = "; no line of shear stands out".to_owned();

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`model_picture`] | `model` |
 //! | [`curve_picture`] | `curve-NAME` |
+//! | [`energy_pictures`] | `energy-STAGE` |
 //! | [`safety_picture`] | `safety-STAGE` |
 //! | [`monitor_pictures`] | `monitor-NAME-KIND` |
 //! | [`section_pictures`] | `section-NAME-KIND` |
@@ -18,6 +19,7 @@
 
 mod convergence;
 mod curve;
+mod energy;
 mod field;
 mod histories;
 mod mechanism;
@@ -33,7 +35,9 @@ use std::path::Path;
 pub use convergence::{History, convergence_pictures, convergence_plot, histories};
 pub(super) use convergence::{convergence_caption, stages_of};
 pub use curve::curve_picture;
+pub use energy::energy_pictures;
 pub use field::{Canvas, Over, Seen, Shown, field_picture};
+pub(crate) use field::{Colours, edges};
 pub use histories::{monitor_pictures, section_pictures};
 pub use mechanism::{Failing, Mechanism, mechanism, mechanism_picture};
 pub use meshes::mesh_pictures;

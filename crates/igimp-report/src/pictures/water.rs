@@ -22,6 +22,15 @@ pub fn tables(
         .collect()
 }
 
+/// The water tables at the end of a stage between two places along x \[m\].
+pub fn tables_after(case: &Case<2>, stage: usize, ends: [f64; 2]) -> Vec<Outline> {
+    let condition = case.water_after(stage).and_then(|k| case.water.get(k));
+    let there = case.bodies_after(stage);
+    condition.map_or_else(Vec::new, |condition| {
+        tables(case, condition, |body| there[body], ends)
+    })
+}
+
 /// A water table between two places.
 fn table(source: &PoreSource, [left, right]: [f64; 2]) -> Option<Outline> {
     let PoreSource::Table(line) = source else {

@@ -43,7 +43,7 @@ struct Link {
 const GROUPS: [(&str, &str, &[&str]); 8] = [
     ("model", "Model", &["model"]),
     ("mesh-error", "Mesh error, pictures", &["mesh-study"]),
-    ("curves", "Curves", &["curve", "safety"]),
+    ("curves", "Curves", &["curve", "safety", "energy"]),
     (
         "histories",
         "Monitors and sections",
@@ -174,7 +174,7 @@ pub(super) fn tables(folder: &Path) -> Vec<FileView> {
             .into_iter()
             .map(move |name| format!("{within}/{name}"))
     })
-    .chain(["mesh_study.csv", "convergence.csv"].map(str::to_owned))
+    .chain(["energy.csv", "mesh_study.csv", "convergence.csv"].map(str::to_owned))
     .filter_map(|name| table(folder, name))
     .collect();
     for (name, about) in [

@@ -15,6 +15,23 @@ function ticksOf(low, high, about) {
   return ticks;
 }
 
+// A tick with as many digits as the step between ticks asks for.
+function tickText(tick, ticks) {
+  const step = ticks.length > 1 ? Math.abs(ticks[1] - ticks[0]) : Math.abs(tick);
+  const largest = Math.max(...ticks.map(Math.abs));
+  if (!(step > 0) || largest >= 1e6 || largest < 1e-3) return short(tick);
+  const digits = Math.min(Math.max(-Math.floor(Math.log10(step) + 1e-9), 0), 6);
+  return tick.toFixed(digits).replace("-", "−");
+}
+
+// The same range, or one of visible width about it where the values are equal but for rounding.
+function widened(low, high) {
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  if (high - low > 1e-9 * size) return [low, high];
+  const half = size > 0 ? 0.1 * size : 1;
+  return [low - half, high + half];
+}
+
 class Axes {
   constructor(scene) {
     this.scene = scene;
@@ -36,15 +53,17 @@ class Axes {
     pen.strokeRect(room.left, room.top, right - room.left, bottom - room.top);
     pen.textAlign = "center";
     const [from, to] = [[room.left, bottom], [right, room.top]].map(([x, y]) => lifted(place, this.scene.camera, x, y));
-    for (const x of ticksOf(from[0], to[0], Math.max((right - room.left) / 80, 2))) {
+    const xTicks = ticksOf(from[0], to[0], Math.max((right - room.left) / 80, 2));
+    for (const x of xTicks) {
       const [at] = projected(place, this.scene.camera, [x, 0, 0]);
-      pen.fillText(`${short(x)}${at > right - 50 ? " m" : ""}`, Math.min(at, right - 10), bottom + 15);
+      pen.fillText(`${tickText(x, xTicks)}${at > right - 50 ? " m" : ""}`, Math.min(at, right - 10), bottom + 15);
       pen.fillRect(at, bottom, 1, 4);
     }
     pen.textAlign = "right";
-    for (const y of ticksOf(from[1], to[1], Math.max((bottom - room.top) / 50, 2))) {
+    const yTicks = ticksOf(from[1], to[1], Math.max((bottom - room.top) / 50, 2));
+    for (const y of yTicks) {
       const [, at] = projected(place, this.scene.camera, [0, y, 0]);
-      pen.fillText(short(y), room.left - 7, Math.max(at + 4, 12));
+      pen.fillText(tickText(y, yTicks), room.left - 7, Math.max(at + 4, 12));
       pen.fillRect(room.left - 4, at, 4, 1);
     }
   }
@@ -92,7 +111,7 @@ class Axes {
       for (const x of ticks) {
         const place2 = at(x);
         line(place2, [0, 1].map((k) => place2[k] + 4 * out[k]));
-        text(short(x), place2, 9);
+        text(tickText(x, ticks), place2, 9);
       }
       pen.font = "600 12px system-ui, sans-serif";
       const share = ticks.length > 1 ? 0.5 * (ticks[Math.ceil(ticks.length / 2) - 1] + ticks[Math.ceil(ticks.length / 2)]) : 0.5 * (low[axis] + high[axis]);

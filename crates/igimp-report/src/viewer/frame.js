@@ -67,7 +67,7 @@ class Frame {
       const [, name, unit, rest] = /^(.*?)(?: \[(.*?)\](.*))?$/.exec(array.name);
       const add = (what, component) => fields.push({
         key: what ? `${array.name}, ${what}` : array.name, array: array.name, component, whole,
-        unit: unit === undefined ? "" : unit, title: what ? `${name} ${what}` : name, rest: rest || "",
+        unit: unit === undefined ? "" : unit, title: Frame.titled(name, what), rest: rest || "",
       });
       if (components === 1) {
         add("", 0);
@@ -81,6 +81,21 @@ class Frame {
       }
     }
     return fields;
+  }
+
+  // The length of a velocity has a name of its own.
+  static titled(name, what) {
+    if (name === "velocity" && what === "length") return "speed";
+    return what ? `${name} ${what}` : name;
+  }
+
+  // What arrows can show: vectors, and the principal values of stress in the plane.
+  vectors() {
+    const called = (array) => array.name.replace(/ \[.*$/, "");
+    const vectors = this.fields.filter((array) => array.components === 3).map((array) => ({ name: array.name, kind: "vector", title: called(array) }));
+    const stresses = this.fields.filter((array) => array.components === 6 && this.dimension === 2);
+    const named = stresses.map((array) => ({ name: array.name, kind: "stress", title: `principal stresses of ${called(array)}` }));
+    return [...vectors, ...named];
   }
 
   arrayOf(name) {

@@ -1,5 +1,5 @@
-// Boxes drawn by WebGL2: a quad for every face that is seen, one for every box that the cut goes through, and
-// rigid bodies as translucent triangles.
+// Boxes drawn by WebGL2: a quad for every face that is seen, one for every box that the cut goes through, pieces of the
+// plane in their place where there are some, and rigid bodies as translucent triangles.
 
 const LIGHT = `
 uniform vec3 right, up, eye;
@@ -93,6 +93,25 @@ void main() {
   gl_Position = seen(low);
 }`;
 
+const PIECES = `#version 300 es
+precision highp float;
+layout(location = 0) in vec3 low;
+layout(location = 1) in vec4 colour;
+out vec4 tint;
+${LIGHT}
+void main() {
+  tint = colour;
+  gl_Position = seen(low);
+}`;
+
+const PLAIN = `#version 300 es
+precision highp float;
+in vec4 tint;
+out vec4 ink;
+void main() {
+  ink = vec4(tint.rgb, 1.0);
+}`;
+
 const GREY = `#version 300 es
 precision highp float;
 in vec3 place;
@@ -128,10 +147,10 @@ class Surface {
     this.gl = canvas.getContext("webgl2", { antialias: true, alpha: true, premultipliedAlpha: true, preserveDrawingBuffer: true });
     if (!this.gl) throw new Error("no WebGL2");
     const { gl } = this;
-    this.programs = { boxes: program(gl, [BOXES, INK]), bodies: program(gl, [BODIES, GREY]) };
-    this.arrays = { faces: gl.createVertexArray(), caps: gl.createVertexArray(), bodies: gl.createVertexArray() };
+    this.programs = { boxes: program(gl, [BOXES, INK]), bodies: program(gl, [BODIES, GREY]), pieces: program(gl, [PIECES, PLAIN]) };
+    this.arrays = { faces: gl.createVertexArray(), caps: gl.createVertexArray(), bodies: gl.createVertexArray(), pieces: gl.createVertexArray(), slices: gl.createVertexArray() };
     this.buffers = new Map();
-    this.count = { faces: 0, caps: 0, bodies: 0 };
+    this.count = { faces: 0, caps: 0, bodies: 0, pieces: 0, slices: 0 };
   }
 
   // Hands numbers over: `per` components of a type at a place of the program, for every instance.
@@ -148,7 +167,7 @@ class Surface {
   }
 
   // Boxes relative to `origin`, and which of them the faces that are seen belong to.
-  shape({ low, high, lie, faces, origin }, triangles) {
+  shape({ low, high, lie, faces, origin, pieces }, triangles) {
     const { gl } = this;
     const near = (numbers) => Float32Array.from(numbers, (x, k) => x - origin[k % 3]);
     const [own, ends] = [near(low), near(high)];
@@ -167,11 +186,55 @@ class Surface {
     this.hand("caps", 0, 3, gl.FLOAT, own);
     this.hand("caps", 1, 3, gl.FLOAT, ends);
     this.hand("bodies", 0, 3, gl.FLOAT, near(triangles), 0);
-    this.count = { faces: faces.box.length, caps: own.length / 3, bodies: triangles.length / 3 };
+    const corners = pieces ? this.fans(pieces, origin) : 0;
+    this.count = { faces: faces.box.length, caps: own.length / 3, bodies: triangles.length / 3, pieces: corners, slices: 0 };
+  }
+
+  // Pieces as triangles around their first corners, and whose each corner is; the number of corners.
+  fans({ corners, ends, whose }, origin) {
+    const { gl } = this;
+    const places = [];
+    this.owners = [];
+    let start = 0;
+    ends.forEach((end, k) => {
+      for (let at = start + 1; at + 1 < end; at += 1) {
+        for (const corner of [start, at, at + 1]) {
+          places.push(corners[2 * corner] - origin[0], corners[2 * corner + 1] - origin[1]);
+          this.owners.push(whose[k]);
+        }
+      }
+      start = end;
+    });
+    this.hand("pieces", 0, 2, gl.FLOAT, Float32Array.from(places), 0);
+    return this.owners.length;
+  }
+
+  // The faces of a slanted cut: triangles by their corners, and whose each corner is.
+  slice({ places, owners }, origin) {
+    const { gl } = this;
+    this.hand("slices", 0, 3, gl.FLOAT, Float32Array.from(places, (x, k) => x - origin[k % 3]), 0);
+    this.sliced = owners;
+    this.count.slices = owners.length;
+    this.colourSlices();
+  }
+
+  colourSlices() {
+    const { gl, colours } = this;
+    if (this.count.slices === 0 || !colours) return;
+    const own = new Uint8Array(4 * this.sliced.length);
+    this.sliced.forEach((box, k) => own.set(colours.subarray(4 * box, 4 * box + 4), 4 * k));
+    this.hand("slices", 1, 4, gl.UNSIGNED_BYTE, own, 0);
   }
 
   colour(colours) {
     const { gl } = this;
+    this.colours = colours;
+    this.colourSlices();
+    if (this.count.pieces > 0) {
+      const own = new Uint8Array(4 * this.owners.length);
+      this.owners.forEach((box, k) => own.set(colours.subarray(4 * box, 4 * box + 4), 4 * k));
+      this.hand("pieces", 1, 4, gl.UNSIGNED_BYTE, own, 0);
+    }
     this.hand("faces", 3, 4, gl.UNSIGNED_BYTE, this.pick(colours, 4));
     this.hand("caps", 3, 4, gl.UNSIGNED_BYTE, colours);
   }
@@ -202,17 +265,11 @@ class Surface {
       gl.uniform4f(at.cut, ...normal, cut ? cut.offset - dot(normal, origin) : 0);
       return at;
     };
-    const at = use(this.programs.boxes);
-    gl.uniform1f(at.lines, dimension === 2 ? 0.16 : 0.3);
-    gl.uniform1f(at.flatly, dimension === 2 ? 1 : 0);
-    gl.uniform1f(at.caps, 0);
-    gl.bindVertexArray(this.arrays.faces);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.count.faces);
-    if (cut) {
-      gl.uniform1f(at.caps, 1);
-      gl.bindVertexArray(this.arrays.caps);
-      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.count.caps);
-    }
+    if (this.count.pieces > 0) {
+      use(this.programs.pieces);
+      gl.bindVertexArray(this.arrays.pieces);
+      gl.drawArrays(gl.TRIANGLES, 0, this.count.pieces);
+    } else this.paintBoxes(use, cut, dimension);
     if (this.count.bodies > 0) {
       const own = use(this.programs.bodies);
       gl.uniform3fv(own.grey, grey);
@@ -225,5 +282,25 @@ class Surface {
       gl.disable(gl.BLEND);
     }
     gl.disable(gl.SCISSOR_TEST);
+  }
+
+  paintBoxes(use, cut, dimension) {
+    const { gl } = this;
+    const at = use(this.programs.boxes);
+    gl.uniform1f(at.lines, dimension === 2 ? 0.16 : 0.3);
+    gl.uniform1f(at.flatly, dimension === 2 ? 1 : 0);
+    gl.uniform1f(at.caps, 0);
+    gl.bindVertexArray(this.arrays.faces);
+    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.count.faces);
+    if (cut && cut.axis < 0) {
+      if (this.count.slices === 0) return;
+      use(this.programs.pieces);
+      gl.bindVertexArray(this.arrays.slices);
+      gl.drawArrays(gl.TRIANGLES, 0, this.count.slices);
+    } else if (cut) {
+      gl.uniform1f(at.caps, 1);
+      gl.bindVertexArray(this.arrays.caps);
+      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.count.caps);
+    }
   }
 }

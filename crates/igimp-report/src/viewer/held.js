@@ -3,11 +3,17 @@
 document.getElementById("held").addEventListener("toggle", () => {
   const wish = new URLSearchParams(location.hash.slice(1));
   const numbers = (name) => (wish.has(name) ? wish.get(name).split(",").map(Number) : null);
-  const viewer = new Viewer({ field: wish.get("field"), view: wish.get("view"), cut: numbers("cut"), hover: numbers("hover") }, () => {});
+  const viewer = new Viewer({ field: wish.get("field"), view: wish.get("view"), cut: numbers("cut"), hover: numbers("hover"), arrows: wish.get("arrows"), section: numbers("section") }, () => {});
   const frames = [...document.querySelectorAll("script.held-frame")].map((page, k) => {
-    const next = page.nextElementSibling;
-    const bodies = next && next.classList.contains("held-bodies") ? async () => next.textContent : null;
-    return { name: `held ${k}`, key: `held ${k}`, label: page.dataset.label, load: async () => page.textContent, bodies };
+    const beside = (name) => {
+      for (let next = page.nextElementSibling; next && !next.classList.contains("held-frame"); next = next.nextElementSibling) {
+        if (next.classList.contains(name)) return async () => next.textContent;
+      }
+      return null;
+    };
+    const [bodies, members] = ["held-bodies", "held-members"].map(beside);
+    const seconds = page.dataset.seconds ? Number(page.dataset.seconds) : NaN;
+    return { name: `held ${k}`, key: `held ${k}`, label: page.dataset.label, seconds, load: async () => page.textContent, bodies, members };
   });
   viewer.take(frames, []);
 }, { once: true });

@@ -10,11 +10,14 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
+use igimp_figures::Polygon;
+use igimp_results::paraview::read_back::PlaneParticles;
 use igimp_results::vtu::CellKind;
 use igimp_results::vtu::read::{Frame, Stored};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::patches::{Carriers, Pieces};
 use crate::skin::{Boxes, Lie, Skin};
 
 /// Numbers of planes across each axis that are tried, most first.
@@ -84,11 +87,13 @@ struct Array {
     data: String,
 }
 
-/// A frame, of particles or rigid bodies, as JSON that no script ends in; none where it cannot be read.
-pub fn packed(text: &str, keep: Keep) -> Option<String> {
+/// A frame, of particles, rigid bodies or reinforcement, as JSON that no script ends in; none where it cannot be read.
+///
+/// Particles of the plane are there by the pieces of the bodies too, where these are given.
+pub fn packed(text: &str, keep: Keep, pieces: Option<&Pieces>) -> Option<String> {
     let frame = Frame::of(text)?;
     let packed = match frame.kind() {
-        Some(CellKind::Quad | CellKind::Hexahedron) => of_boxes(&frame, keep)?,
+        Some(CellKind::Quad | CellKind::Hexahedron) => of_boxes(&frame, keep, pieces)?,
         Some(kind) => of_bodies(&frame, kind)?,
         None if frame.cells == 0 => nothing(),
         None => return None,
@@ -123,7 +128,7 @@ fn of_bodies(frame: &Frame<'_>, kind: CellKind) -> Option<Packed> {
     })
 }
 
-fn of_boxes(frame: &Frame<'_>, keep: Keep) -> Option<Packed> {
+fn of_boxes(frame: &Frame<'_>, keep: Keep, pieces: Option<&Pieces>) -> Option<Packed> {
     let kind = frame.kind()?;
     let dimension = if kind == CellKind::Quad { 2 } else { 3 };
     let corners = kind.corners().len();
@@ -161,6 +166,13 @@ fn of_boxes(frame: &Frame<'_>, keep: Keep) -> Option<Packed> {
             .collect();
         places.extend([bytes("faces", 1, &faces), bytes("lie", 4, &lie)]);
     }
+    if dimension == 2 {
+        places.extend(
+            pieces
+                .and_then(|pieces| of_pieces(frame, keep, pieces))
+                .unwrap_or_default(),
+        );
+    }
     let fields = frame.arrays("CellData");
     let wanted: Vec<&Stored<'_>> = fields
         .iter()
@@ -179,6 +191,63 @@ fn of_boxes(frame: &Frame<'_>, keep: Keep) -> Option<Packed> {
         places,
         fields,
     })
+}
+
+/// The pieces that particles carry, and the edges of the bodies: corners one after another, where each piece or edge ends among
+/// them, and whose a piece is.
+fn of_pieces(frame: &Frame<'_>, keep: Keep, pieces: &Pieces) -> Option<Vec<Array>> {
+    let particles = PlaneParticles::of(frame)?;
+    let half_length = |&number: &usize| pieces.half_length(number);
+    let half_length0: Vec<[f64; 2]> = particles
+        .number
+        .iter()
+        .map(half_length)
+        .collect::<Option<_>>()?;
+    let carriers = Carriers {
+        x: &particles.x,
+        def_grad: &particles.def_grad,
+        half_length0: &half_length0,
+        number: &particles.number,
+    };
+    let (polygons, whose) = pieces.now(carriers);
+    let edges = pieces.edges(carriers);
+    let ends = [0, 1].map(|axis| {
+        let places = polygons.iter().chain(&edges).flatten().map(|x| x[axis]);
+        places.fold([f64::MAX, f64::MIN], |[a, b], x| [a.min(x), b.max(x)])
+    });
+    let corners = |name: &str, lines: &[Polygon]| {
+        let numbers: Vec<f64> = lines.iter().flatten().flatten().copied().collect();
+        if keep.rounded {
+            rounded(name, &numbers, &ends)
+        } else {
+            exact(name, 2, &numbers)
+        }
+    };
+    let last_of = |name: &str, lines: &[Polygon]| {
+        let mut last = 0;
+        let ends = lines.iter().map(|line| {
+            last += line.len();
+            last
+        });
+        whole(name, ends)
+    };
+    Some(vec![
+        corners("pieces", &polygons),
+        last_of("piece-ends", &polygons),
+        whole("whose", whose.iter().copied()),
+        corners("edges", &edges),
+        last_of("edge-ends", &edges),
+    ])
+}
+
+/// Whole numbers.
+fn whole(name: &str, numbers: impl Iterator<Item = usize>) -> Array {
+    let bytes: Vec<u8> = numbers.flat_map(|own| (own as i32).to_le_bytes()).collect();
+    let array = array(name, 1, "i32", &bytes);
+    Array {
+        whole: true,
+        ..array
+    }
 }
 
 /// Boxes of the skin and those that planes cross, and where these stand.

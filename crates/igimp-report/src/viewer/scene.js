@@ -38,7 +38,8 @@ class Scene {
     this.below = below;
     this.dimension = 0;
     this.boxes = null;
-    this.bodies = { lines: [], triangles: [] };
+    this.bodies = { lines: [], triangles: [], members: [], water: [] };
+    this.overlay = new Overlay(this);
     this.extent = extentOf([]);
     this.cut = null;
     this.marked = -1;
@@ -63,10 +64,25 @@ class Scene {
     this.extent = extentOf(high, extentOf(low, this.extent));
     const faces = Scene.facesOf(shapes.faces || new Uint8Array(count).fill(32));
     const origin = [0, 1, 2].map((k) => (count > 0 ? 0.5 * (this.extent.low[k] + this.extent.high[k]) : 0));
-    this.boxes = { low, high, lie, faces, origin, count };
+    const pieces = shapes.pieces ? { corners: shapes.pieces, ends: shapes["piece-ends"], whose: shapes.whose } : null;
+    const edges = shapes.edges ? { corners: shapes.edges, ends: shapes["edge-ends"] } : null;
+    this.boxes = { low, high, lie, faces, origin, count, pieces, edges };
     if (this.surface) this.surface.shape(this.boxes, bodies.triangles);
+    this.slice();
     this.canvas.dataset.faces = faces.box.length;
     this.canvas.dataset.lines = bodies.lines.length / 6;
+    this.canvas.dataset.members = bodies.members.length / 6;
+    this.canvas.dataset.water = bodies.water.length;
+    this.canvas.dataset.pieces = pieces ? pieces.ends.length : 0;
+    this.canvas.dataset.edges = edges ? edges.ends.length : 0;
+  }
+
+  // The face of a slanted cut; an ordinary canvas has none.
+  slice() {
+    if (!this.surface || !this.cut || this.cut.axis >= 0) return;
+    const face = sliceOf(this.boxes, this.cut);
+    this.surface.slice(face, this.boxes.origin);
+    this.canvas.dataset.cutArea = face.area;
   }
 
   // The faces that are seen, by box and number.
@@ -106,7 +122,7 @@ class Scene {
     const low = [...this.extent.low];
     const high = [...this.extent.high];
     const beside = BESIDE * Math.max(...high.map((x, k) => x - low[k]));
-    for (const points of [this.bodies.lines, this.bodies.triangles]) {
+    for (const points of [this.bodies.lines, this.bodies.triangles, this.bodies.members]) {
       points.forEach((x, k) => {
         const axis = k % 3;
         low[axis] = Math.min(low[axis], Math.max(x, this.extent.low[axis] - beside));
@@ -146,8 +162,10 @@ class Scene {
       pen.clip();
     }
     if (this.surface) this.surface.paint(place, camera, this.cut, this.dimension, sharp, sharesOf(cssColour("--soft")), this.boxes.origin);
+    else if (this.boxes.pieces) this.overlay.pieces(pen, place, this.colours);
     else this.drawn(pen, place);
     this.outlines(pen, place);
+    this.overlay.paint(pen, place);
     this.mark(pen, place);
     pen.restore();
     if (this.dimension === 2) this.axes.plane(pen, place);
@@ -162,7 +180,9 @@ class Scene {
   // Boxes without WebGL2: faces from the farthest to the nearest, and those of the cut.
   drawn(pen, place) {
     const { faces, lie, count } = this.boxes;
-    const { cut, camera } = this;
+    const { camera } = this;
+    // A slanted cut asks for WebGL2.
+    const cut = this.cut && this.cut.axis >= 0 ? this.cut : null;
     const quads = [];
     const add = (box, face, light, corners) => {
       const points = corners.map((corner) => projected(place, camera, corner));
@@ -241,6 +261,10 @@ class Scene {
     const [low, high] = [this.corner("low", this.marked), this.corner("high", this.marked)];
     pen.strokeStyle = cssColour("--cursor");
     pen.lineWidth = 2;
+    if (this.boxes.pieces) {
+      this.overlay.markPiece(pen, place, this.marked);
+      return;
+    }
     for (let face = 0; face < 6; face += 1) {
       if ((2 * (face % 2) - 1) * place.eye[Math.floor(face / 2)] <= 1e-6) continue;
       this.trace(pen, cornersOf(low, high, face).map((corner) => projected(place, this.camera, corner)));
@@ -286,7 +310,9 @@ class Scene {
     return best;
   }
 
+  // The box of the piece that is drawn last over a point of the plane, or the box that holds it.
   holding([x, y]) {
+    if (this.boxes.pieces) return this.overlay.pieceAt(x, y);
     const { low, high, count } = this.boxes;
     let [best, nearest] = [-1, Infinity];
     for (let box = 0; box < count; box += 1) {

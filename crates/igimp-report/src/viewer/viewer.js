@@ -4,8 +4,12 @@
 const KEPT = 8;
 // Frames of more particles are not asked for but by the user.
 const LARGE = 200000;
+// Time that a frame stays where the case has no time [ms].
+const STAY = 250;
+// A motion is played so fast at first that it takes no less than this [s].
+const SHORTEST = 4;
 // Colours of a scale.
-const LEVELS = 128;
+const LEVELS = 256;
 
 function mixed(anchors) {
   return Array.from({ length: LEVELS }, (_, level) => {
@@ -16,11 +20,21 @@ function mixed(anchors) {
   });
 }
 
+// The same colours in steps between places on the scale, each in the colour of its middle.
+function banded(colours, shares) {
+  const edges = [0, ...shares.filter((share) => share > 0.001 && share < 0.999), 1];
+  const last = colours.length - 1;
+  return colours.map((_, level) => {
+    const k = Math.min(edges.findLastIndex((edge) => edge <= level / last), edges.length - 2);
+    return colours[Math.round(0.5 * (edges[k] + edges[k + 1]) * last)];
+  });
+}
+
 class Viewer {
   // `wish` may name a frame (from 1), a field, a place to point at (in space a point of the canvas, as shares of
-  // its sides), a view and a cut; `changed` hears of every frame shown.
+  // its sides), a view, a cut, arrows and the ends of a section; `changed` hears of every frame shown.
   constructor(wish, changed) {
-    this.part = Object.fromEntries(["soil", "field", "map", "state", "state-label", "space", "view", "cut", "cut-row", "cut-at", "cut-told", "cut-side", "canvas", "surface", "bar", "ticks", "bar-label", "play", "slider", "when", "found", "keys", "clamp", "fixed"].map((id) => [id, document.getElementById(id)]));
+    this.part = Object.fromEntries(["soil", "field", "map", "state", "state-label", "space", "view", "cut", "cut-row", "cut-at", "cut-told", "cut-side", "slant-row", "slant-turn", "slant-dip", "slant-told", "canvas", "surface", "bar", "ticks", "bar-label", "play", "slider", "pace", "pace-label", "when", "found", "keys", "clamp", "fixed", "bands", "arrows", "picture", "film", "draw-section", "section", "section-curve", "section-told", "section-table", "section-end"].map((id) => [id, document.getElementById(id)]));
     this.scene = new Scene(this.part.canvas, this.part.surface);
     this.wish = wish;
     this.changed = changed;
@@ -30,12 +44,14 @@ class Viewer {
     this.ranges = new Map();
     this.turn = 0;
     this.pointed = -1;
+    this.longest = new Map();
     this.listen();
+    this.section = new SectionTool(this);
   }
 
-  // Takes up frames: each with a key that names its content, a label and a way to load its text, and that of
-  // its rigid bodies where there are some. Who
-  // looks at the last frame goes on to look at the last.
+  // Takes up frames: each with a key that names its content, a label and a way to load its text, that of its rigid bodies
+  // where there are some, and its time in seconds where the soil moves in time. Who looks at the last frame goes on to look
+  // at the last.
   take(frames, states) {
     const { slider } = this.part;
     const wasLast = this.frames.length === 0 || Number(slider.value) === this.frames.length;
@@ -51,11 +67,15 @@ class Viewer {
     }
     slider.disabled = frames.length < 2;
     this.part.play.disabled = frames.length < 2;
+    this.setPace();
     const { state } = this.part;
     const chosen = state.value;
     state.replaceChildren(new Option("frame by frame", ""), ...states.map((own) => new Option(own.label, own.name)));
     state.value = states.some((own) => own.name === chosen) ? chosen : "";
     this.part["state-label"].hidden = states.length === 0;
+    // A run that ends with a search opens on the way in which the body fails.
+    const mechanism = states.find((own) => own.isMechanism);
+    if (mechanism && !this.shown && !this.wish.framed) state.value = mechanism.name;
     this.show();
   }
 
@@ -65,14 +85,22 @@ class Viewer {
       part.state.value = "";
       this.show();
     });
-    for (const name of ["field", "state", "map", "clamp", "fixed"]) part[name].addEventListener("change", () => this.show());
+    for (const name of ["field", "state", "map", "clamp", "fixed", "bands", "arrows"]) part[name].addEventListener("change", () => this.show());
     part.play.addEventListener("click", () => (this.playing ? this.stop() : this.play()));
     document.getElementById("in").addEventListener("click", () => scene.zoom(1.6));
     document.getElementById("out").addEventListener("click", () => scene.zoom(1 / 1.6));
     document.getElementById("whole").addEventListener("click", () => this.look("whole"));
+    part.picture.addEventListener("click", () => savePicture(this));
+    part.film.addEventListener("click", async () => {
+      this.stop();
+      part.film.disabled = true;
+      await saveFilm(this);
+      part.film.disabled = false;
+    });
     part.view.addEventListener("change", () => this.look(part.view.value));
     part.cut.addEventListener("change", () => this.layCut());
     part["cut-at"].addEventListener("input", () => this.cutThere());
+    for (const name of ["slant-turn", "slant-dip"]) part[name].addEventListener("input", () => this.layCut(this.shareOfCut()));
     part["cut-side"].addEventListener("click", () => {
       this.side = -(this.side || 1);
       this.cutThere();
@@ -89,12 +117,34 @@ class Viewer {
     this.part.view.value = name === "whole" ? "isometric" : name;
   }
 
+  // Lets the pace be chosen where frames have times; at first it is the fastest that is slow enough to be followed.
+  setPace() {
+    const { part } = this;
+    const times = this.frames.map((entry) => entry.seconds).filter(Number.isFinite);
+    const lasts = times.length > 1 ? Math.max(...times) - Math.min(...times) : 0;
+    part["pace-label"].hidden = lasts === 0;
+    if (lasts === 0 || part.pace.dataset.set) return;
+    const paces = [...part.pace.options].map((option) => option.value).filter((value) => Number(value) <= 1);
+    part.pace.value = paces.find((value) => lasts / Number(value) >= SHORTEST) || paces[paces.length - 1];
+    part.pace.dataset.set = "by itself";
+  }
+
+  // How long a frame stays until the next one [ms].
+  stay() {
+    const { slider, pace } = this.part;
+    const [own, next] = [0, -1].map((k) => this.frames[Number(slider.value) - 1 - k]);
+    const lasts = own && next ? next.seconds - own.seconds : NaN;
+    return lasts >= 0 ? (1000 * lasts) / Number(pace.value) : STAY;
+  }
+
   // What depends on the first frame: its dimension and its size.
   furnish(dimension) {
     const { part, wish } = this;
     // A scale for all frames asks for all of them.
     if (this.shown.particles > LARGE) part.fixed.checked = false;
     part.space.hidden = dimension === 2;
+    // Of a thinned body only some planes have all that they cross.
+    part.cut.querySelector("option[value='3']").disabled = Boolean(this.shown.planes) || !this.scene.surface;
     part.canvas.style.touchAction = dimension === 2 ? "pan-y" : "none";
     part.keys.textContent = dimension === 2
       ? "Buttons, or the wheel on the drawing once it was clicked (or with Ctrl), zoom; drag to move. Keys: arrows, + − 0."
@@ -104,7 +154,8 @@ class Viewer {
       wish.view = "";
     }
     if (dimension === 3 && wish.cut) {
-      const [axis, share, side] = wish.cut;
+      const [axis, share, side, turn, dip] = wish.cut;
+      if (turn !== undefined) [part["slant-turn"].value, part["slant-dip"].value] = [turn, dip];
       part.cut.value = String(axis);
       this.side = side || 1;
       this.layCut(share);
@@ -118,7 +169,12 @@ class Viewer {
     const { part, scene } = this;
     const axis = part.cut.value === "" ? -1 : Number(part.cut.value);
     part["cut-row"].hidden = axis < 0;
-    if (axis >= 0) {
+    part["slant-row"].hidden = axis !== 3;
+    if (axis === 3) {
+      const [low, high] = offsetsOf(this.slant(), scene.extent);
+      const slider = Object.assign(part["cut-at"], { min: low, max: high, step: (high - low) / 500 || 1 });
+      slider.value = low + share * (high - low);
+    } else if (axis >= 0) {
       const { planes } = this.shown;
       const slider = part["cut-at"];
       const { low, high } = scene.extent;
@@ -129,10 +185,29 @@ class Viewer {
     this.cutThere();
   }
 
+  // The normal of a slanted cut.
+  slant() {
+    const { part } = this;
+    return slantOf(Number(part["slant-turn"].value), Number(part["slant-dip"].value));
+  }
+
+  // Where the slider of the cut stands, as a share of its way.
+  shareOfCut() {
+    const { min, max, value } = this.part["cut-at"];
+    return max > min ? (value - min) / (max - min) : 0.5;
+  }
+
   cutThere() {
     const { part, scene } = this;
     if (part.cut.value === "") scene.cut = null;
-    else {
+    else if (part.cut.value === "3") {
+      const [normal, at] = [this.slant(), Number(part["cut-at"].value)];
+      const side = this.side || 1;
+      scene.cut = { axis: -1, own: this.side, normal: normal.map((x) => side * x), offset: side * at };
+      part["slant-told"].textContent = `${part["slant-turn"].value}° from x, ${part["slant-dip"].value}°`;
+      part["cut-told"].textContent = "";
+      scene.slice();
+    } else {
       const axis = Number(part.cut.value);
       const { planes } = this.shown;
       const at = planes ? planes[axis][Math.min(Number(part["cut-at"].value), planes[axis].length - 1)] : Number(part["cut-at"].value);
@@ -161,7 +236,7 @@ class Viewer {
     part.state.value = "";
     part.play.textContent = "❚❚";
     part.play.setAttribute("aria-label", "Pause");
-    await Promise.all([this.show(), new Promise((done) => setTimeout(done, 250))]);
+    await Promise.all([this.show(), new Promise((done) => setTimeout(done, this.stay()))]);
     if (!this.playing) return;
     if (Number(part.slider.value) === this.frames.length) {
       this.stop();
@@ -183,10 +258,10 @@ class Viewer {
     return state || this.frames[Number(this.part.slider.value) - 1];
   }
 
-  // A frame, with its rigid bodies where there are some.
+  // A frame, with its rigid bodies and reinforcement where there are some.
   static async read(entry) {
-    const [soil, bodies] = await Promise.all([entry.load(), entry.bodies ? entry.bodies() : null]);
-    return Object.assign(new Frame(soil), { bodies: bodies && new Frame(bodies) });
+    const [soil, bodies, members] = await Promise.all([entry.load(), entry.bodies ? entry.bodies() : null, entry.members ? entry.members() : null]);
+    return Object.assign(new Frame(soil), { bodies: bodies && new Frame(bodies), members: members && new Frame(members) });
   }
 
   // A frame as a promise; those looked at last are kept.
@@ -219,7 +294,9 @@ class Viewer {
       const frame = await this.frame(entry);
       const field = this.choose(frame.shown());
       const [shapes, values] = [await frame.shapes(), await frame.values(field)];
-      const bodies = { lines: [], triangles: [] };
+      const bodies = { lines: [], triangles: [], members: [], water: entry.water || [] };
+      if (frame.members && frame.members.count > 0) bodies.members = (await frame.members.shapes()).corners;
+      const arrows = await this.arrowsOf(frame);
       if (frame.bodies && frame.bodies.count > 0) bodies[frame.bodies.kind] = (await frame.bodies.shapes()).corners;
       this.ranges.set(this.named(entry, field), frame.range(field));
       if (turn !== this.turn) return;
@@ -230,13 +307,45 @@ class Viewer {
         this.scene.show(frame.dimension, shapes, bodies);
         if (isFirst) this.furnish(frame.dimension);
       }
+      this.scene.overlay.arrows = arrows;
       this.paint();
+      this.section.tell();
       await this.describe();
       this.changed(entry, field, Number(this.part.slider.value));
       if (this.part.fixed.checked) await this.gather(field, turn);
     } catch (error) {
       if (turn === this.turn) this.part.when.textContent = `${entry.label}: cannot be read (${error.message})`;
     }
+  }
+
+  // The arrows that are chosen; their list is filled once.
+  async arrowsOf(frame) {
+    const { part, wish } = this;
+    const all = frame.vectors();
+    if (part.arrows.options.length < 2) {
+      part.arrows.append(...all.map((own) => new Option(own.title, own.name)));
+      if (wish.arrows) part.arrows.value = wish.arrows;
+      if (part.arrows.selectedIndex < 0) part.arrows.selectedIndex = 0;
+    }
+    const own = all.find((vector) => vector.name === part.arrows.value);
+    if (!own) return null;
+    const array = frame.arrayOf(own.name);
+    const numbers = await frame.numbers(array);
+    const { components } = array;
+    let most = own.kind === "vector" ? array.range[3][1] : 0;
+    for (let at = 0; own.kind === "stress" && at < numbers.length; at += components) {
+      for (const { value } of principal(numbers[at], numbers[at + 1], numbers[at + 3])) if (Math.abs(value) > most) most = Math.abs(value);
+    }
+    // The same length means the same in all frames that were seen.
+    const largest = Math.max(most, this.longest.get(own.name) || 0);
+    this.longest.set(own.name, largest);
+    return { numbers, components, largest, kind: own.kind };
+  }
+
+  // A picture of what is chosen, once it is drawn.
+  settled() {
+    this.scene.paint();
+    return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(pictureOf(this)))));
   }
 
   named(entry, field) {
@@ -271,22 +380,34 @@ class Viewer {
     const isOfBothSigns = !field.whole && Math.min(below, above) > 0.15 * Math.max(below, above);
     const map = part.map.value === "auto" ? (isOfBothSigns ? "diverging" : "viridis") : part.map.value;
     if (map === "diverging") [low, high] = [-Math.max(Math.abs(low), Math.abs(high)), Math.max(Math.abs(low), Math.abs(high))];
-    const colours = mixed(MAPS[map]);
     this.unit = unitFor(field.unit, Math.max(Math.abs(low), Math.abs(high)));
+    this.barTicks = this.ticksOfBar(low, high);
+    let colours = mixed(MAPS[map]);
+    if (part.bands.checked && !field.whole) colours = banded(colours, this.ticksOfBar(low, high, 10).map((tick) => tick.share));
+    this.colours = colours;
     this.scene.colour(this.values, [low, high], colours);
-    const stops = colours.filter((_, k) => k % 8 === 0 || k === LEVELS - 1).map((colour) => `rgb(${colour})`);
-    part.bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
-    const count = field.whole ? Math.min(high - low, 8) : 4;
-    const shares = high > low ? Array.from({ length: count + 1 }, (_, k) => k / count) : [0.5];
-    const tick = (share) => {
-      const value = low + share * (high - low);
-      if (field.whole) return Math.round(value);
-      return Math.abs(value) < 1e-4 * Math.max(-low, high) ? 0 : value / this.unit[0];
-    };
-    part.ticks.replaceChildren(...shares.map((share) => Object.assign(document.createElement("span"), { textContent: Number.isFinite(low) ? short(tick(share)) : "–" })));
+    const every = part.bands.checked ? 1 : 8;
+    const stops = colours.map((colour, k) => [colour, k]).filter(([, k]) => k % every === 0 || k === LEVELS - 1);
+    part.bar.style.background = `linear-gradient(to right, ${stops.map(([colour, k]) => `rgb(${colour}) ${((100 * k) / (LEVELS - 1)).toFixed(2)}%`).join(", ")})`;
+    part.ticks.replaceChildren(...this.barTicks.map(({ share, text }) => {
+      const mark = Object.assign(document.createElement("span"), { textContent: text });
+      mark.style.left = `${(100 * share).toFixed(3)}%`;
+      return mark;
+    }));
     part["bar-label"].textContent = `${field.title}${this.unit[1] ? ` [${this.unit[1]}]` : ""}${field.rest}`;
     part.when.textContent = this.shownEntry.label;
     part.slider.setAttribute("aria-valuetext", this.shownEntry.label);
+  }
+
+  // Ticks of the colour bar at round values, about so many: their place on it, and their text.
+  ticksOfBar(low, high, about = 7) {
+    const { field, unit } = this;
+    if (!Number.isFinite(low)) return [{ share: 0.5, text: "–" }];
+    if (!(high > low)) return [{ share: 0.5, text: short(field.whole ? Math.round(low) : low / unit[0]) }];
+    const divide = field.whole ? 1 : unit[0];
+    let values = ticksOf(low / divide, high / divide, about);
+    if (field.whole) values = values.filter((value) => Number.isInteger(value));
+    return values.map((value) => ({ share: (value * divide - low) / (high - low), text: field.whole ? String(value) : tickText(value, values) }));
   }
 
   pointAt(box) {

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use igimp_assembly::{Particles, SharedLaw};
-use igimp_model::{Case, Field};
+use igimp_model::{Case, Field, StageKind};
 use igimp_shape::Grid;
 use igimp_text::on_a_line;
 
@@ -58,6 +58,8 @@ pub struct Frames {
     reinforcement: Option<Collection>,
     /// Whether there is pore water to write of.
     pore_water: bool,
+    /// By stage that moves in time: its number, and the places of its frames in the collections with their times \[s\].
+    motion: Vec<(usize, Vec<(usize, f64)>)>,
     /// Frames that the disk is known to have.
     synced: usize,
 }
@@ -78,25 +80,99 @@ impl Frames {
             let opened = is_there.then(|| Collection::resume(folder, stem, frames));
             opened.transpose()
         };
-        Ok(Self {
+        let mut all = Self {
             rigid: of(pvd::RIGID, !case.rigid.is_empty())?,
             reinforcement: of(pvd::REINFORCEMENT, !case.reinforcement.is_empty())?,
             pore_water: case.has_pore_water(),
+            motion: Vec::new(),
             folder: folder.to_path_buf(),
             particles: Collection::resume(folder, pvd::PARTICLES, frames)?,
             grid: Collection::resume(folder, pvd::GRID, frames)?,
             synced: frames,
-        })
+        };
+        for (number, stage) in case.stages.iter().enumerate() {
+            if matches!(stage.kind, StageKind::Dynamic(_)) {
+                all.take_up_motion(number)?;
+            }
+        }
+        Ok(all)
     }
 
-    /// Adds a frame of a stage at a pseudo-time.
+    /// What a stage that moves in time has of frames that are kept; its collections lose the others.
+    fn take_up_motion(&mut self, stage: usize) -> Result<(), ResultsError> {
+        let kept = self.particles.frames();
+        let place = |own: &Frame| kept.iter().position(|frame| frame.file == own.file);
+        let timed = pvd::motion(&self.folder, stage).into_iter();
+        let timed = timed.filter_map(|own| Some((place(&own)?, own.time)));
+        self.motion.push((stage, timed.collect()));
+        self.write_motion(self.motion.len() - 1)
+    }
+
+    /// Begins the frames of a stage that moves in time, by its number from 0: its first is the last frame of the stage that it
+    /// starts from. Whether there is one.
+    ///
+    /// # Errors
+    /// [`ResultsError::File`].
+    pub fn begin_motion(
+        &mut self,
+        stage: usize,
+        from: Option<&str>,
+        seconds: f64,
+    ) -> Result<bool, ResultsError> {
+        let from = from.map(on_a_line);
+        let mut frames = self.particles.frames().iter();
+        let found = frames.rposition(|frame| from.as_deref() == Some(frame.stage.as_str()));
+        let Some(own) = self.motion.iter().position(|(number, _)| *number == stage) else {
+            return Ok(found.is_some());
+        };
+        self.motion[own].1 = found.map(|place| (place, seconds)).into_iter().collect();
+        self.write_motion(own)?;
+        Ok(found.is_some())
+    }
+
+    /// Whether the last frame of a stage, by its number from 0, is that of a time \[s\]; never of a stage that takes no time.
+    pub fn is_at(&self, stage: usize, seconds: f64) -> bool {
+        let own = self.motion.iter().find(|(number, _)| *number == stage);
+        let last = own.and_then(|(_, timed)| timed.last());
+        last.is_some_and(|(_, time)| *time >= seconds)
+    }
+
+    /// The collections of a stage that moves in time, whose times are seconds: a viewer plays them as they were.
+    fn write_motion(&self, own: usize) -> Result<(), ResultsError> {
+        let (stage, timed) = &self.motion[own];
+        let parts = [
+            (Some(&self.particles), ""),
+            (self.rigid.as_ref(), pvd::OF_BODIES),
+            (self.reinforcement.as_ref(), pvd::OF_REINFORCEMENT),
+        ];
+        for (collection, of) in parts {
+            let Some(collection) = collection else {
+                continue;
+            };
+            let name = format!("{}{of}", pvd::of_stage(*stage));
+            let frame = |&(place, time): &(usize, f64)| {
+                let frame = collection.frames().get(place)?.clone();
+                Some(Frame { time, ..frame })
+            };
+            let frames: Vec<Frame> = timed.iter().filter_map(frame).collect();
+            if frames.is_empty() {
+                pvd::remove_states(&self.folder, &name)?;
+            } else {
+                pvd::write_states(&self.folder, &name, frames)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a frame of a stage, by its number from 0 and its name, at a pseudo-time, and at a time \[s\] where the stage takes
+    /// time.
     ///
     /// # Errors
     /// [`ResultsError::File`].
     pub fn add<const D: usize>(
         &mut self,
-        time: f64,
-        stage: &str,
+        (time, seconds): (f64, f64),
+        (number, stage): (usize, &str),
         scene: &Scene<'_, D>,
         grid: &Grid<D>,
     ) -> Result<(), ResultsError> {
@@ -111,7 +187,13 @@ impl Frames {
             let lines = reinforcement::lines(&structures.reinforcement);
             collection.add(time, stage, &lines)?;
         }
-        Ok(())
+        let own = self.motion.iter().position(|(own, _)| *own == number);
+        let Some(own) = own else {
+            return Ok(());
+        };
+        let place = self.len() - 1;
+        self.motion[own].1.push((place, seconds));
+        self.write_motion(own)
     }
 
     /// Writes particles beside the frames, as `NAME.vtu`, rigid bodies as `NAME-rigid.vtu`, and
@@ -177,6 +259,7 @@ impl Frames {
             carried: &carried,
             def_grad: true,
             pore_water: self.pore_water,
+            motion: !self.motion.is_empty(),
         };
         of_particles(particles, &extras)
     }

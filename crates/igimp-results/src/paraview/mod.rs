@@ -3,3 +3,4 @@
 pub mod frames;
 pub mod particles;
 pub mod pvd;
+pub mod read_back;

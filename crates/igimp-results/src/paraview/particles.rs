@@ -19,6 +19,8 @@ pub struct Extras<'a> {
     pub def_grad: bool,
     /// Whether effective stress and pore pressure are written beside total stress.
     pub pore_water: bool,
+    /// Whether velocity and acceleration are written: of bodies that move in time.
+    pub motion: bool,
 }
 
 /// The domains x ± l_p of the particles with their state: quads with z = 0 in the plane,
@@ -26,7 +28,8 @@ pub struct Extras<'a> {
 ///
 /// Cells carry displacement, Cauchy stress σ (total), p, q, plastic strain, number of the material (from 0,
 /// in the order of the case), code of the regime ([`Regime::code`](igimp_material::Regime::code)), number that the particle keeps, volume
-/// and mass; with pore water effective stress σ′, p′, pore pressure u and its excess besides.
+/// and mass; with pore water effective stress σ′, p′, pore pressure u and its excess besides, in motion velocity and
+/// acceleration.
 ///
 /// # Panics
 /// If the utilisation, or what particles carry, is not given for every particle.
@@ -77,6 +80,9 @@ pub fn of_particles<const D: usize>(
             DataArray::scalars("u_excess [Pa], compression +", excess.clone()),
         ]);
     }
+    if extras.motion {
+        cell_data.extend(of_motion(particles));
+    }
     if let Some(utilisation) = extras.utilisation {
         assert_eq!(utilisation.len(), n, "every particle has a utilisation");
         cell_data.push(DataArray::scalars("utilisation [-]", utilisation.to_vec()));
@@ -99,6 +105,14 @@ pub fn of_particles<const D: usize>(
         cell_data,
         field_data: Vec::new(),
     }
+}
+
+/// Velocity and acceleration.
+fn of_motion<const D: usize>(particles: &Particles<D>) -> [DataArray; 2] {
+    [
+        DataArray::vectors("velocity [m/s]", &particles.velocity),
+        DataArray::vectors("acceleration [m/s2]", &particles.acceleration),
+    ]
 }
 
 /// The corners of the domains, particle after particle.
@@ -196,7 +210,7 @@ mod tests {
             utilisation: Some(&[0.75]),
             carried: &[("strength [Pa]".to_owned(), vec![5e3])],
             def_grad: true,
-            pore_water: false,
+            ..Extras::default()
         };
         let grid = of_particles(&seeds::<3>(), &extras);
         assert_eq!((grid.kind, grid.cell_count()), (CellKind::Hexahedron, 1));
@@ -223,10 +237,8 @@ mod tests {
         let body = body(5);
         let particles = &body.particles;
         let extras = Extras {
-            utilisation: None,
-            carried: &[],
             def_grad: true,
-            pore_water: false,
+            ..Extras::default()
         };
         let grid = of_particles(particles, &extras);
         let sigma = &particles.total_stress(0);

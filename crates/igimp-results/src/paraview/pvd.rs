@@ -4,6 +4,7 @@
 //! The collection is written anew after each frame, whole or not at all, so it can be opened while
 //! the run goes on and names no frame that is not there.
 
+use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -151,8 +152,8 @@ impl Collection {
     }
 }
 
-/// Writes the collection of the states at the ends of a search, `NAME.pvd`, in the order of their times: the strength
-/// reduction factors.
+/// Writes the collection of some states of a stage, `NAME.pvd`, in the order of their times: strength reduction factors of the
+/// ends of a search, or seconds of a motion.
 ///
 /// # Errors
 /// [`ResultsError::File`].
@@ -181,6 +182,45 @@ fn text_of(frames: &[Frame]) -> String {
     }
     text.push_str("</Collection>\n</VTKFile>\n");
     text
+}
+
+/// Removes a collection that [`write_states`] wrote, if it is there.
+///
+/// # Errors
+/// [`ResultsError::File`].
+pub(crate) fn remove_states(folder: &Path, name: &str) -> Result<(), ResultsError> {
+    let path = folder.join(format!("{name}.pvd"));
+    match fs::remove_file(&path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(at(&path)(error)),
+        _ => Ok(()),
+    }
+}
+
+/// The name of the collection of a stage, by its number from 0.
+pub fn of_stage(stage: usize) -> String {
+    format!("stage-{:02}", stage + 1)
+}
+
+/// The frames of particles of a stage that moves in time, by its number from 0, with their times \[s\]; none of other
+/// stages.
+pub fn motion(folder: &Path, stage: usize) -> Vec<Frame> {
+    let is_of_run = |frame: &Frame| frame_number(&frame.file, PARTICLES).is_some();
+    let mut frames = frames(folder, &of_stage(stage)).unwrap_or_default();
+    frames.retain(is_of_run);
+    frames
+}
+
+/// The times \[s\] of the frames of particles by their files, of all stages that move in time.
+pub fn seconds(folder: &Path) -> HashMap<String, f64> {
+    let names = fs::read_dir(folder).into_iter().flatten().flatten();
+    let names = names.filter_map(|entry| entry.file_name().into_string().ok());
+    let number = |name: &str| {
+        let digits = name.strip_prefix("stage-")?.strip_suffix(".pvd")?;
+        digits.parse::<usize>().ok()?.checked_sub(1)
+    };
+    let stages = names.filter_map(|name| number(&name));
+    let frames = stages.flat_map(|stage| motion(folder, stage));
+    frames.map(|frame| (frame.file, frame.time)).collect()
 }
 
 /// The frames of a collection, if it can be read.

@@ -39,7 +39,7 @@ table! {
     MONITOR: Monitor<D>, "The material point at a place, watched as it moves.";
     name: name, required "\"crest\"", "name";
     point: point, required "[\"15 m\", \"20 m\"]", "place in the undeformed bodies";
-    record: list(choice(Field), 1, 26), default "[\"displacement\"]", "what is recorded";
+    record: list(choice(Field), 1, 40), default "[\"displacement\"]", "what is recorded";
 }
 
 table! {
@@ -48,7 +48,7 @@ table! {
     from: point, required "[\"20 m\", \"2 m\"]", "one end";
     to: point, required "[\"20 m\", \"15 m\"]", "the other end";
     points: whole(2, 100_000), default "100", "number of equally spaced places";
-    record: list(choice(Field), 1, 26), default "[\"sigma_xx\", \"sigma_yy\", \"tau_xy\"]", "what is written";
+    record: list(choice(Field), 1, 40), default "[\"sigma_xx\", \"sigma_yy\", \"tau_xy\"]", "what is written";
     average: choice(Average), default "\"none\"", "of which particles values are read";
     references: each(table(SECTION_REFERENCE: SectionReference), 0, 100), default "[]",
         "what the values are held against";
@@ -142,7 +142,7 @@ table! {
     OUTPUT: Output, "What is written, and where.";
     folder: text, derived "results/ and the name of the case file", "results folder";
     paraview: table(PARAVIEW: Paraview), default "{}", "particles and grid for ParaView";
-    figures: list(choice(Field), 0, 26), default "[\"displacement\", \"plastic_strain\", \"sigma_yy\"]",
+    figures: list(choice(Field), 0, 40), default "[\"displacement\", \"plastic_strain\", \"sigma_yy\"]",
         "fields drawn at the end of every stage; with none no picture is drawn at all";
     cuts: list(table(CUT: Cut), 0, 20), default "[]",
         "planes in which the fields are drawn as well; without any, upright ones through the middle of the bodies", in_space;
@@ -166,14 +166,16 @@ choices! {
 
 table! {
     PARAVIEW: Paraview, "When particles are written for ParaView.";
-    every: either(choice(OutputTime), whole(1, 1_000_000)), default "\"stage\"",
-        "\"stage\", \"never\" or a number of steps";
+    every: either(choice(OutputTime), whole(1, 1_000_000)),
+        derived "\"film\" where a stage moves in time, else \"stage\"",
+        "\"stage\", \"film\", \"never\" or a number of steps";
 }
 
 choices! {
     /// When particles are written for ParaView.
     OutputTime;
     Stage "stage", "at the end of every stage";
+    Film "film", "some tens of times in every stage and at its end: up to 40 in a motion, at equal times, and 20 in others, at equal shares of the stage";
     Never "never", "not at all";
 }
 

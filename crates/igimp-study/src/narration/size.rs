@@ -6,10 +6,16 @@ use igimp_cases::CaseError;
 use igimp_cases::estimate::speed::Speed;
 use igimp_cases::estimate::watch::side_by_side;
 use igimp_cases::estimate::{Estimate, estimate, readable, time, together};
-use igimp_model::{Case, meshes};
+use igimp_model::{Case, Every, Stage, StageKind, meshes};
 use igimp_text::{count, on_a_line};
 
 use super::table;
+
+/// A particle in a frame, packed, in the plane and in space \[bytes\].
+const FRAME: [f64; 2] = [250.0, 450.0];
+/// Most frames of a motion that makes a film, and those of another stage.
+const FILM_OF_MOTION: usize = 40;
+const FILM: usize = 20;
 
 /// The size of a case and what it will cost.
 #[derive(Clone, Debug)]
@@ -55,6 +61,7 @@ pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Told, CaseErr
         row("time", time::sentence(&time)),
         row("results", case.output.folder.display().to_string()),
     ]);
+    rows.extend(film(case, size.particles).map(|text| row("frames", text)));
     let stages: Vec<Vec<String>> = case
         .stages
         .iter()
@@ -76,6 +83,24 @@ pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Told, CaseErr
         study(case, speed)?
     );
     Ok(Told { size, time, text })
+}
+
+/// How many frames make the film of a run, and what they take; none where a run is to make none.
+fn film<const D: usize>(case: &Case<D>, particles: usize) -> Option<String> {
+    if case.output.paraview != Every::Film {
+        return None;
+    }
+    let of_stage = |stage: &Stage| match stage.kind {
+        StageKind::Dynamic(_) => stage.steps.min(FILM_OF_MOTION) + 2,
+        StageKind::StrengthReduction(_) => 3,
+        _ => stage.steps.min(FILM) + 1,
+    };
+    let frames: usize = case.stages.iter().map(of_stage).sum();
+    let bytes = (frames * particles) as f64 * FRAME[D - 2];
+    Some(format!(
+        "up to {frames}, about {} in paraview/",
+        readable(bytes)
+    ))
 }
 
 /// The meshes of a study of the mesh error, each with its size, and the cost of all; empty without one.

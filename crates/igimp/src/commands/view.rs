@@ -19,13 +19,14 @@ use server::Server;
 
 pub(crate) fn view(arguments: &View) -> Result<Exit, ProgramError> {
     let results = Results::open(&arguments.folder)?;
+    let beside = arguments.beside.as_deref().map(Results::open).transpose()?;
     let (interrupt, interrupted) = mpsc::channel();
     ctrlc::set_handler(move || {
         // The receiver is gone only when the program ends anyway.
         let _ = interrupt.send(());
     })
     .map_err(|error| ProgramError::usage(format!("cannot wait for Ctrl-C: {error}"), ""))?;
-    let server = Server::bind(results)?;
+    let server = Server::bind(results, beside)?;
     let address = server.address();
     server.start()?;
     output::say(&format!("{address}\nCtrl-C ends the view"))?;

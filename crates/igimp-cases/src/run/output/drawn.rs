@@ -108,7 +108,7 @@ impl<const D: usize> Output<D> {
     }
 
     /// The bodies in pieces, cut once.
-    fn pieces(&mut self, case: &Case<2>) -> Result<Arc<Pieces>, CaseError> {
+    pub(super) fn pieces(&mut self, case: &Case<2>) -> Result<Arc<Pieces>, CaseError> {
         let pieces = match &self.pieces {
             Some(pieces) => Arc::clone(pieces),
             None => Arc::new(Pieces::of(case)?),

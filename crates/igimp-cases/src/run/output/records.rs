@@ -146,8 +146,8 @@ impl Records {
         reduced(&self.laws, &moment.controls.srf).unwrap_or_else(|_| self.laws.clone())
     }
 
-    /// A field at the material point of a monitor; not a number while that is not there. The length of a displacement is that
-    /// of its components there.
+    /// A field at the material point of a monitor; not a number while that is not there. The length of a vector is that of its
+    /// components there.
     fn at_monitor<const D: usize>(
         &self,
         monitor: usize,
@@ -156,9 +156,14 @@ impl Records {
         laws: &[SharedLaw],
     ) -> f64 {
         let (place, particles) = (&self.watched[monitor], moment.particles);
-        if field == Field::Displacement {
-            let component =
-                |axis: usize| place.value(particles, |p| particles.displacement[p][axis]);
+        let vectors = match field {
+            Field::Displacement => Some(&particles.displacement),
+            Field::Speed => Some(&particles.velocity),
+            Field::Acceleration => Some(&particles.acceleration),
+            _ => None,
+        };
+        if let Some(vectors) = vectors {
+            let component = |axis: usize| place.value(particles, |p| vectors[p][axis]);
             return fields::length::<D>(&std::array::from_fn(component));
         }
         place.value(particles, |p| fields::value(field, particles, p, laws))

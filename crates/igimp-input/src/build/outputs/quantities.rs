@@ -68,9 +68,11 @@ const GLOBAL: [(&str, Quantity, &str); 10] = [
     ("factor_of_safety", Quantity::FactorOfSafety, "-"),
 ];
 
-/// The fields of a list, each once; reports those that there are in space only.
+/// The fields of a list, each once; reports those that there are in space only, and those of motion where no stage `moves`
+/// soil in time.
 pub(crate) fn fields<const D: usize>(
     named: &[At<Field>],
+    moves: bool,
     problems: &mut Problems,
 ) -> Option<Vec<Field>> {
     let mut fields = Vec::with_capacity(named.len());
@@ -81,6 +83,13 @@ pub(crate) fn fields<const D: usize>(
             problems
                 .error(own.place, message)
                 .help("it is a field of cases with analysis = \"3d\"");
+            return None;
+        }
+        if field.is_of_motion() && !moves {
+            let message = format!("nothing here has a field {}", field.name());
+            problems.error(own.place, message).help(
+                "it is a field of cases with a stage of type \"dynamic\", whose soil moves in time",
+            );
             return None;
         }
         if !fields.contains(&field) {

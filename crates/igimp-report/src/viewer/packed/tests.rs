@@ -37,7 +37,7 @@ fn cube(n: usize) -> UnstructuredGrid {
 }
 
 fn json(grid: &UnstructuredGrid, keep: Keep) -> serde_json::Value {
-    serde_json::from_str(&packed(&grid.to_xml(), keep).unwrap()).unwrap()
+    serde_json::from_str(&packed(&grid.to_xml(), keep, None).unwrap()).unwrap()
 }
 
 /// The bytes of an array as they were before they were sorted.
@@ -70,7 +70,11 @@ fn a_small_body_is_whole() {
     assert_eq!(page["fields"][0]["range"].as_array().unwrap().len(), 4);
     let faces = unpacked(&page["places"][2], 1);
     assert_eq!(faces.iter().map(|mask| mask.count_ones()).sum::<u32>(), 96);
-    assert!(!packed(&cube(4).to_xml(), Keep::MUCH).unwrap().contains('<'));
+    assert!(
+        !packed(&cube(4).to_xml(), Keep::MUCH, None)
+            .unwrap()
+            .contains('<')
+    );
 }
 
 #[test]
@@ -119,8 +123,8 @@ fn far_places_keep_their_digits() {
 #[test]
 fn what_cannot_be_read_is_nothing() {
     let text = cube(2).to_xml();
-    assert!(packed("", Keep::MUCH).is_none());
-    assert!(packed(&text.replace("AQ", "@@"), Keep::MUCH).is_none());
+    assert!(packed("", Keep::MUCH, None).is_none());
+    assert!(packed(&text.replace("AQ", "@@"), Keep::MUCH, None).is_none());
     let none = UnstructuredGrid {
         points: Vec::new(),
         connectivity: Vec::new(),
@@ -128,4 +132,17 @@ fn what_cannot_be_read_is_nothing() {
         ..cube(1)
     };
     assert_eq!(json(&none, Keep::MUCH)["count"], 0);
+}
+
+/// GOAL: without the bodies of the case, and in space, there are no pieces.
+#[test]
+fn pieces_are_those_of_the_plane() {
+    let page = json(&cube(2), Keep::MUCH);
+    let names: Vec<&str> = page["places"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|array| array["name"].as_str().unwrap())
+        .collect();
+    assert_eq!(names, ["low", "high", "faces", "lie"]);
 }

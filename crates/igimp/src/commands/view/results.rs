@@ -1,15 +1,21 @@
 //! The files of a results folder that the page shows, and no others.
 
+use std::collections::HashMap;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::time::UNIX_EPOCH;
 
 use igimp_input::CaseFile;
 use igimp_model::{AnyCase, Every, StageKind};
+use igimp_report::patches::Pieces;
+use igimp_report::pictures::water::tables_after;
 use igimp_report::viewer::{self, Keep};
+use igimp_results::paraview::pvd;
 use igimp_results::summary::Summary;
 use serde_json::{Value, json};
 
+use crate::commands::pieces;
 use crate::error::ProgramError;
 
 /// Folders whose files are shown, by ending, and how they are called in HTTP.
@@ -31,6 +37,8 @@ const LARGEST_SUMMARY: u64 = 64 << 20;
 #[derive(Debug)]
 pub(super) struct Results {
     root: PathBuf,
+    /// The bodies of the plane in pieces, once a frame is asked for.
+    pieces: OnceLock<Option<Pieces>>,
 }
 
 impl Results {
@@ -42,7 +50,10 @@ impl Results {
         };
         let root = fs::canonicalize(folder).map_err(access)?;
         if is_of_a_run(&root) {
-            return Ok(Self { root });
+            return Ok(Self {
+                root,
+                pieces: OnceLock::new(),
+            });
         }
         let mut inside: Vec<PathBuf> = fs::read_dir(&root)
             .map_err(access)?
@@ -97,6 +108,16 @@ impl Results {
             .flat_map(|case| case.stages())
             .map(|stage| &*stage.name)
             .collect();
+        let motions: Vec<Value> = case
+            .iter()
+            .flat_map(|case| case.stages())
+            .map(|stage| match &stage.kind {
+                StageKind::Dynamic(own) => {
+                    json!({ "from": stage.start_from, "lasts": own.duration })
+                }
+                _ => Value::Null,
+            })
+            .collect();
         let recorded: serde_json::Map<String, Value> = case
             .iter()
             .flat_map(|case| case.curves())
@@ -112,11 +133,29 @@ impl Results {
             "folder": self.root.file_name().map(|name| name.to_string_lossy()),
             "stages": stages,
             "planned": planned,
+            "motions": motions,
             "stage_of_curve": recorded,
             "never": case.is_some_and(|case| case.output().paraview == Every::Never),
+            "seconds": self.seconds(),
+            "water": case.map(water_tables),
             "files": files,
         })
         .to_string()
+    }
+
+    /// The times \[s\] of frames by their files, where the soil moves in time.
+    fn seconds(&self) -> serde_json::Map<String, Value> {
+        let folder = self.root.join("paraview");
+        let is_there = fs::canonicalize(&folder).is_ok_and(|real| real == folder);
+        let times = if is_there {
+            pvd::seconds(&folder)
+        } else {
+            HashMap::new()
+        };
+        let named = times
+            .into_iter()
+            .map(|(file, time)| (format!("paraview/{file}"), json!(time)));
+        named.collect()
     }
 
     /// A file by its name in an address, with its length and kind; nothing for names that are not
@@ -132,7 +171,10 @@ impl Results {
     pub(super) fn packed(&self, encoded: &str) -> Option<String> {
         let (path, _) = self.path(encoded)?;
         let is_frame = path.extension().is_some_and(|ending| ending == "vtu");
-        is_frame.then(|| viewer::frame(&path, Keep::MUCH)).flatten()
+        let pieces = self.pieces.get_or_init(|| pieces(&self.root));
+        is_frame
+            .then(|| viewer::frame(&path, Keep::MUCH, pieces.as_ref()))
+            .flatten()
     }
 
     /// The path of a file that is shown, and its kind.
@@ -173,6 +215,19 @@ impl Results {
         }
         serde_json::from_slice(&fs::read(path).ok()?).ok()
     }
+}
+
+/// By stage: the water tables at its end as lines of points \[m\]; none in space.
+fn water_tables(case: &AnyCase) -> Vec<Vec<Vec<[f64; 2]>>> {
+    let AnyCase::Plane(case) = case else {
+        return Vec::new();
+    };
+    let ends = [case.grid.lower()[0], case.grid.upper()[0]];
+    let of_stage = |stage| {
+        let tables = tables_after(case, stage, ends).into_iter();
+        tables.map(|table| table.points).collect()
+    };
+    (0..case.stages.len()).map(of_stage).collect()
 }
 
 /// Whether a run laid out its results here.

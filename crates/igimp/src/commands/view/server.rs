@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::io;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::sync::Arc;
+use std::time::Duration;
 
 use igimp_report::viewer;
 
@@ -11,8 +12,9 @@ use super::http::{self, Body, Request, Status};
 use super::results::Results;
 use crate::error::ProgramError;
 
-/// Connections that are served at the same time; a browser makes six. Others wait.
-const WORKERS: usize = 8;
+/// Connections that are held at the same time. A browser makes six, and may leave some open without asking for anything: they
+/// end by themselves, and keep nobody else out. Beyond this many, new ones are cut.
+const MOST_CONNECTIONS: usize = 256;
 
 /// The page; its parts take the place of the comments that name them.
 const PAGE: &str = include_str!("page/page.html");
@@ -23,6 +25,9 @@ const PARTS: [(&str, &str); 5] = [
     ("/* curves.js */", include_str!("page/curves.js")),
     ("/* page.js */", include_str!("page/page.js")),
 ];
+
+/// The page of two runs, which has the page of each in a frame.
+const BOTH: &str = include_str!("page/both.html");
 
 /// Before the name of a frame that is asked for as the page takes it.
 const PACKED: &str = "packed/";
@@ -49,17 +54,20 @@ struct Site {
     port: u16,
     token: String,
     results: Results,
+    /// Those of another run beside it; addresses then begin with the number of the run.
+    beside: Option<Results>,
 }
 
 impl Server {
     /// Takes a free port of 127.0.0.1 and thinks of a token.
-    pub(super) fn bind(results: Results) -> Result<Self, ProgramError> {
+    pub(super) fn bind(results: Results, beside: Option<Results>) -> Result<Self, ProgramError> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).map_err(network)?;
         let port = listener.local_addr().map_err(network)?.port();
         let site = Site {
             port,
             token: random()?,
             results,
+            beside,
         };
         Ok(Self { listener, site })
     }
@@ -71,23 +79,30 @@ impl Server {
 
     /// Begins to serve, in threads that last as long as the program.
     pub(super) fn start(self) -> Result<(), ProgramError> {
-        let site = Arc::new(self.site);
-        for _ in 0..WORKERS {
-            let listener = self.listener.try_clone().map_err(network)?;
-            let site = Arc::clone(&site);
-            std::thread::spawn(move || {
-                loop {
-                    match listener.accept() {
-                        // Of a client that goes away there is nothing to tell.
-                        Ok((mut stream, _)) => drop(site.serve(&mut stream)),
-                        // Out of file handles, say: no reason to spin.
-                        Err(_) => std::thread::sleep(std::time::Duration::from_millis(100)),
-                    }
+        let Self { listener, site } = self;
+        let site = Arc::new(site);
+        let accept = move || {
+            loop {
+                match listener.accept() {
+                    Ok((stream, _)) => serve_apart(&site, stream),
+                    // Out of file handles, say: no reason to spin.
+                    Err(_) => std::thread::sleep(Duration::from_millis(100)),
                 }
-            });
-        }
+            }
+        };
+        std::thread::Builder::new().spawn(accept).map_err(network)?;
         Ok(())
     }
+}
+
+/// Serves a connection in a thread of its own, or cuts it where there are too many.
+fn serve_apart(site: &Arc<Site>, mut stream: TcpStream) {
+    if Arc::strong_count(site) > MOST_CONNECTIONS {
+        return;
+    }
+    let site = Arc::clone(site);
+    // Of a client that goes away there is nothing to tell; without room for a thread the connection is cut.
+    let _ = std::thread::Builder::new().spawn(move || drop(site.serve(&mut stream)));
 }
 
 impl Site {
@@ -123,15 +138,22 @@ impl Site {
         if !is_same(token, &self.token) {
             return Err(Status::NotFound);
         }
+        let (results, name) = match (&self.beside, name.split_once('/')) {
+            (None, _) => (&self.results, name),
+            (Some(_), None) if name.is_empty() => return both().ok_or(Status::NotFound),
+            (Some(_), Some(("1", rest))) => (&self.results, rest),
+            (Some(beside), Some(("2", rest))) => (beside, rest),
+            _ => return Err(Status::NotFound),
+        };
         match name {
-            "" => page().ok_or(Status::NotFound),
+            "" => page(self.beside.is_some()).ok_or(Status::NotFound),
             "index.json" => Ok(Answer {
                 kind: "application/json",
                 policy: None,
-                body: Body::Text(self.results.index()),
+                body: Body::Text(results.index()),
             }),
             _ if name.starts_with(PACKED) => {
-                let frame = self.results.packed(&name[PACKED.len()..]);
+                let frame = results.packed(&name[PACKED.len()..]);
                 Ok(Answer {
                     kind: "application/json",
                     policy: None,
@@ -139,7 +161,7 @@ impl Site {
                 })
             }
             _ => {
-                let (file, length, kind) = self.results.file(name).ok_or(Status::NotFound)?;
+                let (file, length, kind) = results.file(name).ok_or(Status::NotFound)?;
                 Ok(Answer {
                     kind,
                     policy: None,
@@ -158,8 +180,8 @@ struct Answer {
     body: Body,
 }
 
-/// The page, whose script and style are those with a number that is used once.
-fn page() -> Option<Answer> {
+/// The page, whose script and style are those with a number that is used once; it may stand `beside` another one in ours.
+fn page(beside: bool) -> Option<Answer> {
     let nonce = random().ok()?;
     let mut text = PAGE.replace("NONCE", &nonce);
     for (mark, part) in PARTS {
@@ -168,12 +190,27 @@ fn page() -> Option<Answer> {
     text = text.replace("/* viewer.js */", &viewer::script());
     let policy = format!(
         "default-src 'none'; connect-src 'self'; img-src data:; script-src 'nonce-{nonce}'; \
-         style-src 'nonce-{nonce}'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+         style-src 'nonce-{nonce}'; base-uri 'none'; form-action 'none'; frame-ancestors {}",
+        if beside { "'self'" } else { "'none'" }
     );
     Some(Answer {
         kind: "text/html; charset=utf-8",
         policy: Some(policy),
         body: Body::Text(text),
+    })
+}
+
+/// The page of two runs.
+fn both() -> Option<Answer> {
+    let nonce = random().ok()?;
+    let policy = format!(
+        "default-src 'none'; frame-src 'self'; img-src data:; script-src 'nonce-{nonce}'; style-src 'nonce-{nonce}'; \
+         base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    );
+    Some(Answer {
+        kind: "text/html; charset=utf-8",
+        policy: Some(policy),
+        body: Body::Text(BOTH.replace("NONCE", &nonce)),
     })
 }
 

@@ -63,8 +63,7 @@ class Chart {
     this.svg.replaceChildren();
     const range = (axis) => {
       const own = points.map((point) => point[axis]).filter(Number.isFinite);
-      const [low, high] = [Math.min(...own), Math.max(...own)];
-      return high > low ? [low, high] : [low - 0.5, low + 0.5];
+      return own.length > 0 ? widened(Math.min(...own), Math.max(...own)) : [0, 1];
     };
     drawn(this.svg, "text", { x: (left + right) / 2, y: height - 8, "text-anchor": "middle" }, this.labels[0]);
     drawn(this.svg, "rect", { class: "axis", x: left, y: top, width: right - left, height: bottom - top });
@@ -72,8 +71,9 @@ class Chart {
     const [xs, ys] = [range(0), range(1)];
     this.x = (x) => left + ((right - left) * (x - xs[0])) / (xs[1] - xs[0]);
     this.y = (y) => bottom - ((bottom - top) * (y - ys[0])) / (ys[1] - ys[0]);
-    for (const x of ticksOf(...xs, 4)) drawn(this.svg, "text", { x: this.x(x), y: bottom + 15, "text-anchor": "middle" }, short(x));
-    for (const y of ticksOf(...ys, 4)) drawn(this.svg, "text", { x: left - 5, y: this.y(y) + 4, "text-anchor": "end" }, short(y));
+    const [xTicks, yTicks] = [ticksOf(...xs, 4), ticksOf(...ys, 4)];
+    for (const x of xTicks) drawn(this.svg, "text", { x: this.x(x), y: bottom + 15, "text-anchor": "middle" }, tickText(x, xTicks));
+    for (const y of yTicks) drawn(this.svg, "text", { x: left - 5, y: this.y(y) + 4, "text-anchor": "end" }, tickText(y, yTicks));
     for (const line of new Set(points.map((point) => point[2]))) {
       const own = points.filter((point) => point[2] === line && point.every(Number.isFinite));
       const places = own.map(([x, y]) => `${this.x(x).toFixed(2)},${this.y(y).toFixed(2)}`);

@@ -45,14 +45,19 @@ function stageName(k) {
   return own ? own.name : index.planned[k] || "";
 }
 
-// The way to load the rigid bodies of a frame, where there are some.
-function bodiesOf(name) {
-  const own = name.includes("particles_") ? name.replace("particles_", "rigid_") : name.replace(".vtu", "-rigid.vtu");
+// The way to load the rigid bodies or the reinforcement of a frame, where there are some.
+function besideOf(name, what) {
+  const own = name.includes("particles_") ? name.replace("particles_", `${what}_`) : name.replace(".vtu", `-${what}.vtu`);
   return index.files[own] ? () => fetched(`packed/${own}`) : null;
 }
 
+// The water tables of a stage.
+function waterOf(stage) {
+  return (index.water && index.water[stage]) || [];
+}
+
 function entryOf(name, label, more) {
-  return { name, bodies: bodiesOf(name), label, key: `${name} ${index.files[name]}`, load: () => fetched(`packed/${name}`), ...more };
+  return { name, bodies: besideOf(name, "rigid"), members: besideOf(name, "reinforcement"), label, key: `${name} ${index.files[name]}`, load: () => fetched(`packed/${name}`), ...more };
 }
 
 async function framesOf() {
@@ -64,8 +69,11 @@ async function framesOf() {
     const time = Number(set.getAttribute("timestep"));
     const moment = momentOf(time);
     const own = index.stages[moment.stage];
-    const label = `Frame ${k + 1} of ${sets.length}: stage ${moment.stage + 1} “${stageName(moment.stage)}”, ${own && own.search ? "trial" : "step"} ${moment.step}`;
-    return entryOf(`paraview/${set.getAttribute("file")}`, label, { moment });
+    const name = `paraview/${set.getAttribute("file")}`;
+    const seconds = index.seconds[name];
+    const when = seconds === undefined ? "" : `t = ${short(seconds)} s, `;
+    const label = `Frame ${k + 1} of ${sets.length}: ${when}stage ${moment.stage + 1} “${stageName(moment.stage)}”, ${own && own.search ? "trial" : "step"} ${Math.ceil(moment.step)}`;
+    return entryOf(name, label, { moment, seconds, water: waterOf(moment.stage) });
   });
 }
 
@@ -75,7 +83,11 @@ function statesOf() {
     const found = /^paraview\/stage-(\d+)-(last-stable|first-unstable)\.vtu$/.exec(name);
     if (!found) return null;
     const stage = Number(found[1]) - 1;
-    return entryOf(name, `${stageName(stage)}: ${what[found[2]]}`, { moment: { stage, step: Infinity } });
+    // The state that failed has moved most; where it was not written, the other one tells.
+    const other = name.replace("last-stable", "first-unstable");
+    const isLast = stage === index.planned.length - 1 && stage === index.stages.length - 1;
+    const isMechanism = isLast && (other === name || !index.files[other]);
+    return entryOf(name, `${stageName(stage)}: ${what[found[2]]}`, { moment: { stage, step: Infinity }, isMechanism, water: waterOf(stage) });
   }).filter(Boolean).sort((a, b) => b.name.localeCompare(a.name));
 }
 
@@ -98,6 +110,18 @@ function pointCharts() {
   for (const { chart, name } of charts.values()) chart.point(rowOf(name, tables.get(name), current.moment));
 }
 
+// The times of the rows of a history [s]; null where a stage among them takes no time.
+function timesOf({ rows }) {
+  const ends = [];
+  const times = rows.map(([stage, , progress]) => {
+    const motion = (index.motions || [])[stage - 1];
+    if (!motion) return NaN;
+    ends[stage - 1] = (ends[motion.from] || 0) + progress * motion.lasts;
+    return ends[stage - 1];
+  });
+  return rows.length > 0 && times.every(Number.isFinite) ? times : null;
+}
+
 async function drawTables() {
   const names = Object.keys(index.files).filter((name) => name.endsWith(".csv") && !isContact(name));
   for (const name of names) {
@@ -106,17 +130,18 @@ async function drawTables() {
     const own = { ...table(await fetched(name)), version: index.files[name] };
     tables.set(name, own);
     const title = name.replace(/^.*?\//, "").replace(/\.csv$/, "");
+    const times = isHistory(name) ? timesOf(own) : null;
     const columns = isHistory(name) ? own.header.slice(3).map((label, k) => [label, k + 3]) : [[own.header[1], 1]];
     for (const [label, column] of columns) {
       const id = `${name} ${column}`;
       if (!charts.has(id)) {
         const head = isHistory(name) ? `${title}: ${plain(label)}` : title;
-        const chart = new Chart(document.getElementById("curves"), head, [isHistory(name) ? "row of the table" : own.header[0], label]);
+        const chart = new Chart(document.getElementById("curves"), head, [isHistory(name) ? (times ? "time [s]" : "row of the table") : own.header[0], label]);
         charts.set(id, { chart, name });
       }
       // The displacement may begin anew with a stage: lines of histories do not cross from one to the next.
       const part = (row) => (isHistory(name) ? row[0] : 0);
-      charts.get(id).chart.show(own.rows.map((row, k) => [isHistory(name) ? k : row[0], row[column], part(row)]));
+      charts.get(id).chart.show(own.rows.map((row, k) => [times ? times[k] : isHistory(name) ? k : row[0], row[column], part(row)]));
     }
   }
   for (const [id, { chart, name }] of charts) {
@@ -138,17 +163,52 @@ const viewer = new Viewer(
     frame: Number(asked.get("frame")),
     field: asked.get("field"),
     hover: numbersOf("hover"),
+    framed: asked.has("frame"),
+    arrows: asked.get("arrows"),
+    section: numbersOf("section"),
     view: asked.get("view"),
     cut: numbersOf("cut"),
   },
   (entry, field, frame) => {
     current = entry;
     pointCharts();
+    if (isBeside) window.parent.postMessage({ frame, frames: viewer.frames.length, seconds: entry.seconds, field: field.key, label: entry.label, isOwn: chosen(frame, field.key) !== followed }, location.origin);
     const isLast = frame === viewer.frames.length;
     const kept = new URLSearchParams({ ...(isLast ? {} : { frame }), field: field.key });
     history.replaceState(null, "", `#${kept}`);
   },
 );
+
+// Beside another run the page follows what is chosen there: the frame of the same time, or at the same share of all, and the
+// field. What was followed is not handed back.
+const isBeside = window.parent !== window;
+let followed = "";
+
+function chosen(frame, field) {
+  return `${frame} ${field}`;
+}
+
+function frameLike({ frame, frames, seconds }) {
+  const own = viewer.frames;
+  const times = own.map((entry) => (seconds === undefined || entry.seconds === undefined ? Infinity : Math.abs(entry.seconds - seconds)));
+  const nearest = Math.min(...times);
+  if (Number.isFinite(nearest)) return times.indexOf(nearest) + 1;
+  return Math.round(((frame - 1) / Math.max(frames - 1, 1)) * (own.length - 1)) + 1;
+}
+
+window.addEventListener("message", (event) => {
+  if (!isBeside || event.source !== window.parent || event.origin !== location.origin || viewer.frames.length === 0) return;
+  const { slider, field, state } = viewer.part;
+  const frame = frameLike(event.data);
+  const isKnown = [...field.options].some((option) => option.value === event.data.field);
+  const wanted = isKnown ? event.data.field : field.value;
+  if (Number(slider.value) === frame && field.value === wanted && state.value === "") return;
+  followed = chosen(frame, wanted);
+  slider.value = frame;
+  field.value = wanted;
+  state.value = "";
+  viewer.show();
+});
 
 function tell(text) {
   const message = document.getElementById("message");

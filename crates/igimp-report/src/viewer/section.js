@@ -1,0 +1,169 @@
+// A section drawn by hand in the plane: values along it, as a curve and as a table.
+
+// Places along a section.
+const PLACES = 200;
+
+// Reach of a particle in a mean along a section, in half the diagonals of its box.
+const REACH = 1.6;
+
+// The mean of the particles around a point, the nearer the heavier.
+function meanAround(scene, values, [x, y]) {
+  const { low, high, count } = scene.boxes;
+  let [sum, weights] = [0, 0];
+  for (let box = 0; box < count; box += 1) {
+    const at = 3 * box;
+    const reach = REACH * 0.5 * Math.hypot(high[at] - low[at], high[at + 1] - low[at + 1]);
+    const off = Math.hypot(0.5 * (low[at] + high[at]) - x, 0.5 * (low[at + 1] + high[at + 1]) - y) / reach;
+    if (!(off < 1) || !Number.isFinite(values[box])) continue;
+    const weight = (1 - off) ** 2;
+    sum += weight * values[box];
+    weights += weight;
+  }
+  return weights > 0 ? sum / weights : NaN;
+}
+
+// Values along a line at equal distances: means of the particles around, or the particle's where there is one alone; none
+// outside the bodies.
+function alongSection(scene, values, [from, to]) {
+  const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
+  return Array.from({ length: PLACES + 1 }, (_, k) => {
+    const share = k / PLACES;
+    const at = [0, 1].map((axis) => from[axis] + share * (to[axis] - from[axis]));
+    const box = scene.holding(at);
+    const mean = box < 0 ? NaN : meanAround(scene, values, at);
+    return [share * length, box >= 0 && Number.isNaN(mean) ? values[box] : mean, ...at];
+  });
+}
+
+// A curve with its axes, as the lines of an SVG.
+function sectionCurve(svg, rows, labels, divide) {
+  const [width, height, left, right, top, bottom] = [460, 220, 60, 450, 10, 175];
+  svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+  svg.replaceChildren();
+  const points = rows.map(([s, value]) => [s, value / divide]);
+  const own = points.map((point) => point[1]).filter(Number.isFinite);
+  if (own.length === 0) return;
+  const [xs, ys] = [[0, rows[rows.length - 1][0]], widened(Math.min(...own), Math.max(...own))];
+  const x = (s) => left + ((right - left) * (s - xs[0])) / (xs[1] - xs[0]);
+  const y = (value) => bottom - ((bottom - top) * (value - ys[0])) / (ys[1] - ys[0]);
+  const add = (name, attributes, text) => {
+    const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+    for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+    if (text !== undefined) element.textContent = text;
+    svg.append(element);
+  };
+  add("rect", { class: "axis", x: left, y: top, width: right - left, height: bottom - top });
+  const [xTicks, yTicks] = [ticksOf(...xs, 5), ticksOf(...ys, 4)];
+  for (const tick of xTicks) add("text", { x: x(tick), y: bottom + 15, "text-anchor": "middle" }, tickText(tick, xTicks));
+  for (const tick of yTicks) add("text", { x: left - 5, y: y(tick) + 4, "text-anchor": "end" }, tickText(tick, yTicks));
+  add("text", { x: (left + right) / 2, y: height - 8, "text-anchor": "middle" }, labels[0]);
+  // A gap where the line leaves the bodies.
+  let run = [];
+  const flush = () => {
+    if (run.length > 1) add("polyline", { class: "curve", points: run.join(" ") });
+    run = [];
+  };
+  for (const [s, value] of points) {
+    if (Number.isFinite(value)) run.push(`${x(s).toFixed(2)},${y(value).toFixed(2)}`);
+    else flush();
+  }
+  flush();
+}
+
+// The values of a section as a table with SI units.
+function sectionTable(rows, header) {
+  const lines = rows.filter((row) => Number.isFinite(row[1])).map(([s, value, x, y]) => [s, x, y, value].map((own) => own.toExponential(6)).join(","));
+  return [`distance_[m],x_[m],y_[m],"${header.replaceAll('"', '""')}"`, ...lines, ""].join("\n");
+}
+
+// The section of a viewer: drawn with the pointer once its button was pressed, told of in every frame.
+class SectionTool {
+  constructor(viewer) {
+    this.viewer = viewer;
+    this.from = null;
+    this.along = [];
+    const { part } = viewer;
+    this.button = part["draw-section"];
+    this.button.addEventListener("click", () => this.press(!this.isOn()));
+    const drawing = part.canvas.parentElement;
+    const on = (name, call) => drawing.addEventListener(name, call.bind(this), { capture: true });
+    on("pointerdown", this.begin);
+    on("pointermove", this.move);
+    on("pointerup", this.end);
+    part["section-end"].addEventListener("click", () => this.lay(null));
+    part["section-table"].addEventListener("click", () => this.keepTable());
+  }
+
+  press(isOn) {
+    this.button.setAttribute("aria-pressed", String(isOn));
+  }
+
+  isOn() {
+    return this.button.getAttribute("aria-pressed") === "true";
+  }
+
+  // The place of the pointer [m]; the event goes no further.
+  place(event) {
+    event.stopPropagation();
+    event.preventDefault();
+    const { part, scene } = this.viewer;
+    const box = part.canvas.getBoundingClientRect();
+    const [x, y] = lifted(scene.layout(), scene.camera, event.clientX - box.left, event.clientY - box.top);
+    return [x, y];
+  }
+
+  begin(event) {
+    const { canvas } = this.viewer.part;
+    if (!this.isOn() || event.target !== canvas) return;
+    this.from = this.place(event);
+  }
+
+  move(event) {
+    if (this.from) this.lay([this.from, this.place(event)]);
+  }
+
+  end(event) {
+    if (!this.from) return;
+    this.lay([this.from, this.place(event)]);
+    this.from = null;
+    this.press(false);
+  }
+
+  // Takes a section up, or away.
+  lay(section) {
+    const { scene } = this.viewer;
+    const isLine = section && Math.hypot(section[1][0] - section[0][0], section[1][1] - section[0][1]) > 0;
+    scene.overlay.section = isLine ? section : null;
+    this.tell();
+    scene.paint();
+  }
+
+  // The curve in the frame that is shown.
+  tell() {
+    const { part, scene, wish, field, values, shownEntry } = this.viewer;
+    this.button.hidden = scene.dimension !== 2;
+    if (wish.section && scene.dimension === 2) {
+      const [a, b, c, d] = wish.section;
+      scene.overlay.section = [[a, b], [c, d]];
+      wish.section = null;
+    }
+    const { section } = scene.overlay;
+    part.section.hidden = !section;
+    if (!section) return;
+    this.along = alongSection(scene, values, section);
+    const largest = this.along.reduce((most, row) => (Math.abs(row[1]) > most ? Math.abs(row[1]) : most), 0);
+    const [divide, unit] = unitFor(field.unit, largest);
+    sectionCurve(part["section-curve"], this.along, ["distance from A to B [m]"], divide);
+    const [from, to] = section.map((point) => `(${point.map(short).join(", ")})`);
+    part["section-told"].textContent = `${field.title}${unit ? ` [${unit}]` : ""}${field.rest} along A–B, from ${from} to ${to} m; ${shownEntry.label}`;
+    const inside = this.along.filter((row) => Number.isFinite(row[1]));
+    const [first, last] = [inside[0], inside[inside.length - 1]].map((row) => (row ? row[1] : ""));
+    Object.assign(part.section.dataset, { places: inside.length, first, last });
+  }
+
+  keepTable() {
+    const { field } = this.viewer;
+    const header = `${field.title}${field.unit ? `_[${field.unit}]` : ""}`.replaceAll(" ", "_");
+    keep(new Blob([sectionTable(this.along, header)], { type: "text/csv" }), nameOf(this.viewer, "csv"));
+  }
+}

@@ -1,0 +1,217 @@
+//! Frames of particles read back as fields, in the printed sign: for pictures of what a run left.
+
+use igimp_model::Field;
+
+use crate::fields::length;
+use crate::vtu::CellKind;
+use crate::vtu::read::Frame;
+
+/// Components of symmetric tensors in a frame.
+const XX: usize = 0;
+const YY: usize = 1;
+const ZZ: usize = 2;
+const XY: usize = 3;
+const YZ: usize = 4;
+const XZ: usize = 5;
+
+/// The particles of a frame in the plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlaneParticles {
+    /// Centres of the domains \[m\].
+    pub x: Vec<[f64; 2]>,
+    /// Deformation gradients \[-\].
+    pub def_grad: Vec<[[f64; 2]; 2]>,
+    /// The numbers that particles keep.
+    pub number: Vec<usize>,
+}
+
+impl PlaneParticles {
+    /// The particles of a frame; none of a frame in space, and of one that cannot be read.
+    pub fn of(frame: &Frame<'_>) -> Option<Self> {
+        if frame.cells == 0 {
+            let nothing = (Vec::new(), Vec::new(), Vec::new());
+            let (x, def_grad, number) = nothing;
+            return Some(Self {
+                x,
+                def_grad,
+                number,
+            });
+        }
+        if frame.kind()? != CellKind::Quad {
+            return None;
+        }
+        let corners = frame.corners(4)?;
+        let (quads, _) = corners.as_chunks::<4>();
+        let middle = |quad: &[[f64; 3]; 4]| [0, 1].map(|a| 0.5 * (quad[0][a] + quad[2][a]));
+        let gradients = array(frame, "deformation gradient [-]", 9)?;
+        let gradient = |own: &[f64; 9]| [[own[0], own[1]], [own[3], own[4]]];
+        let number = |&number: &f64| (number >= 0.0).then_some(number as usize);
+        let numbers = array(frame, "particle", 1)?;
+        Some(Self {
+            x: quads.iter().map(middle).collect(),
+            def_grad: gradients.as_chunks::<9>().0.iter().map(gradient).collect(),
+            number: numbers.iter().map(number).collect::<Option<_>>()?,
+        })
+    }
+}
+
+/// The numbers of an array of a frame.
+fn array(frame: &Frame<'_>, name: &str, components: usize) -> Option<Vec<f64>> {
+    let arrays = frame.arrays("CellData");
+    let own = arrays.iter().find(|own| own.name == name)?;
+    (own.components == components).then(|| own.numbers(frame.cells))?
+}
+
+/// A component of an array, times a factor; zero stays without a sign.
+fn component(
+    frame: &Frame<'_>,
+    (name, components): (&str, usize),
+    component: usize,
+    sign: f64,
+) -> Option<Vec<f64>> {
+    let numbers = array(frame, name, components)?;
+    let own = numbers.iter().skip(component).step_by(components);
+    Some(own.map(|value| 0.0 + sign * value).collect())
+}
+
+/// The values of a field by particle, as [`fields::values`](crate::fields::values) gives them in SI units, compression
+/// positive; none where the frame does not have the field.
+///
+/// Strength, friction and stiffness are in frames of soil whose particles carry values of their own.
+pub fn values(frame: &Frame<'_>, field: Field) -> Option<Vec<f64>> {
+    let scalar = |name| component(frame, (name, 1), 0, 1.0);
+    let of = |name, axis| component(frame, (name, 3), axis, 1.0);
+    let lengths = |name| {
+        let numbers = array(frame, name, 3)?;
+        Some(numbers.as_chunks::<3>().0.iter().map(length).collect())
+    };
+    let total = |axis| component(frame, ("sigma [Pa], tension +", 6), axis, -1.0);
+    // Without water total and effective stress are the same.
+    let effective = |axis| {
+        let own = component(frame, ("sigma_eff [Pa], tension +", 6), axis, -1.0);
+        own.or_else(|| total(axis))
+    };
+    let none = || Some(vec![0.0; frame.cells]);
+    match field {
+        Field::Displacement => lengths("displacement [m]"),
+        Field::DisplacementX => of("displacement [m]", 0),
+        Field::DisplacementY => of("displacement [m]", 1),
+        Field::DisplacementZ => of("displacement [m]", 2),
+        Field::Speed => lengths("velocity [m/s]"),
+        Field::VelocityX => of("velocity [m/s]", 0),
+        Field::VelocityY => of("velocity [m/s]", 1),
+        Field::VelocityZ => of("velocity [m/s]", 2),
+        Field::Acceleration => lengths("acceleration [m/s2]"),
+        Field::AccelerationX => of("acceleration [m/s2]", 0),
+        Field::AccelerationY => of("acceleration [m/s2]", 1),
+        Field::AccelerationZ => of("acceleration [m/s2]", 2),
+        Field::X => centres(frame, 0),
+        Field::Y => centres(frame, 1),
+        Field::Z => centres(frame, 2),
+        Field::SigmaXx => total(XX),
+        Field::SigmaYy => total(YY),
+        Field::SigmaZz => total(ZZ),
+        Field::TauXy => total(XY),
+        Field::TauYz => total(YZ),
+        Field::TauXz => total(XZ),
+        Field::P => scalar("p [Pa], compression +"),
+        Field::SigmaEffXx => effective(XX),
+        Field::SigmaEffYy => effective(YY),
+        Field::SigmaEffZz => effective(ZZ),
+        Field::PEff => {
+            scalar("p_eff [Pa], compression +").or_else(|| scalar("p [Pa], compression +"))
+        }
+        Field::U => scalar("u [Pa], compression +").or_else(none),
+        Field::UExcess => scalar("u_excess [Pa], compression +").or_else(none),
+        Field::Q => scalar("q [Pa]"),
+        Field::PlasticStrain => scalar("plastic strain [-]"),
+        Field::Utilisation => scalar("utilisation [-]"),
+        Field::Strength => scalar("strength [Pa]"),
+        Field::Friction => scalar("friction angle [rad]"),
+        Field::Young => scalar("Young's modulus [Pa]"),
+    }
+}
+
+/// A coordinate of the centres of the domains.
+fn centres(frame: &Frame<'_>, axis: usize) -> Option<Vec<f64>> {
+    let kind = frame.kind()?;
+    let corners = kind.corners().len();
+    // The corner opposite the first.
+    let opposite = if kind == CellKind::Quad { 2 } else { 6 };
+    let points = frame.corners(corners)?;
+    let cells = points.chunks_exact(corners);
+    let middle = |cell: &[[f64; 3]]| 0.5 * (cell[0][axis] + cell[opposite][axis]);
+    Some(cells.map(middle).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use igimp_assembly::{ParticleFields, Particles};
+    use igimp_shape::Axis;
+
+    use super::*;
+    use crate::checkpoint::tests::body;
+    use crate::fields;
+    use crate::paraview::particles::{Extras, of_particles};
+    use crate::scratch::Scratch;
+
+    /// GOAL: a field that is read back from a frame is the field of the particles, and so are their places.
+    /// ORACLE: the fields of the particles themselves; of what a frame does not hold there is nothing.
+    #[test]
+    fn frames_are_read_back_as_fields() {
+        let mut arrays: ParticleFields<2> = (*body(7).particles).clone();
+        for k in 0..7 {
+            arrays.velocity[k] = [0.5 * k as f64, -1.5];
+            arrays.acceleration[k] = [-9.81, 0.25 * k as f64];
+        }
+        let particles = Particles::from_fields(arrays).unwrap();
+        let share: Vec<f64> = (0..7).map(|k| f64::from(k) / 7.0).collect();
+        let extras = Extras {
+            utilisation: Some(&share),
+            def_grad: true,
+            pore_water: true,
+            motion: true,
+            ..Extras::default()
+        };
+        let scratch = Scratch::new();
+        let path = scratch.path().join("frame.vtu");
+        of_particles(&particles, &extras).write(&path).unwrap();
+        let text = std::fs::read_to_string(path).unwrap();
+        let frame = Frame::of(&text).unwrap();
+        for &field in Field::ALL.iter().filter(|field| field.exists_in(2)) {
+            let read = values(&frame, field);
+            match field {
+                Field::Strength | Field::Friction | Field::Young => assert_eq!(read, None),
+                Field::Utilisation => assert_eq!(read.as_deref(), Some(&share[..])),
+                _ => {
+                    let own = fields::values(field, &particles, &[]);
+                    let read = read.unwrap_or_else(|| panic!("no {field:?}"));
+                    for (a, b) in std::iter::zip(read, own) {
+                        assert!(
+                            (a - b).abs() <= 1e-12 * b.abs().max(1e-9),
+                            "{field:?}: {a} {b}"
+                        );
+                    }
+                }
+            }
+        }
+        let read = PlaneParticles::of(&frame).unwrap();
+        assert_eq!(read.number, particles.number);
+        assert_eq!(read.def_grad, particles.def_grad);
+    }
+
+    #[test]
+    fn a_grid_is_no_frame_of_particles() {
+        let axis = || Axis::uniform(0.0, 1.0, 2).unwrap();
+        let grid = igimp_shape::Grid::new([axis(), axis()]);
+        let scratch = Scratch::new();
+        let path = scratch.path().join("grid.vtu");
+        let cells = crate::paraview::particles::of_grid(&grid, None);
+        cells.write(&path).unwrap();
+        let text = std::fs::read_to_string(path).unwrap();
+        let frame = Frame::of(&text).unwrap();
+        assert_eq!(PlaneParticles::of(&frame), None);
+        assert_eq!(values(&frame, Field::Speed), None);
+        assert_eq!(values(&frame, Field::X), Some(vec![0.5, 1.5, 0.5, 1.5]));
+    }
+}
