@@ -400,6 +400,7 @@ mod tests {
                 water: None,
                 drained: false,
                 time: 0.0,
+                walls: Vec::new(),
             },
         };
         let events = [

@@ -314,12 +314,15 @@ fn soil(begun: &Begun<'_>, x: [f64; 2]) -> Option<Soil> {
     for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
         let tent = |k: usize, t: f64| if k == 0 { 1.0 - t } else { t };
         let share = tent(i, within[0]) * tent(j, within[1]);
-        let node = begun
-            .stencils
-            .master(grid.node_index([cell[0] + i, cell[1] + j]));
-        let fill = begun.stencils.node_fill(grid, node);
-        if share > 1e-9 && fill > 0.0 && fill >= begun.below {
-            nodes.push((node, share));
+        if share <= 1e-9 {
+            continue;
+        }
+        let node = grid.node_index([cell[0] + i, cell[1] + j]);
+        for carrier in begun.stencils.carriers(node) {
+            let fill = begun.stencils.node_fill(grid, carrier.node);
+            if fill > 0.0 && fill >= begun.below {
+                nodes.push((carrier.node, carrier.weight * share));
+            }
         }
     }
     let sum: f64 = nodes.iter().map(|(_, share)| share).sum();
