@@ -46,7 +46,7 @@ pub use equations::trial::Trial;
 pub use error::AssemblyError;
 pub use laws::SharedLaw;
 pub use method::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
-pub use step::small_cuts::Carrier;
 pub use step::stencils::Stencils;
+pub use step::ties::Carrier;
 pub use step::unknowns::Unknowns;
 pub use work::{PlasticFlow, StepWork};

@@ -254,7 +254,13 @@ fn a_block_falls_freely() {
                 lumped,
                 ..over(0.25, scheme)
             };
-            let reports = run(&mut body, &Method::default(), &conditions, time, 20);
+            let mut method = Method::default();
+            if lumped > 0.0 && lumped < 1.0 {
+                // As stages that take time have it, with nodes at corners that are small cuts.
+                method.small_cuts.below = 0.3;
+                method.small_cuts.remedy = Remedy::Extrapolate;
+            }
+            let reports = run(&mut body, &method, &conditions, time, 20);
             let fallen = match scheme {
                 TimeScheme::BackwardEuler => 0.3 * 0.25 * 0.25 * 210.0,
                 _ => 0.5 * 0.3 * 25.0,

@@ -41,9 +41,10 @@ fn slid(rigid: RigidBody<2>, is_free_to_turn: bool) -> RigidBody<2> {
     let mut body = block(&grid, [0, 0], [10, 2]);
     let weight = rigid.motion.mass * GRAVITY;
     body.rigid = vec![rigid];
-    let turn = match is_free_to_turn {
-        true => Drive::Loaded(0.0),
-        false => Drive::Moved(0.0),
+    let turn = if is_free_to_turn {
+        Drive::Loaded(0.0)
+    } else {
+        Drive::Moved(0.0)
     };
     let motion = RigidMotion {
         displacement: [weight * SLOPE.sin(), -weight * SLOPE.cos()].map(Drive::Loaded),

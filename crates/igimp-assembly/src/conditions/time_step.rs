@@ -16,7 +16,7 @@ pub struct TimeStep {
     pub must_resolve: bool,
 }
 
-/// A scheme of time integration (theory, eqs. 60, 60a and 61).
+/// A scheme of time integration (theory, eqs. 60 and 61).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeScheme {
     /// First order; motion that a step does not resolve is damped out.

@@ -410,7 +410,7 @@ impl NodalMass {
                             let share = m * row.value;
                             let own_share = lumped + (1.0 - lumped) * row.value;
                             diagonal[row.node - nodes.start] += share * own_share;
-                            if lumped == 1.0 {
+                            if lumped >= 1.0 {
                                 continue;
                             }
                             let row = &mut beyond[row.node - nodes.start];

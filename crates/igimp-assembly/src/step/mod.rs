@@ -7,4 +7,5 @@ pub(crate) mod small_cuts;
 pub(crate) mod stencils;
 pub(crate) mod strips;
 pub(crate) mod supports;
+pub(crate) mod ties;
 pub(crate) mod unknowns;

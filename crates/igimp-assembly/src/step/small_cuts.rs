@@ -1,51 +1,24 @@
 //! Nodes that a body only touches at a corner, and the nodes that they are tied to (theory, eqs. 26
-//! and 27).
+//! and 27), or that their motion is extrapolated from (theory, eq. 63a).
 
 use std::collections::BTreeMap;
 
-use igimp_shape::{Grid, Support};
+use igimp_shape::Grid;
 
 use crate::conditions::constraints::Constraints;
 use crate::step::node_shares::NodeShare;
 use crate::step::supports::Supports;
+use crate::step::ties::{Carrier, Ties};
 
 /// How many cells away from a small cut the cell may be from which its displacement is extrapolated: from further on, the motion of
 /// a spray would be that of its neighbours many times over.
 const REACH: usize = 1;
 
+/// What extrapolation leaves to a node that it rests on, of the volume below which a node is a small cut \[-\].
+const KEPT: f64 = 0.5;
+
 /// What is none of a weight \[-\].
 const ROUND_OFF: f64 = 1e-12;
-
-/// A node that a small cut moves with, and by how much.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Carrier {
-    /// The node.
-    pub node: usize,
-    /// What its displacement counts; the weights of a tie sum to one \[-\].
-    pub weight: f64,
-}
-
-/// Tied nodes with the nodes that they move with.
-pub(crate) type Ties = BTreeMap<usize, Vec<Carrier>>;
-
-/// Supports on the nodes that tied ones move with, in their order; equal nodes are not added up.
-pub(crate) fn carried<const D: usize>(supports: &[Support<D>], ties: &Ties) -> Vec<Support<D>> {
-    let mut own = Vec::with_capacity(supports.len());
-    for support in supports {
-        match ties.get(&support.node) {
-            None => own.push(*support),
-            Some(carriers) => {
-                own.extend(carriers.iter().map(|&Carrier { node, weight }| Support {
-                    node,
-                    value: weight * support.value,
-                    grad: support.grad.map(|own| weight * own),
-                    grad_bar: support.grad_bar.map(|own| weight * own),
-                }))
-            }
-        }
-    }
-    own
-}
 
 /// Which nodes are small cuts, their volume being less than `below` of their cells'. Touched, not of positive volume: a point on a
 /// face sees the cell beyond by its gradient only.
@@ -63,14 +36,16 @@ pub(crate) fn small_cuts<const D: usize>(
 }
 
 /// Ties small cuts to the nearest cell whose nodes all carry enough soil, by its linear functions beyond its faces: of equally near
-/// ones to that with most soil. What a cut is held by holds all nodes that it is tied to. Cuts without such a cell find none.
+/// ones to that with most soil. What a cut is held by holds all nodes that it is tied to, and weights below zero leave these half of
+/// what makes a cut at least. Cuts without such a cell find none.
 pub(crate) fn extrapolations<const D: usize>(
     grid: &Grid<D>,
     shares: &[NodeShare],
     constraints: &Constraints<D>,
-    cuts: &[bool],
+    (cuts, below): (&[bool], f64),
 ) -> Ties {
     let mut ties = Ties::new();
+    let mut left: Vec<f64> = shares.iter().map(|share| share.volume).collect();
     for cut in (0..cuts.len()).filter(|&node| cuts[node]) {
         let held = |axis: usize| constraints.of(cut, axis);
         if (0..D).all(|axis| held(axis).is_some()) {
@@ -80,8 +55,9 @@ pub(crate) fn extrapolations<const D: usize>(
         for cell in cells_around(grid, cut) {
             let carriers = carried_beyond(grid, cell, cut);
             let is_firm = carriers.iter().all(|own| {
-                shares[own.node].is_touched
-                    && !cuts[own.node]
+                let then = left[own.node] + own.weight * shares[cut].volume;
+                !cuts[own.node]
+                    && then > KEPT * below * cell_volume(grid, own.node)
                     && (0..D).all(|axis| {
                         held(axis).is_none() || held(axis) == constraints.of(own.node, axis)
                     })
@@ -93,13 +69,16 @@ pub(crate) fn extrapolations<const D: usize>(
             let distance: f64 = carriers.iter().map(|own| own.weight.abs()).sum();
             let soil: f64 = carriers.iter().map(|own| shares[own.node].volume).sum();
             let is_nearer = (nearest.as_ref()).is_none_or(|&(other, most, _)| {
-                distance < other || (distance == other && soil > most)
+                distance < other || (distance <= other && soil > most)
             });
             if is_nearer {
                 nearest = Some((distance, soil, carriers));
             }
         }
         if let Some((_, _, carriers)) = nearest {
+            for own in &carriers {
+                left[own.node] += own.weight * shares[cut].volume;
+            }
             ties.insert(cut, carriers);
         }
     }

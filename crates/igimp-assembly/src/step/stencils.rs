@@ -10,11 +10,10 @@ use crate::method::{Method, Remedy, SmallCuts};
 use crate::step::cell_soil::Moments;
 use crate::step::domain::bounds;
 use crate::step::node_shares::{NodeShare, node_shares};
-use crate::step::small_cuts::{
-    Carrier, Ties, carried, cell_volume, extrapolations, masters_of_cuts, small_cuts,
-};
+use crate::step::small_cuts::{cell_volume, extrapolations, masters_of_cuts, small_cuts};
 use crate::step::strips::Strips;
 use crate::step::supports::Supports;
+use crate::step::ties::{Carrier, Ties, carried};
 
 /// Basis values S, gradients ∇S and cell-averaged centre gradients ∇S̄ of all particles.
 ///
@@ -25,6 +24,8 @@ pub struct Stencils<const D: usize> {
     supports: Supports<D>,
     shares: Vec<NodeShare>,
     ties: Ties,
+    /// Whether other nodes move with a node.
+    is_carrier: Vec<bool>,
     strips: Strips,
 }
 
@@ -50,12 +51,14 @@ impl<const D: usize> Stencils<D> {
         let mut strips = Strips::build(grid, &supports);
         let mut shares = node_shares(grid, particles, &supports, &strips);
         let ties = ties(method, conditions, &supports, &shares);
+        let mut is_carrier = vec![false; grid.node_count()];
         if !ties.is_empty() {
             let mut tied = vec![false; grid.node_count()];
             for (&node, carriers) in &ties {
                 tied[node] = true;
                 let share = std::mem::take(&mut shares[node]);
                 for Carrier { node, weight } in carriers {
+                    is_carrier[*node] = true;
                     shares[*node].volume += weight * share.volume;
                     shares[*node].mass += weight * share.mass;
                 }
@@ -69,6 +72,7 @@ impl<const D: usize> Stencils<D> {
             supports,
             shares,
             ties,
+            is_carrier,
             strips,
         })
     }
@@ -135,6 +139,11 @@ impl<const D: usize> Stencils<D> {
         self.ties.contains_key(&node)
     }
 
+    /// Whether other nodes move with a node: it has enough soil, whatever extrapolation took from it.
+    pub(crate) fn is_carrier(&self, node: usize) -> bool {
+        self.is_carrier[node]
+    }
+
     /// The nodes that a node moves with: itself alone unless it is tied.
     pub fn carriers(&self, node: usize) -> impl Iterator<Item = Carrier> + '_ {
         let tie = self.ties.get(&node);
@@ -170,7 +179,7 @@ fn ties<const D: usize>(
         return Ties::new();
     }
     let mut ties = match remedy {
-        Remedy::Extrapolate => extrapolations(grid, shares, constraints, &cuts),
+        Remedy::Extrapolate => extrapolations(grid, shares, constraints, (&cuts, below)),
         Remedy::Tie | Remedy::Drop => Ties::new(),
     };
     let masters = masters_of_cuts(grid, supports, shares, constraints, &cuts);

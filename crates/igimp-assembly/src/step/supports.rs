@@ -9,7 +9,7 @@ use crate::laws::SharedLaw;
 use crate::method::{Geometry, Locking, Method};
 use crate::step::cell_soil::{CellSoil, Moments};
 use crate::step::domain::{bounds, capped_half_length, merge_equal_nodes, off_grid};
-use crate::step::small_cuts::{Ties, carried};
+use crate::step::ties::{Ties, carried};
 
 /// The supports of each particle, nodes ascending.
 #[derive(Clone, Debug)]

@@ -53,7 +53,8 @@ impl<const D: usize> Unknowns<D> {
             first.push(len);
             blocks_before.push(blocks);
             let volume = stencils.node_volume(node);
-            active[node] = volume > 0.0 && volume >= drop_below * cell_volume(grid, node);
+            let has_soil = volume > 0.0 && volume >= drop_below * cell_volume(grid, node);
+            active[node] = has_soil || stencils.is_carrier(node);
             if !active[node] {
                 continue;
             }
