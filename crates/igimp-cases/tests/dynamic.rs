@@ -59,23 +59,33 @@ fn a_column_collapses_and_comes_to_rest() {
     );
 }
 
-/// GOAL: a run in the middle of a motion goes on with the same bytes, by either scheme.
+/// GOAL: a run in the middle of a motion goes on with the same bytes, by any scheme, and with a rigid body that falls and meets soil.
 #[test]
 fn a_resumed_motion_leaves_the_same_files() {
-    for scheme in ["backward-euler", "newmark"] {
-        let scheme = format!("stages.collapse.scheme = {scheme}");
-        let file = collapse(&[
+    let schemes = ["backward-euler", "newmark", "generalised-alpha"].map(|scheme| {
+        let of_scheme = format!("stages.collapse.scheme = {scheme}");
+        collapse(&[
             "stages.collapse.duration = 0.03 s",
             "stages.collapse.steps = 2",
-            &scheme,
-        ]);
+            &of_scheme,
+        ])
+    });
+    let impact = shipped::find("impact").unwrap();
+    let impact = impact.case_file(["stages.fall.duration = 0.35 s", "stages.fall.steps = 5"]);
+    let all = schemes.into_iter().zip(std::iter::repeat(6));
+    for (file, taken) in all.chain([(impact.unwrap(), 12)]) {
         let whole = folder("dynamic-whole");
         assert_done(&run_into((&file, file.case()), &whole, Start::Afresh, None).summary);
         let resumed = folder("dynamic-resumed");
-        let stopped = run_into((&file, file.case()), &resumed, Start::Afresh, Some(9));
-        assert!(stopped.summary.interrupted);
+        let stopped = run_into((&file, file.case()), &resumed, Start::Afresh, Some(taken));
+        let title = &file.case().title;
+        assert!(stopped.summary.interrupted, "{title}");
         assert_done(&run_into((&file, file.case()), &resumed, Start::Resume, None).summary);
-        assert_equal(&everything(&whole), &everything(&resumed), &scheme);
+        assert_equal(
+            &everything(&whole),
+            &everything(&resumed),
+            &file.case().title,
+        );
     }
 }
 
