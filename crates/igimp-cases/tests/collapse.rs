@@ -9,7 +9,7 @@ use igimp_results::summary::StageOutcome;
 /// Half the width of the columns \[m\].
 const HALF_WIDTH: f64 = 0.1;
 
-/// The run-out of a column over half its width, to the front that leaves a hundredth of the sand outside \[-\].
+/// The run-out of a column over half its width, to where the domains of all but a hundredth of its particles end \[-\].
 fn run_out(aspect: usize) -> f64 {
     let height = 10 * aspect;
     let changes = [

@@ -229,3 +229,21 @@ fn a_block_falls_in_space() {
         assert!(displacement[0].abs() < 1e-9 && velocity[1].abs() < 1e-9);
     }
 }
+
+/// GOAL: a body that is let go without a mass is refused, where it is named.
+#[test]
+fn a_free_body_without_weight_is_refused() {
+    let impact = shipped::find("impact").unwrap();
+    let refused = impact
+        .case_file(["rigid.boulder.weight = 0 kN/m"])
+        .unwrap_err();
+    let text = refused.to_string();
+    assert!(
+        text.contains("`boulder` is loaded or free in stage `fall`"),
+        "{text}"
+    );
+    assert!(
+        text.contains("has no mass") && text.contains("state its weight"),
+        "{text}"
+    );
+}

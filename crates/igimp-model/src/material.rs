@@ -52,6 +52,17 @@ impl PartialEq for GivenLaw {
 const LEAST_COHESION: f64 = 1.0 / 400.0;
 
 impl Material {
+    /// Speed of a compression wave under a gravity \[m/s²\] \[m/s\]; none where there is no weight.
+    pub fn wave_speed(&self, gravity: f64) -> f64 {
+        let (young, poisson) = (self.young, self.poisson);
+        let modulus = young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+        if self.unit_weight > 0.0 {
+            (modulus * gravity / self.unit_weight).sqrt()
+        } else {
+            0.0
+        }
+    }
+
     /// The constitutive law; where strength, friction or stiffness vary, that of the greatest, of which particles have multiples.
     ///
     /// # Errors

@@ -174,6 +174,14 @@ pub enum Reduction {
 }
 
 impl StageKind {
+    /// Most frames of a film of the stage: more where the soil moves in time.
+    pub fn film_frames(&self) -> usize {
+        match self {
+            Self::Dynamic(_) => 40,
+            _ => 20,
+        }
+    }
+
     /// Its name in a case file.
     pub fn name(&self) -> &'static str {
         match self {

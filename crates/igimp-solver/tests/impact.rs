@@ -5,7 +5,7 @@
 
 mod body_support;
 
-use body_support::{YOUNG, block, elastic, unit_grid, workspace};
+use body_support::{YOUNG, elastic, workspace};
 use igimp_assembly::{
     Constraints, Drive, Interface, Method, ParticleSeed, Particles, RigidBody, RigidMotion, Shear,
     StepConditions, StepLoads, Surface, Tension, TimeScheme, TimeStep,
@@ -35,10 +35,40 @@ fn over(duration: f64, is_first: bool) -> TimeStep {
     }
 }
 
-/// A body of a mass that has moved along the slope on two layers of ground, free to turn or not.
-fn slid(rigid: RigidBody<2>, is_free_to_turn: bool) -> RigidBody<2> {
-    let grid = unit_grid([10, 6]);
-    let mut body = block(&grid, [0, 0], [10, 2]);
+/// Two layers of ground of 2 particles per cell and direction, on a base that holds them.
+fn ground<const D: usize>(cells: [usize; D]) -> (Grid<D>, Particles<D>, Constraints<D>) {
+    let grid = Grid::new(cells.map(|count| Axis::uniform(0.0, 1.0, count).unwrap()));
+    let mut along = cells.map(|count| 2 * count);
+    along[D - 1] = 4;
+    let seeds: Vec<_> = (0..along.iter().product())
+        .map(|mut index: usize| ParticleSeed {
+            x: std::array::from_fn(|axis| {
+                let own = index % along[axis];
+                index /= along[axis];
+                0.25 + 0.5 * own as f64
+            }),
+            half_length: [0.25; D],
+            volume: 0.5_f64.powi(D as i32),
+            density: 1.0,
+            law: 0,
+            centroid: [0.0; D],
+        })
+        .collect();
+    let mut constraints = Constraints::free(&grid);
+    for axis in 0..D {
+        constraints.fix_wall(&grid, D - 1, false, axis).unwrap();
+    }
+    (grid, Particles::new(&seeds).unwrap(), constraints)
+}
+
+/// A body of a mass that has moved along the slope on ground of so many cells, free to turn or not.
+fn slid<const D: usize>(
+    cells: [usize; D],
+    rigid: RigidBody<D>,
+    is_free_to_turn: bool,
+) -> RigidBody<D> {
+    let (grid, particles, constraints) = ground(cells);
+    let mut body = Body::new(particles);
     let weight = rigid.motion.mass * GRAVITY;
     body.rigid = vec![rigid];
     let turn = if is_free_to_turn {
@@ -46,15 +76,14 @@ fn slid(rigid: RigidBody<2>, is_free_to_turn: bool) -> RigidBody<2> {
     } else {
         Drive::Moved(0.0)
     };
+    let mut displacement = [Drive::Loaded(0.0); D];
+    displacement[0] = Drive::Loaded(weight * SLOPE.sin());
+    displacement[D - 1] = Drive::Loaded(-weight * SLOPE.cos());
     let motion = RigidMotion {
-        displacement: [weight * SLOPE.sin(), -weight * SLOPE.cos()].map(Drive::Loaded),
-        rotation: [turn, Drive::Moved(0.0), Drive::Moved(0.0)],
+        displacement,
+        rotation: [turn; 3],
     };
-    let mut constraints = Constraints::free(&grid);
-    for axis in 0..2 {
-        constraints.fix_wall(&grid, 1, false, axis).unwrap();
-    }
-    let loads = StepLoads::gravity([0.0; 2]);
+    let loads = StepLoads::gravity([0.0; D]);
     let conditions = StepConditions::new(grid, constraints, loads, vec![elastic()])
         .unwrap()
         .with_motions(vec![motion])
@@ -62,10 +91,8 @@ fn slid(rigid: RigidBody<2>, is_free_to_turn: bool) -> RigidBody<2> {
     let (method, settings) = (Method::igimp(), NewtonSettings::default());
     let mut workspace = workspace();
     // It comes to rest before it is let go.
-    let pressed = RigidMotion {
-        displacement: [Drive::Moved(0.0), Drive::Loaded(-weight * SLOPE.cos())],
-        ..RigidMotion::held()
-    };
+    let mut pressed = RigidMotion::held();
+    pressed.displacement[D - 1] = displacement[D - 1];
     let still = conditions.clone().with_motions(vec![pressed]).unwrap();
     for k in 0..80 {
         let time = TimeStep {
@@ -144,14 +171,14 @@ fn a_block_slides_by_what_friction_leaves() {
         let surface = Surface::polygon(&corners, 0.25, 1.0).unwrap();
         let mut block = RigidBody::new(surface, vec![rubbing(friction); 4], [3.0, 1.999]);
         block.motion.mass = 1.0;
-        let way = slid(block, false).pose.origin[0] - 3.0;
+        let way = slid([10, 6], block, false).pose.origin[0] - 3.0;
         let expected = GRAVITY * (SLOPE.sin() - friction * SLOPE.cos());
         within(0.01, acceleration(way), expected);
     }
 }
 
 /// GOAL: a cylinder rolls by two thirds of what it would slide by without friction. It turns by some tenth less than its way over
-/// its radius, for what comes into contact sticks anew: the page on limits says so.
+/// its radius, as the page on limits states: what comes into contact sticks anew.
 #[test]
 fn a_cylinder_rolls() {
     for (mass, cell) in [(20.0, 0.12), (20.0, 0.25)] {
@@ -159,11 +186,30 @@ fn a_cylinder_rolls() {
         let mut cylinder = RigidBody::new(surface, vec![rubbing(0.4)], [3.0, 2.999]);
         cylinder.motion.mass = mass;
         cylinder.motion.moments[2][2] = 0.5 * mass;
-        let moved = slid(cylinder, true);
+        let moved = slid([10, 6], cylinder, true);
         let way = moved.pose.origin[0] - 3.0;
+        let lag = 1.0 + moved.pose.angle[0] / way;
+        println!("cylinder {} lag {lag}", acceleration(way));
         within(0.02, acceleration(way), 2.0 / 3.0 * GRAVITY * SLOPE.sin());
-        within(0.15, -moved.pose.angle[0], way);
+        assert!((0.05..0.15).contains(&lag), "{lag}");
     }
+}
+
+/// GOAL: what the page on limits states of a sphere in space: it rolls too slowly, and climbs as it turns.
+/// ORACLE: 5/7 of what it would slide by without friction, at the height that it rests at. The day it rolls right this fails.
+#[test]
+fn a_sphere_in_space_rolls_too_slowly() {
+    let surface = Surface::sphere(1.0, 0.25).unwrap();
+    let mut sphere = RigidBody::new(surface, vec![rubbing(0.5)], [3.0, 2.5, 2.999]);
+    sphere.motion.mass = 20.0;
+    for axis in 0..3 {
+        sphere.motion.moments[axis][axis] = 0.4 * sphere.motion.mass;
+    }
+    let moved = slid([9, 5, 6], sphere, true);
+    let share = acceleration(moved.pose.origin[0] - 3.0) / (5.0 / 7.0 * GRAVITY * SLOPE.sin());
+    let climb = moved.pose.origin[2] - 3.0;
+    println!("sphere {share} of its acceleration, {climb} up");
+    assert!((0.3..0.8).contains(&share), "{share}");
 }
 
 /// GOAL: two bars that meet with opposite velocities exchange them in the time that a wave goes to and fro.

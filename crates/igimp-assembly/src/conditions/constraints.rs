@@ -28,19 +28,14 @@ impl<const D: usize> Constraints<D> {
     /// [`AssemblyError::UnknownNode`], [`AssemblyError::UnknownAxis`] or
     /// [`AssemblyError::NonFinite`].
     pub fn prescribe(&mut self, node: usize, axis: usize, value: f64) -> Result<(), AssemblyError> {
-        let nodes = self.prescribed.len();
-        let entry = self
-            .prescribed
-            .get_mut(node)
-            .ok_or(AssemblyError::UnknownNode { node, nodes })?;
-        known_axis::<D>(axis)?;
+        let entry = self.entry(node, axis)?;
         if !value.is_finite() {
             return Err(AssemblyError::NonFinite {
                 what: "prescribed displacement",
                 index: node,
             });
         }
-        entry[axis] = Some(value);
+        *entry = Some(value);
         Ok(())
     }
 
@@ -49,14 +44,15 @@ impl<const D: usize> Constraints<D> {
     /// # Errors
     /// [`AssemblyError::UnknownNode`] or [`AssemblyError::UnknownAxis`].
     pub fn release(&mut self, node: usize, axis: usize) -> Result<(), AssemblyError> {
-        let nodes = self.prescribed.len();
-        let entry = self
-            .prescribed
-            .get_mut(node)
-            .ok_or(AssemblyError::UnknownNode { node, nodes })?;
-        known_axis::<D>(axis)?;
-        entry[axis] = None;
+        *self.entry(node, axis)? = None;
         Ok(())
+    }
+
+    fn entry(&mut self, node: usize, axis: usize) -> Result<&mut Option<f64>, AssemblyError> {
+        let nodes = self.prescribed.len();
+        known_axis::<D>(axis)?;
+        let entry = self.prescribed.get_mut(node);
+        Ok(&mut entry.ok_or(AssemblyError::UnknownNode { node, nodes })?[axis])
     }
 
     /// Holds one component of displacement on all nodes of a wall: axis `normal`, its lower or

@@ -42,7 +42,8 @@ pub(crate) fn extrapolations<const D: usize>(
     grid: &Grid<D>,
     shares: &[NodeShare],
     constraints: &Constraints<D>,
-    (cuts, below): (&[bool], f64),
+    cuts: &[bool],
+    below: f64,
 ) -> Ties {
     let mut ties = Ties::new();
     let mut left: Vec<f64> = shares.iter().map(|share| share.volume).collect();

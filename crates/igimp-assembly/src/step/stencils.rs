@@ -179,7 +179,7 @@ fn ties<const D: usize>(
         return Ties::new();
     }
     let mut ties = match remedy {
-        Remedy::Extrapolate => extrapolations(grid, shares, constraints, (&cuts, below)),
+        Remedy::Extrapolate => extrapolations(grid, shares, constraints, &cuts, below),
         Remedy::Tie | Remedy::Drop => Ties::new(),
     };
     let masters = masters_of_cuts(grid, supports, shares, constraints, &cuts);

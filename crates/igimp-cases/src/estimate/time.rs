@@ -11,7 +11,7 @@
 //! closes in) may take fewer
 //! steps than it plans: the time is then an upper bound, and [`Time::open_ended`] says so.
 
-use igimp_model::{Case, Every, ReductionPath, SearchMethod, Stage, StageKind};
+use igimp_model::{Case, Dynamic, Every, ReductionPath, SearchMethod, Stage, StageKind};
 use igimp_results::summary::StageSummary;
 use serde::{Deserialize, Serialize};
 
@@ -31,8 +31,6 @@ const ROWS: f64 = 5e-4;
 const PICTURE: [f64; 2] = [2e-2, 7e-6];
 /// A checkpoint or a frame \[s\], and its part by particle.
 const STATE: [f64; 2] = [4e-3, 1.5e-6];
-/// Most frames of a stage whose frames make a film.
-const MOST_FRAMES: f64 = 40.0;
 /// Start, model, report \[s\].
 const BEGINNING: f64 = 6e-2;
 /// Shares of the time that more threads divide: of marching, of output \[-\].
@@ -41,6 +39,8 @@ const PARALLEL: [f64; 2] = [0.8, 0.6];
 const PATH_STEPS: f64 = 14.0;
 const PATH_CORRECTIONS: f64 = 130.0;
 
+/// Cells that the fastest wave crosses in a step of time: 2 to 7 in the shipped cases.
+const CELLS_PER_STEP: f64 = 4.0;
 /// Corrections of a trial that fails, beside those of its accepted steps.
 const FAILING: f64 = 15.0;
 
@@ -57,7 +57,9 @@ pub struct Time {
 
 /// The time of a case of a size on a computer of a speed, with the threads of the current pool.
 pub fn time<const D: usize>(case: &Case<D>, size: &Estimate, speed: Speed) -> Time {
-    let stages: Vec<StepsTaken> = case.stages.iter().map(planned).collect();
+    let stages: Vec<StepsTaken> = (case.stages.iter())
+        .map(|stage| planned(case, stage))
+        .collect();
     Time {
         seconds: of_stages(case, size, speed, &stages),
         open_ended: case.stages.iter().any(is_open_ended),
@@ -70,7 +72,7 @@ pub fn shares<const D: usize>(case: &Case<D>) -> Vec<f64> {
     let corrections: Vec<f64> = case
         .stages
         .iter()
-        .map(|stage| planned(stage).corrections)
+        .map(|stage| planned(case, stage).corrections)
         .collect();
     let all: f64 = corrections.iter().sum();
     corrections.iter().map(|own| own / all).collect()
@@ -97,7 +99,7 @@ struct StepsTaken {
 }
 
 /// The effort that the case plans for a stage.
-fn planned(stage: &Stage) -> StepsTaken {
+fn planned<const D: usize>(case: &Case<D>, stage: &Stage) -> StepsTaken {
     let steps = stage.steps as f64;
     let (steps, trials) = match &stage.kind {
         StageKind::StrengthReduction(search) => {
@@ -118,11 +120,7 @@ fn planned(stage: &Stage) -> StepsTaken {
                 ReductionPath::Reduce => (steps + 3.0, 4.0),
             }
         }
-        // No step is longer than the interval of its record.
-        StageKind::Dynamic(own) => match &own.ground_motion {
-            Some(motion) => (steps.max(own.duration / motion.interval()), 0.0),
-            None => (steps, 0.0),
-        },
+        StageKind::Dynamic(own) => (steps.max(steps_of_time(case, own)), 0.0),
         _ => (steps, 0.0),
     };
     let to_collapse =
@@ -147,6 +145,20 @@ fn planned(stage: &Stage) -> StepsTaken {
     }
 }
 
+/// The steps of a stage that takes time: by the cells that waves cross, and none longer than the interval of its record.
+fn steps_of_time<const D: usize>(case: &Case<D>, own: &Dynamic) -> f64 {
+    let speeds = case
+        .materials
+        .iter()
+        .map(|material| material.wave_speed(case.gravity));
+    let fastest = speeds.fold(0.0, f64::max);
+    let cell = (case.grid.smallest_cell().into_iter()).fold(f64::INFINITY, f64::min);
+    let by_waves = own.duration * fastest / (CELLS_PER_STEP * cell);
+    let record = own.ground_motion.as_ref();
+    let by_record = record.map_or(0.0, |motion| own.duration / motion.interval());
+    by_waves.max(by_record)
+}
+
 /// The effort that a stage took.
 fn taken(stage: &StageSummary) -> StepsTaken {
     let trials = stage
@@ -167,7 +179,8 @@ fn is_open_ended(stage: &Stage) -> bool {
     matches!(
         stage.kind,
         StageKind::RunOut(_) | StageKind::StrengthReduction(_)
-    ) || stop.displacement.is_some()
+    ) || matches!(&stage.kind, StageKind::Dynamic(own) if own.at_rest.is_some())
+        || stop.displacement.is_some()
         || stop.no_equilibrium
         || stop.load_grows_less_than.is_some()
 }
@@ -186,7 +199,7 @@ fn of_stages<const D: usize>(
     };
     let mut marching = 0.0;
     let mut states = stages.len() as f64;
-    for stage in stages {
+    for (stage, planned) in std::iter::zip(stages, &case.stages) {
         let passes = stage.corrections + stage.steps;
         let assembly = particles * (step * stage.steps + pass * passes);
         let solving = stage.corrections * size.systems.seconds;
@@ -197,7 +210,7 @@ fn of_stages<const D: usize>(
         states += match case.output.paraview {
             Every::Never | Every::Stage => 0.0,
             Every::Steps(every) => stage.steps / every.max(1) as f64,
-            Every::Film => stage.steps.min(MOST_FRAMES),
+            Every::Film => stage.steps.min(planned.kind.film_frames() as f64),
         };
     }
     let [picture, field] = PICTURE;

@@ -11,10 +11,6 @@ use crate::error::CaseError;
 use crate::run::model::Model;
 use crate::run::state::State;
 
-/// Most frames of a motion that makes a film, and those of another stage.
-const FILM_OF_MOTION: usize = 40;
-const FILM: f64 = 20.0;
-
 impl<const D: usize> Output<D> {
     /// The state that a motion begins with as its first frame, unless it is the last frame of the stage before it.
     pub(crate) fn begin_motion(
@@ -78,13 +74,14 @@ pub(super) fn has_frame<const D: usize>(
 ) -> bool {
     let report = &taken.accepted.report;
     let number = frame_number(stage, summary, taken);
+    let most = stage.kind.film_frames();
     let is_every = |every: usize| number.is_some_and(|own| own.is_multiple_of(every.max(1)));
     match every {
         Every::Never | Every::Stage => false,
         Every::Steps(every) => is_every(every),
-        Every::Film if report.energy.is_some() => is_every(stage.steps.div_ceil(FILM_OF_MOTION)),
+        Every::Film if report.energy.is_some() => is_every(stage.steps.div_ceil(most)),
         Every::Film => {
-            let place = |share: f64| (FILM * share + 1e-6).floor();
+            let place = |share: f64| (most as f64 * share + 1e-6).floor();
             place(report.to) > place(report.from)
         }
     }

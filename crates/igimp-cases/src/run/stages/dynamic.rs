@@ -24,9 +24,6 @@ use crate::run::state::{Controls, State};
 /// The first step over the time in which a wave crosses a cell \[-\].
 const FIRST_STEP: f64 = 1.0;
 
-/// The longest step on ground that moves, over the interval between samples of its record \[-\].
-const INTERVALS: f64 = 1.0;
-
 /// How often a step may be cut in succession, at least: what is chosen by error and way may be far too long.
 const CUTS: u32 = 12;
 
@@ -185,7 +182,7 @@ fn pace<const D: usize>(
     let longest = dynamic
         .longest_step
         .map_or(1.0, share)
-        .min(record.map_or(1.0, |own| share(INTERVALS * own.interval())))
+        .min(record.map_or(1.0, |own| share(own.interval())))
         .min(1.0 / parts as f64);
     Ok(MarchSettings {
         cuts: model.case.solver.cuts.max(CUTS),

@@ -10,6 +10,7 @@ use igimp_schema::text::clip;
 use super::ground_motion::{motion, newmark_from, rayleigh, walls};
 use super::safety::{materials, reduction_of};
 use crate::build::context::About;
+use crate::build::gravity;
 use crate::build::rigid::stage::moves;
 
 /// Motion in time.
@@ -70,8 +71,10 @@ fn has_mass<const D: usize>(about: &About<'_, D>, moved: &[RigidMove], problems:
         let Some(Ok(body)) = bodies.get(own.body) else {
             continue;
         };
-        let weight = body.common.as_ref().map_or(0.0, |common| *common.weight);
-        if weight == 0.0 {
+        let Ok(common) = &body.common else {
+            continue;
+        };
+        if *common.weight == 0.0 || gravity(about.context.tree) == Some(0.0) {
             let name = clip(&body.name, 40);
             problems
                 .error(
@@ -81,7 +84,7 @@ fn has_mass<const D: usize>(about: &About<'_, D>, moved: &[RigidMove], problems:
                         about.name
                     ),
                 )
-                .help("state its weight: its mass is that over gravity");
+                .help("state its weight, and gravity in [case]: its mass is the one over the other");
         }
     }
 }
