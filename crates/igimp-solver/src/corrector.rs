@@ -25,6 +25,16 @@ const OVERSHOOT: f64 = 20.0;
 /// near failure and one costs as much as twenty evaluations of the residual and more; and where the load factor is unknown.
 const OVERSHOOT_GUARDED: f64 = 1.0;
 
+/// How often a correction is shortened along itself.
+const MOST_SHORTENINGS: u32 = 8;
+
+/// The work of the residual along a correction that may be left with the other sign, over that before it \[-\]: a correction past
+/// the place where it vanishes by nearly as much as it was short of it leads nowhere.
+const WORK_LEFT: f64 = 0.8;
+
+/// The least and the greatest share of a stretch at which the residual is tried along a correction \[-\].
+const WITHIN: [f64; 2] = [0.1, 0.9];
+
 /// The share of the elastic tangent after a halving over that before, and after a correction that was taken whole \[-\].
 const STIFFER: f64 = 2.0;
 const SOFTER: f64 = 0.5;
@@ -114,6 +124,8 @@ pub(crate) struct Corrector<'s, 'w, const D: usize> {
     pub(crate) factor: Option<FreeFactor<'s, D>>,
     /// The relative residual that corrections are to come to \[-\].
     goal: f64,
+    /// Work of the residual along the last correction, before it was made \[force·length\].
+    work: f64,
     /// The particles at u.
     pub(crate) trial: &'w mut Trial<D>,
     /// Number of corrections so far.
@@ -155,6 +167,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
             guard,
             factor: None,
             goal: settings.tolerance,
+            work: 0.0,
             trial,
             iterations: 0,
             times: PhaseTimes {
@@ -242,6 +255,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
             let share = factor.admitted(correction);
             self.du.iter_mut().for_each(|du| *du *= share);
         }
+        self.work = work(self.du, residual);
         self.iterations += 1;
         Ok(())
     }
@@ -352,6 +366,9 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         let clock = Instant::now();
         let mut halvings = 0;
         let mut evaluated = self.evaluate(u, residual);
+        if evaluated.is_ok() && self.guard.is_none() && self.system.touches_bodies() {
+            evaluated = self.shorten(u, residual);
+        }
         while halvings < MOST_HALVINGS && self.is_too_far(&evaluated, residual) {
             self.take_back_half(u, halvings)?;
             halvings += 1;
@@ -362,7 +379,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         if let Some(guard) = self.guard.as_mut().filter(|_| self.iterations > 1) {
             guard.adapt(halvings, self.history.share_left(residual));
         }
-        if with_tangent && halvings > 0 && evaluated.is_ok() {
+        if with_tangent && !self.is_current && evaluated.is_ok() {
             self.is_current = true;
             evaluated = self.evaluate(u, residual);
         }
@@ -375,6 +392,49 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
             return Err(StepFailure::Stagnated);
         }
         Ok(())
+    }
+
+    /// Shortens the last correction of `u` while it goes far past the place along it where the residual does no work, to near
+    /// that place (theory, eq. 25f): contact that sticks, slips or opens turns corrections that follow one of these tangents
+    /// into long ways that the next one takes back.
+    fn shorten(
+        &mut self,
+        u: &mut [[f64; D]],
+        residual: &mut OutOfBalance,
+    ) -> Result<(), AssemblyError> {
+        // The first correction is elastic, and carries what moves.
+        if self.iterations == 1 || self.work <= 0.0 {
+            return Ok(());
+        }
+        let whole = self.du.clone();
+        let (mut before, mut beyond) = ((0.0, self.work), (1.0, work(&whole, residual)));
+        let mut last = beyond;
+        let mut evaluated = Ok(());
+        for _ in 0..MOST_SHORTENINGS {
+            if residual.is_round_off || beyond.1 >= 0.0 || last.1.abs() <= WORK_LEFT * self.work {
+                break;
+            }
+            let share = (before.1 / (before.1 - beyond.1)).clamp(WITHIN[0], WITHIN[1]);
+            let at = before.0 + share * (beyond.0 - before.0);
+            set_to(self.du, at - last.0, &whole);
+            self.add_correction(u)?;
+            // The tangent is of no use before it is known where to go.
+            self.is_current = false;
+            evaluated = self.evaluate(u, residual);
+            last = (at, work(&whole, residual));
+            if evaluated.is_err() {
+                break;
+            } else if last.1 < 0.0 {
+                beyond = last;
+            } else {
+                before = last;
+            }
+        }
+        if last.0 < 1.0 {
+            self.history.excuse();
+        }
+        set_to(self.du, last.0, &whole);
+        evaluated
     }
 
     /// The tangent of the corrections after the first one.
@@ -500,6 +560,18 @@ impl<const D: usize> Corrector<'_, '_, D> {
         let is_of_grid = self.system.rigid_body_of(node, axis).is_none();
         is_of_grid.then(|| self.stencils.node_fill(self.grid, node))
     }
+}
+
+/// The work of the out-of-balance force along a correction by unknown \[force·length\].
+fn work(du: &[f64], residual: &OutOfBalance) -> f64 {
+    let terms = std::iter::zip(du, &residual.force);
+    terms.map(|(du, force)| du * force).sum()
+}
+
+/// Makes a correction so many times another.
+fn set_to(du: &mut Vec<f64>, share: f64, whole: &[f64]) {
+    du.clear();
+    du.extend(whole.iter().map(|component| share * component));
 }
 
 /// Runs a phase and adds its time.

@@ -52,6 +52,12 @@ impl ResidualHistory {
         }
     }
 
+    /// Leaves the correction at hand out of those that bring nothing: it was shortened to where the residual does no work along it,
+    /// and the residual itself need not have become smaller.
+    pub(crate) fn excuse(&mut self) {
+        self.best_iteration += 1;
+    }
+
     /// Position \[length\] and axis of the largest out-of-balance force.
     pub(crate) fn worst<const D: usize>(&self, grid: &Grid<D>) -> Option<([f64; 3], usize)> {
         // A node beyond those of the grid stands for a rigid body, which has no one place.

@@ -9,6 +9,7 @@ pub(crate) mod hertz;
 pub(crate) mod incline;
 pub(crate) mod patch;
 pub(crate) mod pipe;
+pub(crate) mod places;
 pub(crate) mod punch;
 pub(crate) mod space;
 pub(crate) mod strip;

@@ -320,6 +320,11 @@ impl<'a, const D: usize> System<'a, D> {
         !self.symmetric_particles && self.inertia.is_some()
     }
 
+    /// Whether soil may touch a rigid body in this step.
+    pub fn touches_bodies(&self) -> bool {
+        (0..self.contact.bodies().len()).any(|body| self.contact.may_touch(body))
+    }
+
     /// External force by node \[force\].
     pub fn f_ext(&self) -> &[[f64; D]] {
         &self.f_ext

@@ -126,13 +126,17 @@ choices! {
 
 table! {
     SMALL_CUTS: SmallCuts, "Treatment of nodes that carry next to no soil.";
-    below: number(NotNegative), default "1e-4",
+    below: number(NotNegative), derived "1e-4, and 0.05 with rigid bodies",
         "share of a cell's volume below which a node is a small cut; 0 switches off", in_plane,
-        number(NotNegative), default "1e-3",
+        number(NotNegative), derived "1e-3",
             "share of a cell's volume below which a node is a small cut; 0 switches off", in_space;
-    remedy: choice(Remedy), default "\"tie\"", "what happens to such a node";
-    ghost_penalty: number(NotNegative), default "0",
-        "penalty on jumps of the gradient across faces of boundary cells; 0 switches off";
+    remedy: choice(Remedy), derived "\"tie\", and \"extrapolate\" with rigid bodies",
+        "what happens to such a node", in_plane,
+        choice(Remedy), derived "\"tie\"", "what happens to such a node", in_space;
+    ghost_penalty: number(NotNegative), derived "0, and 1e-3 with rigid bodies",
+        "penalty on jumps of the gradient across faces of boundary cells; 0 switches off", in_plane,
+        number(NotNegative), derived "0",
+            "penalty on jumps of the gradient across faces of boundary cells; 0 switches off", in_space;
 }
 
 choices! {

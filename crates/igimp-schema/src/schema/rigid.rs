@@ -150,7 +150,7 @@ table! {
         "whether it is there from the start, held, rather than from the first stage that names it";
     grid_follows: flag, default "false",
         "whether the rows of the grid go down with it; its lowest place lies on a row";
-    rounding: number(NotNegative), default "0.5",
+    rounding: number(NotNegative), default "0.3",
         "radius of its corners in cells; soil slips off a rounding, which carries nothing";
     stiffness: number(Positive), default "30", "stiffness of contact, in Young's moduli per cell";
     most_penetration: number(Positive), default "0.1", "penetration that ends the run, as a share of the cell";

@@ -174,13 +174,15 @@ impl<'a, const D: usize> Contact<'a, D> {
             let gap = row.gap_at(u);
             let is_closed = traction.pressure > 0.0
                 || (bonded && !is_broken && (row.before.is_closed || gap <= 0.0));
+            // Shear of a side that opens goes on while adhesion does.
+            let holds = is_closed || row.adheres_at(gap, is_broken);
             moved[row.body].contact.knots[row.knot] = ContactNode {
                 pressure: traction.pressure,
-                shear: if is_closed { traction.shear } else { [0.0; 2] },
+                shear: if holds { traction.shear } else { [0.0; 2] },
                 area: row.area,
                 gap,
                 is_closed,
-                slips: traction.slips && is_closed,
+                slips: traction.slips && holds,
                 is_broken,
             };
         }

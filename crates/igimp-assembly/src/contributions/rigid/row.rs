@@ -13,6 +13,10 @@ const MOST_GROWTH: f64 = 2.0;
 /// tangent of sticking, whatever round-off says \[-\].
 const ON_THE_LIMIT: f64 = 1e-12;
 
+/// Soil that is no further off than so many cells still slips along an adhesive side at its limit: the smallest gap that a grid
+/// can tell from none, and as much as soil may go into a body \[-\].
+const ADHESIVE_GAP: f64 = 0.1;
+
 /// A linear function of nodal displacements.
 pub(crate) type Functional<const D: usize> = Vec<(usize, [f64; D])>;
 
@@ -61,12 +65,15 @@ impl<const D: usize> Row<D> {
     /// Begins the step with the force that the last one left, on the area that is covered now (theory, eq.
     /// 50): soil that flows along a side hands its place on to other soil.
     pub(crate) fn carry_force(&mut self, interface: &Interface, penalty: &Penalty) {
-        if self.before.area == 0.0 || !self.before.is_closed {
+        if self.before.area == 0.0 {
             return;
         }
         let growth = (self.before.area / self.area).min(MOST_GROWTH);
-        self.before.pressure *= growth;
         self.before.shear = self.before.shear.map(|shear| growth * shear);
+        if !self.before.is_closed {
+            return;
+        }
+        self.before.pressure *= growth;
         let stiffness = penalty.stiffness * self.young / self.cell;
         let smoothing = penalty.smoothing * self.cell;
         let pressure = self.before.pressure;
@@ -83,6 +90,11 @@ impl<const D: usize> Row<D> {
     /// The mean gap after nodal step displacements `u`.
     pub(crate) fn gap_at(&self, u: &[[f64; D]]) -> f64 {
         self.gap + value(&self.opening, u)
+    }
+
+    /// Whether adhesion acts across a mean gap \[length\] (theory, eq. 47a): a crack carries none.
+    pub(crate) fn adheres_at(&self, gap: f64, is_broken: bool) -> bool {
+        self.adhesion > 0.0 && !is_broken && gap <= ADHESIVE_GAP * self.cell
     }
 
     /// Traction at nodal step displacements `u` (theory, eqs. 46 to 48).
@@ -133,11 +145,9 @@ impl<const D: usize> Row<D> {
             }
             Shear::Smooth | Shear::Rough => {}
             Shear::Limited { friction, .. } => {
-                let adhesion = if self.before.is_closed {
-                    self.adhesion
-                } else {
-                    0.0
-                };
+                let touches =
+                    self.before.is_closed || self.adheres_at(self.gap, self.before.is_broken);
+                let adhesion = if touches { self.adhesion } else { 0.0 };
                 let limit = adhesion + friction * out.pressure.max(0.0);
                 let size = trial[0].hypot(trial[1]);
                 if limit <= 0.0 {
@@ -311,13 +321,17 @@ mod tests {
     }
 
     // GOAL: soil that did not touch a side is not held along it.
-    // CASE: slip past a rough side, and past one with adhesion, at a distance and where soil comes in this very step.
+    // CASE: slip past a rough side at a distance and where soil comes in this very step, and past one with adhesion from more
+    // than a tenth of a cell off.
     // ORACLE: no traction across a gap; the side holds from the end of the step on in which it is reached.
     #[test]
     fn a_side_that_was_not_touched_does_not_hold() {
-        for shear in [Shear::Rough, limited(0.0)] {
+        for (shear, gaps) in [
+            (Shear::Rough, [0.051, -0.001]),
+            (limited(0.0), [0.051, 0.2]),
+        ] {
             let interface = with_shear(shear, Tension::None);
-            for gap in [0.05, -0.001] {
+            for gap in gaps {
                 let apart = row(gap, 1.0, ContactNode::default());
                 let traction = apart.traction(&interface, &PENALTY, &[[-1e-4, 0.0]]);
                 assert!(
@@ -330,6 +344,24 @@ mod tests {
             let held = 0.5 * STIFFNESS * 1e-4;
             assert!((traction.shear[0] - held).abs() < 1e-12, "{traction:?}");
         }
+    }
+
+    // GOAL: adhesion acts across a gap that a grid cannot tell from none, but not across a crack.
+    // CASE: soil that is 0.08 of a cell off a side without tension and slips far; the same behind a bond that broke.
+    // ORACLE: limit analysis lets a side that opens at no pressure carry its adhesion: |τ| = a, p = 0. A crack carries nothing.
+    #[test]
+    fn a_side_that_has_hardly_opened_adheres() {
+        let interface = with_shear(limited(0.5), Tension::None);
+        let near = row(0.04, 1.0, ContactNode::default());
+        let traction = near.traction(&interface, &PENALTY, &[[-0.1, 0.0]]);
+        assert!(traction.pressure.abs() < 1e-15 && traction.slips);
+        assert!((traction.shear[0] - 1.5).abs() < 1e-12, "{traction:?}");
+        let broken = ContactNode {
+            is_broken: true,
+            ..ContactNode::default()
+        };
+        let apart = row(0.04, 1.0, broken).traction(&interface, &PENALTY, &[[-0.1, 0.0]]);
+        assert!(apart.shear[0].abs() < 1e-15, "{apart:?}");
     }
 
     // GOAL: a bond that was broken does not carry tension again.

@@ -1,0 +1,328 @@
+//! Rigid bodies from case files as they are shipped, at five places of the grid within a cell.
+
+use std::f64::consts::PI;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use igimp_cases::CaseError;
+use igimp_input::CaseFile;
+use igimp_model::check::Band;
+use rayon::prelude::*;
+
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
+use crate::runs::{Computed, corners};
+
+/// What the book says of the study.
+const ABOUT: &str = "Strips, pipes and an anchor in weightless Tresca soil with E/s_u = 1000, from case files that say nothing of the method, on ten cells, are pushed or pulled at small strain with their sides at five places of the grid within a cell. Every march reaches its end; the loads are held against limit analysis, and against each other.";
+const PRANDTL: Oracle = Oracle {
+    kind: OracleKind::Exact,
+    source: "Prandtl 1920",
+    locator: "V/(B s_u) = 2 + π",
+};
+const BOUNDS: Oracle = Oracle {
+    kind: OracleKind::LimitAnalysis,
+    source: "finite-element limit analysis of a body wished in place, no heave",
+    locator: "lower and upper bound of V/(B s_u)",
+};
+const INDIFFERENT: Oracle = Oracle {
+    kind: OracleKind::Theory,
+    source: "the soil and the body, which know no grid",
+    locator: "largest less smallest load over their mean: 0",
+};
+
+/// By how much a load may lie beyond its bounds \[-\].
+const BEYOND: f64 = 0.045;
+/// By how much the loads of five places may differ \[-\].
+const SPREAD: f64 = 0.045;
+/// Where the left side of a body stands in its cell \[cells\].
+const PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 0.9];
+/// Size of a cell \[m\].
+const CELL: f64 = 0.1;
+/// Parts of an arc that stands for a circle in the outline of soil, just outside of it \[m\].
+const ARC: usize = 120;
+const ARC_RADIUS: f64 = 0.5003;
+
+/// A kind of body.
+#[derive(Clone, Copy)]
+enum Kind {
+    /// A rough strip with its base so deep \[m\], and bare smooth sides.
+    Strip { depth: f64 },
+    /// A pipe so deep \[m\], and along it.
+    Pipe { depth: f64, interface: &'static str },
+    /// A plate so deep \[m\], its tension, and along it.
+    Anchor {
+        depth: f64,
+        tension: &'static str,
+        interface: &'static str,
+    },
+}
+
+/// A body, its limit load over width and strength, and the level from which on it is asked for.
+struct Question {
+    name: &'static str,
+    kind: Kind,
+    oracle: Oracle,
+    bounds: [f64; 2],
+    level: Level,
+}
+
+const ADHESIVE: &str = "{ adhesion_share = 1 }";
+
+/// All of them.
+fn questions() -> [Question; 8] {
+    let pipe = |name, depth, interface, bounds, level| Question {
+        name,
+        kind: Kind::Pipe { depth, interface },
+        oracle: BOUNDS,
+        bounds,
+        level,
+    };
+    let anchor = |name, tension, interface, bounds| Question {
+        name,
+        kind: Kind::Anchor {
+            depth: 2.0,
+            tension,
+            interface,
+        },
+        oracle: BOUNDS,
+        bounds,
+        level: Level::Full,
+    };
+    let strip = |name, depth, oracle, bounds, level| Question {
+        name,
+        kind: Kind::Strip { depth },
+        oracle,
+        bounds,
+        level,
+    };
+    let smooth = "\"smooth\"";
+    let n_c = 2.0 + PI;
+    [
+        strip("strip", 0.0, PRANDTL, [n_c; 2], Level::Quick),
+        strip("strip 1B deep", 1.0, BOUNDS, [6.27, 6.404], Level::Full),
+        pipe(
+            "smooth pipe, w/D = 0.3",
+            0.3,
+            smooth,
+            [3.760, 3.833],
+            Level::Full,
+        ),
+        pipe(
+            "smooth pipe, w/D = 0.5",
+            0.5,
+            smooth,
+            [4.231, 4.334],
+            Level::Default,
+        ),
+        pipe(
+            "adhesive pipe, w/D = 0.3",
+            0.3,
+            ADHESIVE,
+            [4.668, 4.758],
+            Level::Full,
+        ),
+        pipe(
+            "adhesive pipe, w/D = 0.5",
+            0.5,
+            ADHESIVE,
+            [5.521, 5.629],
+            Level::Default,
+        ),
+        anchor("anchor that breaks away", "none", "\"rough\"", [3.56, 3.68]),
+        anchor("anchor, bonded", "bonded", ADHESIVE, [11.19, 11.5]),
+    ]
+}
+
+/// The ground, and where the left side of the body stands \[m\].
+struct Site {
+    width: f64,
+    top: f64,
+    left: f64,
+}
+
+impl Kind {
+    fn site(self, place: f64) -> Site {
+        let site = |width: f64, top: f64, left: f64| Site {
+            width,
+            top,
+            left: left + place * CELL,
+        };
+        match self {
+            Self::Strip { .. } => site(7.0, 3.5, 3.0),
+            Self::Pipe { .. } => site(5.0, 2.0, 2.0),
+            Self::Anchor { depth, .. } => site(2.0 * depth + 4.0, depth + 2.2, depth + 1.5),
+        }
+    }
+
+    /// Outlines of the soil around the body \[m\].
+    fn soil(self, site: &Site) -> Vec<Vec<[f64; 2]>> {
+        let &Site { width, top, left } = site;
+        let right = left + 1.0;
+        let box_of =
+            |from: [f64; 2], to: [f64; 2]| vec![from, [to[0], from[1]], to, [from[0], to[1]]];
+        let mut around = vec![[0.0, 0.0], [width, 0.0], [width, top]];
+        match self {
+            Self::Strip { depth } => {
+                if depth > 0.0 {
+                    let base = top - depth;
+                    around.extend([[right, top], [right, base], [left, base], [left, top]]);
+                }
+            }
+            Self::Pipe { depth, .. } => {
+                let middle = [left + 0.5, top + 0.5 - depth];
+                let lip = ((top - middle[1]) / ARC_RADIUS).min(0.0).asin();
+                let arc = PI + 2.0 * lip;
+                around.extend((0..=ARC).map(|k| {
+                    let angle = lip - arc * k as f64 / ARC as f64;
+                    [
+                        middle[0] + ARC_RADIUS * angle.cos(),
+                        middle[1] + ARC_RADIUS * angle.sin(),
+                    ]
+                }));
+            }
+            Self::Anchor { depth, .. } => {
+                let [base, lid] = [top - depth - 0.2, top - depth];
+                return vec![
+                    box_of([0.0, 0.0], [width, base]),
+                    box_of([0.0, base], [left, lid]),
+                    box_of([right, base], [width, lid]),
+                    box_of([0.0, lid], [width, top]),
+                ];
+            }
+        }
+        around.push([0.0, top]);
+        vec![around]
+    }
+
+    /// The body as a case file has it, and how far it goes \[m\].
+    fn body(self, site: &Site) -> (String, f64) {
+        let &Site { top, left, .. } = site;
+        let rectangle = |base: f64, lid: f64| {
+            let [right, left] = [left + 1.0, left];
+            format!(
+                "type = \"rectangle\"\nfrom = [\"{left} m\", \"{base} m\"]\nto = [\"{right} m\", \"{lid} m\"]"
+            )
+        };
+        match self {
+            Self::Strip { depth } => {
+                let sides = ["right", "left"]
+                    .map(|side| format!("{{ side = \"{side}\", interface = \"smooth\" }}"));
+                let body = rectangle(top - depth, top - depth + 2.0);
+                (
+                    format!("{body}\nsides = [{}]", sides.join(", ")),
+                    -0.05 - 0.05 * depth,
+                )
+            }
+            Self::Pipe { depth, interface } => {
+                let [x, y] = [left + 0.5, top + 0.5 - depth];
+                (
+                    format!(
+                        "type = \"circle\"\ncentre = [\"{x} m\", \"{y} m\"]\nradius = \"0.5 m\"\ninterface = {interface}"
+                    ),
+                    -0.05,
+                )
+            }
+            Self::Anchor {
+                depth,
+                tension,
+                interface,
+            } => {
+                let body = rectangle(top - depth - 0.2, top - depth);
+                (
+                    format!("{body}\ninterface = {interface}\ntension = \"{tension}\""),
+                    0.05,
+                )
+            }
+        }
+    }
+
+    /// The case file of a place \[cells\].
+    fn file(self, place: f64) -> String {
+        let site = self.site(place);
+        let (body, way) = self.body(&site);
+        let mut bodies = String::new();
+        for (number, outline) in self.soil(&site).iter().enumerate() {
+            let outline = corners(outline);
+            let _ = write!(
+                bodies,
+                "[[bodies]]\nname = \"soil {number}\"\nmaterial = \"clay\"\npolygon = {outline}\n"
+            );
+        }
+        let Site { width, top, .. } = site;
+        let sky = top + 1.0;
+        format!(
+            "igimp = 1
+[case]
+title = \"place of the grid\"
+gravity = \"0 m/s2\"
+[grid]
+cell = \"{CELL} m\"
+domain = {{ x = [\"0 m\", \"{width} m\"], y = [\"0 m\", \"{sky} m\"] }}
+[materials.clay]
+model = \"tresca\"
+unit_weight = \"0 kN/m3\"
+young = \"1 MPa\"
+poisson = 0.49
+cu = \"1 kPa\"
+{bodies}[[rigid]]
+name = \"body\"
+{body}
+[[stages]]
+name = \"push\"
+type = \"rigid\"
+geometry = \"given\"
+bodies = [{{ body = \"body\", y = \"{way} m\" }}]
+steps = 20
+[[curves]]
+name = \"load\"
+x = {{ of = \"rigid.body.settlement\" }}
+y = {{ of = \"rigid.body.resistance\", divide_by = [\"1 m\", \"1 kPa\"] }}
+"
+        )
+    }
+}
+
+/// Runs the study.
+pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
+    let mut study = Study::new("contact-places", ABOUT, out)?;
+    for question in questions().iter().filter(|own| own.level <= level) {
+        let computed = PLACES
+            .par_iter()
+            .map(|&place| {
+                let text = question.kind.file(place);
+                Computed::new(CaseFile::parse(question.name, &text, &[])?.into_case())
+            })
+            .collect::<Result<Vec<_>, CaseError>>()?;
+        let mut loads = Vec::new();
+        let mut last = 0;
+        for (place, own) in PLACES.iter().zip(&computed) {
+            let variant = format!("{}, side at {place} of its cell", question.name);
+            last = study.run_to_end(RunRecord::new(variant, &own.report, own.elapsed));
+            let load = own.curve("load").points(0, 1);
+            let load = load.last().map_or(f64::NAN, |[_, load]| load.abs());
+            let [lower, upper] = question.bounds;
+            let band = Band::Between((1.0 - BEYOND) * lower, (1.0 + BEYOND) * upper);
+            let expected = question.oracle.says(0.5 * (lower + upper));
+            study.check(last, "V/(B s_u) [-]", expected, band, load);
+            loads.push(load);
+        }
+        let most = loads.iter().copied().fold(0.0, f64::max);
+        let least = loads.iter().copied().fold(f64::INFINITY, f64::min);
+        let mean = loads.iter().sum::<f64>() / loads.len() as f64;
+        let name = format!("{}: spread over the places of the grid [-]", question.name);
+        let band = Band::Between(0.0, SPREAD);
+        study.check(
+            last,
+            name,
+            INDIFFERENT.says(0.0),
+            band,
+            (most - least) / mean,
+        );
+        study.notes.push(format!(
+            "{}: {} has V/(B s_u) from {least:.3} to {most:.3}; {:.3} to {:.3} is known",
+            study.case, question.name, question.bounds[0], question.bounds[1]
+        ));
+    }
+    Ok(study)
+}
