@@ -15,6 +15,7 @@ mod plane;
 mod record;
 mod reinforcement;
 mod rigid;
+mod seepage;
 mod stage;
 mod water;
 
@@ -47,6 +48,7 @@ pub use rigid::{
     Adhesion, COMPONENTS, RigidDrive, RigidForm, RigidInterface, RigidMove, RigidPart,
     RigidQuantity, RigidShape, RigidShear, components,
 };
+pub use seepage::SeepageCase;
 pub use stage::{
     Dynamic, Reduction, ReductionPath, RunOut, SearchMethod, Stage, StageKind, StageWalls,
     StopWhen, StrengthReduction,

@@ -23,7 +23,7 @@ use super::resume::{ResumePoint, Resumption, Search};
 use super::session::{Session, StageEnd};
 use super::stages::{construction, dynamic, fallen, initial, loading, run_out, safety};
 use super::state::State;
-use super::water::pores;
+use super::water::{pores, seepage};
 use super::{Event, Failure, Listener, Run, Start, Target, failure, reinforcement};
 use crate::error::CaseError;
 use crate::estimate::Expectation;
@@ -62,7 +62,7 @@ pub(super) fn one_mesh<const D: usize>(
             title_block: case.title_block.clone(),
             date: target.and_then(|target| target.date.clone()),
             input_sha256: target.map(|target| sha256(target.completed.as_bytes())),
-            setup: setup::tables(case),
+            setup: [setup::tables(case), seepage::tables(&model)].concat(),
             method: case.method.label(),
             size: model.size(&initial.body),
             ..Summary::default()
@@ -138,6 +138,7 @@ impl<const D: usize> Stages<D> {
             stages.left = Some(left);
         } else {
             output.model_picture(case)?;
+            output.seepage(session.model)?;
             for text in pores::dilatant(case) {
                 session.warn(text);
             }
