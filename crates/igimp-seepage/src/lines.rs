@@ -111,19 +111,20 @@ impl Seepage<2> {
 
     /// Places of equal discharge across the row or column of cells that passes most water.
     fn starts(&self, count: usize) -> Vec<[f64; 2]> {
-        let mut best: (f64, Vec<([f64; 2], f64)>) = (0.0, Vec::new());
+        let mut best: (f64, Vec<([[f64; 2]; 2], f64)>) = (0.0, Vec::new());
         for axis in 0..2 {
             let other = 1 - axis;
             for along in 0..self.grid.axes[axis].cell_count() {
-                let passes: Vec<([f64; 2], f64)> = (0..self.grid.axes[other].cell_count())
+                let passes: Vec<([[f64; 2]; 2], f64)> = (0..self.grid.axes[other].cell_count())
                     .map(|across| {
                         let mut place = [0; 2];
                         (place[axis], place[other]) = (along, across);
                         let [lower, upper] = ends_of(&self.grid, place);
                         let cell = self.grid.cell_index(place);
-                        let middle = [0, 1].map(|d| 0.5 * (lower[d] + upper[d]));
+                        let mut ends = [[0, 1].map(|d| 0.5 * (lower[d] + upper[d])); 2];
+                        (ends[0][other], ends[1][other]) = (lower[other], upper[other]);
                         let width = self.filled[cell] * (upper[other] - lower[other]);
-                        (middle, self.velocities[cell][axis].abs() * width)
+                        (ends, self.velocities[cell][axis].abs() * width)
                     })
                     .collect();
                 let all: f64 = passes.iter().map(|(_, flow)| flow).sum();
@@ -135,15 +136,16 @@ impl Seepage<2> {
         let (all, passes) = best;
         let mut starts = Vec::new();
         let mut passed = 0.0;
-        for (middle, flow) in passes {
-            while starts.len() < count
-                && passed + flow > all * (starts.len() as f64 + 0.5) / count as f64
-            {
-                starts.push(middle);
+        for ([from, to], flow) in passes {
+            while starts.len() < count {
+                let share = (all * (starts.len() as f64 + 0.5) / count as f64 - passed) / flow;
+                if share.is_nan() || share >= 1.0 {
+                    break;
+                }
+                starts.push([0, 1].map(|d| from[d] + share * (to[d] - from[d])));
             }
             passed += flow;
         }
-        starts.dedup();
         starts
     }
 
