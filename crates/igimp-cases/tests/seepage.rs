@@ -137,6 +137,7 @@ young = "2000 ksf"
 poisson = 0.3
 cohesion = "200 psf"
 friction = "20 deg"
+dilation = "20 deg"
 permeability = "1e-6 m/s"
 [[bodies]]
 name = "slope"
@@ -156,7 +157,6 @@ steps = 2
 [[stages]]
 name = "safety"
 type = "strength-reduction"
-tolerance = 0.01
 "#;
     let file = CaseFile::parse("slope.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"));
     let found = in_memory(file.case()).unwrap();
@@ -167,6 +167,39 @@ tolerance = 0.01
         (1.138 / 1.015..=1.142 * 1.015).contains(&factor),
         "{factor}"
     );
+}
+
+/// GOAL: seepage in space, from the case file on. ORACLE: the discharge of the same slope in the plane times its width.
+#[test]
+fn a_slope_in_space_lets_through_what_it_does_in_the_plane() {
+    let all = |setup: &[igimp_results::summary::SetupTable]| -> f64 {
+        let table = setup.iter().find(|own| own.title == "Seepage: discharges");
+        let rows = &table.unwrap().rows;
+        let all = rows.iter().find(|row| row[1] == "all").unwrap();
+        all[2].parse().unwrap()
+    };
+    let plane = all(&ran(&[]).summary.setup);
+    let space = edited(&[
+        ("title = ", "analysis = \"3d\"\ntitle = "),
+        (
+            "y = [\"0 m\", \"12 m\"]",
+            "y = [\"0 m\", \"2 m\"], z = [\"0 m\", \"12 m\"]",
+        ),
+        ("[[water]]", "across = [\"0 m\", \"2 m\"]\n\n[[water]]"),
+        (
+            "from = [\"0 m\", \"0 m\"], to = [\"0 m\", \"10 m\"]",
+            "from = [\"0 m\", \"0 m\", \"0 m\"], to = [\"0 m\", \"2 m\", \"10 m\"]",
+        ),
+    ]);
+    let file = CaseFile::parse("space.toml", &space, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let found = in_memory(file.case_in_space()).unwrap();
+    let space = all(&found.summary.setup);
+    println!("plane {plane:.4e}, space {space:.4e} over 2 m");
+    assert!(
+        (space / (2.0 * plane) - 1.0).abs() < 0.01,
+        "{space} {plane}"
+    );
+    assert!(found.body.particles.pore_pressure.iter().any(|u| *u > 5e4));
 }
 
 /// GOAL: the results folder has the flow for ParaView, the free surface and a picture.

@@ -15,7 +15,6 @@ mod plane;
 mod record;
 mod reinforcement;
 mod rigid;
-mod seepage;
 mod stage;
 mod water;
 
@@ -48,11 +47,11 @@ pub use rigid::{
     Adhesion, COMPONENTS, RigidDrive, RigidForm, RigidInterface, RigidMove, RigidPart,
     RigidQuantity, RigidShape, RigidShear, components,
 };
-pub use seepage::SeepageCase;
 pub use stage::{
     Dynamic, Reduction, ReductionPath, RunOut, SearchMethod, Stage, StageKind, StageWalls,
     StopWhen, StrengthReduction,
 };
+pub use water::seepage::SeepageCase;
 pub use water::{Construction, Drainage, Drained, PoreSource, WaterCondition, table_level};
 
 use igimp_geometry::region::Region;

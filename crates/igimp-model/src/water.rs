@@ -1,11 +1,14 @@
 //! Water in the ground: conditions that stages move between, and what materials do with it.
 
+pub(crate) mod seepage;
+
 use std::sync::Arc;
 
 use igimp_geometry::region::Region;
 use igimp_geometry::solid::Terrain;
 
-use super::{Case, Raster, SeepageCase, StageKind, in_space};
+use super::{Case, Raster, StageKind, in_space};
+use seepage::SeepageCase;
 
 impl<const D: usize> Case<D> {
     /// By body: whether it is there at the end of a stage, by index.

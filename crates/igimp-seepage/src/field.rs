@@ -2,10 +2,11 @@
 
 use igimp_shape::Grid;
 
+use crate::basis::{Basis, CORNERS, apply, nodes_of};
 use crate::conditions::Extent;
 use crate::curve::Relative;
 use crate::ground::ends_of;
-use crate::system::{Basis, CORNERS, Flows, System, apply, nodes_of};
+use crate::system::{Flows, System};
 
 /// Water through a condition or a section \[m³/s\], in the plane by the metre run \[m²/s\].
 #[derive(Clone, Debug, PartialEq)]
@@ -58,64 +59,19 @@ pub struct Seepage<const D: usize> {
 impl<const D: usize> Seepage<D> {
     pub(crate) fn of(
         system: &System<'_, D>,
-        heads: Vec<f64>,
+        heads: &[f64],
         relative: Relative,
-        (residual, flows, dry): (Vec<f64>, Flows, Option<Flows>),
+        (residual, flows, dry): (&[f64], &Flows, Option<&Flows>),
         corrections: usize,
     ) -> Self {
         let grid = system.grid.clone();
         let mut all = vec![f64::NAN; grid.node_count()];
-        for (&node, &head) in std::iter::zip(&system.nodes, &heads) {
+        for (&node, &head) in std::iter::zip(&system.nodes, heads) {
             all[node] = head;
         }
         let is_ground: Vec<bool> = all.iter().map(|head| !head.is_nan()).collect();
         extend(&grid, &mut all);
-        let mut velocities = vec![[0.0; D]; grid.cell_count()];
-        let mut filled = vec![0.0; grid.cell_count()];
-        let conditions = system.conditions;
-        let mut sections: Vec<Discharge> = (conditions.sections.iter())
-            .map(|(name, _)| Discharge {
-                name: name.clone(),
-                inflow: 0.0,
-                outflow: 0.0,
-            })
-            .collect();
-        for cell in 0..system.cells.len() {
-            let place = system.cells[cell].place;
-            let ends = ends_of(&grid, place);
-            let own = system.heads(cell, &heads);
-            let (mut sum, mut volume) = ([0.0; D], 0.0);
-            for point in system.points(cell, &own, &relative) {
-                let basis = Basis::at(ends, &point.x);
-                let psi = basis.head(&own) - point.x[D - 1];
-                let [share, _] = system.share(&relative, point.soil, psi);
-                let slope = apply(system.tensor(cell, point.soil), &basis.slope(&own));
-                let velocity = slope.map(|slope| -share * slope);
-                volume += point.volume;
-                for axis in 0..D {
-                    sum[axis] += point.volume * velocity[axis];
-                }
-                for (section, (_, extent)) in std::iter::zip(&mut sections, &conditions.sections) {
-                    if let Some(axis) = crosses(extent, ends, &point.x) {
-                        let thick = ends[1][axis] - ends[0][axis];
-                        section.inflow += point.volume * velocity[axis] / thick;
-                    }
-                }
-            }
-            filled[grid.cell_index(place)] = system.cells[cell].filled;
-            velocities[grid.cell_index(place)] = sum.map(|sum| sum / volume);
-        }
-        let names = (conditions.faces.iter().map(|own| own.name.as_str()))
-            .chain(["free water", "open faces"])
-            .chain(conditions.regions.iter().map(|own| own.name.as_str()));
-        let discharges = names
-            .enumerate()
-            .map(|(k, name)| Discharge {
-                name: name.to_owned(),
-                inflow: flows.inwards[k],
-                outflow: flows.outwards[k],
-            })
-            .collect();
+        let through = Through::of(system, heads, &relative);
         let sum = |own: &[f64]| own.iter().sum::<f64>();
         let (inflow, outflow) = (sum(&flows.inwards), sum(&flows.outwards));
         let largest = residual
@@ -124,10 +80,10 @@ impl<const D: usize> Seepage<D> {
         Self {
             heads: all,
             is_ground,
-            filled,
-            velocities,
-            discharges,
-            sections,
+            filled: through.filled,
+            velocities: through.velocities,
+            discharges: discharges(system, flows),
+            sections: through.sections,
             inflow,
             outflow,
             outflow_at_lower_floor: dry.map(|own| sum(&own.outwards)),
@@ -184,6 +140,70 @@ impl<const D: usize> Seepage<D> {
         }
         None
     }
+}
+
+/// What passes through cells.
+struct Through<const D: usize> {
+    filled: Vec<f64>,
+    velocities: Vec<[f64; D]>,
+    sections: Vec<Discharge>,
+}
+
+impl<const D: usize> Through<D> {
+    fn of(system: &System<'_, D>, heads: &[f64], relative: &Relative) -> Self {
+        let grid = system.grid;
+        let asked = &system.conditions.sections;
+        let section = |(name, _): &(String, Extent<D>)| Discharge {
+            name: name.clone(),
+            inflow: 0.0,
+            outflow: 0.0,
+        };
+        let mut found = Self {
+            filled: vec![0.0; grid.cell_count()],
+            velocities: vec![[0.0; D]; grid.cell_count()],
+            sections: asked.iter().map(section).collect(),
+        };
+        for cell in 0..system.cells.len() {
+            let place = system.cells[cell].place;
+            let ends = ends_of(grid, place);
+            let own = system.heads(cell, heads);
+            let (mut sum, mut volume) = ([0.0; D], 0.0);
+            for point in system.points(cell, &own, relative) {
+                let basis = Basis::at(ends, &point.x);
+                let psi = basis.head(&own) - point.x[D - 1];
+                let [share, _] = system.share(relative, point.soil, psi);
+                let slope = apply(system.tensor(cell, point.soil), &basis.slope(&own));
+                let velocity = slope.map(|slope| -share * slope);
+                volume += point.volume;
+                for axis in 0..D {
+                    sum[axis] += point.volume * velocity[axis];
+                }
+                for (section, (_, extent)) in std::iter::zip(&mut found.sections, asked) {
+                    if let Some(axis) = crosses(extent, ends, &point.x) {
+                        let thick = ends[1][axis] - ends[0][axis];
+                        section.inflow += point.volume * velocity[axis] / thick;
+                    }
+                }
+            }
+            found.filled[grid.cell_index(place)] = system.cells[cell].filled;
+            found.velocities[grid.cell_index(place)] = sum.map(|sum| sum / volume);
+        }
+        found
+    }
+}
+
+/// Flows with the names of who lets them in.
+fn discharges<const D: usize>(system: &System<'_, D>, flows: &Flows) -> Vec<Discharge> {
+    let conditions = system.conditions;
+    let names = (conditions.faces.iter().map(|own| own.name.as_str()))
+        .chain(["free water", "open faces"])
+        .chain(conditions.regions.iter().map(|own| own.name.as_str()));
+    let of = |(k, name): (usize, &str)| Discharge {
+        name: name.to_owned(),
+        inflow: flows.inwards[k],
+        outflow: flows.outwards[k],
+    };
+    names.enumerate().map(of).collect()
 }
 
 /// The axis of a section that a point of a cell counts for.

@@ -1,7 +1,7 @@
 //! Permeability of a cell that several soils share (theory, eq. 85).
 
+use crate::basis::{apply, dot};
 use crate::ground::Point;
-use crate::system::{apply, dot};
 
 /// The tensor of a laminate of the soils of a cell: exact for layers however the grid lies to them; none for one soil.
 pub(crate) fn laminate<const D: usize>(

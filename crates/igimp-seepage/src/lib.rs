@@ -4,6 +4,8 @@
 //! the grid: heads on them are set weakly, and cells that soil fills in part are tied to their neighbours by a penalty that
 //! lets no water through (theory, eqs. 78 to 84). Nothing here knows of files, stress or stages.
 
+mod basis;
+mod boundary;
 mod conditions;
 mod curve;
 mod error;

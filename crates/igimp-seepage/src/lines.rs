@@ -1,11 +1,14 @@
 //! Flow lines, equipotentials and the free surface as lines in the plane.
 
+use crate::basis::{Basis, nodes_of};
 use crate::field::Seepage;
 use crate::ground::ends_of;
-use crate::system::nodes_of;
 
 /// Steps of a flow line by the cell that it passes.
 const BY_CELL: f64 = 4.0;
+
+/// A line across a cell, and what passes it.
+type Pass = ([[f64; 2]; 2], f64);
 
 impl Seepage<2> {
     /// The free surface from left to right \[m\], in pieces where there is none between.
@@ -111,11 +114,11 @@ impl Seepage<2> {
 
     /// Places of equal discharge across the row or column of cells that passes most water.
     fn starts(&self, count: usize) -> Vec<[f64; 2]> {
-        let mut best: (f64, Vec<([[f64; 2]; 2], f64)>) = (0.0, Vec::new());
+        let mut best: (f64, Vec<Pass>) = (0.0, Vec::new());
         for axis in 0..2 {
             let other = 1 - axis;
             for along in 0..self.grid.axes[axis].cell_count() {
-                let passes: Vec<([[f64; 2]; 2], f64)> = (0..self.grid.axes[other].cell_count())
+                let passes: Vec<Pass> = (0..self.grid.axes[other].cell_count())
                     .map(|across| {
                         let mut place = [0; 2];
                         (place[axis], place[other]) = (along, across);
@@ -161,7 +164,7 @@ impl Seepage<2> {
             let place = self.grid.cell_at(x)?;
             let cell = self.grid.cell_index(place);
             let [lower, upper] = ends_of(&self.grid, place);
-            let basis = crate::system::Basis::<2>::at([lower, upper], x);
+            let basis = Basis::<2>::at([lower, upper], x);
             let mut velocity = [0.0; 2];
             for (k, node) in nodes_of(&self.grid, place).enumerate() {
                 for axis in 0..2 {

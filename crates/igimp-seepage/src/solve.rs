@@ -3,15 +3,18 @@
 use igimp_linear::{SolverKind, TangentMatrix};
 use igimp_shape::Grid;
 
+use crate::boundary::{At, Held};
 use crate::conditions::{Conditions, FreeWater, InGround, Named, OnFaces};
 use crate::curve::{Curve, Relative};
 use crate::error::SeepageError;
 use crate::field::Seepage;
 use crate::ground::{Bodies, SeepageBody, cells};
-use crate::system::{At, Flows, System};
+use crate::system::{Flows, System};
 
 /// Imbalance of a node over the largest flow at which heads are found \[-\].
 const TOLERANCE: f64 = 1e-12;
+/// Share of what heads could drive through a cell that counts as flow \[-\]: below it round-off would decide.
+const AT_REST: f64 = 0.1;
 /// The same for flows on the way to the one that is asked for \[-\].
 const ON_THE_WAY: f64 = 1e-3;
 /// From one fall of permeability to the next \[-\].
@@ -71,14 +74,12 @@ pub fn solve<const D: usize>(
         let heads = std::mem::replace(&mut search.heads, kept);
         Some(system.assemble(&heads, &lower, None).1)
     };
-    let corrections = search.corrections;
-    let heads = search.heads;
     Ok(Seepage::of(
         &system,
-        heads,
+        &search.heads,
         relative,
-        (residual, flows, dry),
-        corrections,
+        (&residual, &flows, dry.as_ref()),
+        search.corrections,
     ))
 }
 
@@ -153,11 +154,26 @@ impl<const D: usize> Search<'_, D> {
         Ok(())
     }
 
+    /// The flow that an imbalance is held against \[m^D/s\]: that through the ground, or where hardly any water flows what
+    /// its heads would drive through a cell.
+    fn scale(&self, flows: &Flows) -> f64 {
+        let sum = |own: &[f64]| own.iter().sum::<f64>();
+        let through = sum(&flows.inwards).max(sum(&flows.outwards));
+        let soils = self.system.conditions.soils.iter();
+        let permeability = soils.map(|soil| soil.along.max(soil.across));
+        let size = self.system.grid.cell_size([0; D]);
+        let size = size.into_iter().fold(f64::INFINITY, f64::min);
+        let driven = permeability.fold(0.0, f64::max)
+            * largest(&self.heads).max(size)
+            * size.powi(D as i32 - 2);
+        through.max(AT_REST * driven)
+    }
+
     /// Corrects the heads until water balances.
     fn balance(&mut self, relative: &Relative, tolerance: f64) -> Result<(), SeepageError> {
         let (mut residual, flows) =
             (self.system).assemble(&self.heads, relative, Some(&mut self.matrix));
-        let mut off = largest(&residual) / scale(&flows, &residual);
+        let mut off = largest(&residual) / self.scale(&flows);
         for _ in 0..CORRECTIONS {
             if off <= tolerance {
                 return Ok(());
@@ -181,20 +197,13 @@ impl<const D: usize> Search<'_, D> {
             let (own, flows) =
                 (self.system).assemble(&self.heads, relative, Some(&mut self.matrix));
             residual = own;
-            off = largest(&residual) / scale(&flows, &residual);
+            off = largest(&residual) / self.scale(&flows);
         }
         Err(SeepageError::NotFound {
             corrections: self.corrections,
             residual: off,
         })
     }
-}
-
-/// The flow that an imbalance is held against \[m^D/s\].
-fn scale(flows: &Flows, residual: &[f64]) -> f64 {
-    let sum = |own: &[f64]| own.iter().sum::<f64>();
-    let through = sum(&flows.inwards).max(sum(&flows.outwards));
-    through.max(largest(residual)).max(f64::MIN_POSITIVE)
 }
 
 fn largest(values: &[f64]) -> f64 {
@@ -279,9 +288,7 @@ fn check_places<const D: usize>(system: &System<'_, D>) -> Result<(), SeepageErr
             what,
         })
     };
-    let bare = |own: &Named<D, OnFaces>, held: &crate::system::Held<D>| {
-        own.within.holds(&held.facet.x, 1e-6)
-    };
+    let bare = |own: &Named<D, OnFaces>, held: &Held<D>| own.within.holds(&held.facet.x, 1e-6);
     for own in &system.conditions.faces {
         if !system.held.iter().any(|held| bare(own, held)) {
             return refuse(

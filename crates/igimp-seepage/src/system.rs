@@ -5,10 +5,12 @@ use std::sync::Arc;
 use igimp_linear::{NodeBlock, Pattern, TangentMatrix};
 use igimp_shape::Grid;
 
-use crate::conditions::{Conditions, FreeWater, InGround, OnFaces, Soil};
-use crate::curve::Relative;
+use crate::basis::{Basis, CORNERS, FOUR, HIGH, TWO, apply, dot, gauss, nodes_of};
+use crate::boundary::{At, Held, held};
+use crate::conditions::{Conditions, FreeWater, InGround, Soil};
+use crate::curve::{Curve, Relative};
 use crate::error::SeepageError;
-use crate::ground::{Cell, Facet, ends_of};
+use crate::ground::{Cell, Facet, Point, ends_of};
 use crate::layers;
 
 /// Factor of Nitsche's method: penalty on heads over k / h \[-\].
@@ -17,82 +19,6 @@ const NITSCHE: f64 = 10.0;
 const REGION: f64 = 1e3;
 /// Penalty on jumps of the gradient at cells that are cut \[-\].
 const GHOST: f64 = 0.01;
-/// Faces that rise less than this are upright or hang over \[-\].
-const UPRIGHT: f64 = 1e-6;
-/// Corners of a cell, at most.
-pub(crate) const CORNERS: usize = 8;
-
-/// What holds at a facet.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum At {
-    /// This head \[m\].
-    Head(f64),
-    /// So much enters \[m/s\].
-    Inflow(f64),
-    /// So much rain \[m/s\], and water may come out.
-    Open(f64),
-    Closed,
-}
-
-/// A facet with what holds there, and the condition that says so.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Held<const D: usize> {
-    pub(crate) cell: usize,
-    pub(crate) facet: Facet<D>,
-    pub(crate) at: At,
-    /// By condition on faces; then free water, and faces of which nothing is said.
-    pub(crate) owner: usize,
-}
-
-/// The basis of a cell at a point.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Basis<const D: usize> {
-    pub(crate) value: [f64; CORNERS],
-    pub(crate) gradient: [[f64; D]; CORNERS],
-}
-
-impl<const D: usize> Basis<D> {
-    pub(crate) fn at([lower, upper]: [[f64; D]; 2], x: &[f64; D]) -> Self {
-        let mut value = [0.0; CORNERS];
-        let mut gradient = [[0.0; D]; CORNERS];
-        for corner in 0..1 << D {
-            let factor = |axis: usize| {
-                let size = upper[axis] - lower[axis];
-                let t = (x[axis] - lower[axis]) / size;
-                if corner >> axis & 1 == 1 {
-                    [t, 1.0 / size]
-                } else {
-                    [1.0 - t, -1.0 / size]
-                }
-            };
-            value[corner] = (0..D).map(|axis| factor(axis)[0]).product();
-            for axis in 0..D {
-                let others = (0..D).filter(|other| *other != axis);
-                gradient[corner][axis] =
-                    factor(axis)[1] * others.map(|other| factor(other)[0]).product::<f64>();
-            }
-        }
-        Self { value, gradient }
-    }
-
-    pub(crate) fn head(&self, heads: &[f64; CORNERS]) -> f64 {
-        (0..1 << D).map(|k| self.value[k] * heads[k]).sum()
-    }
-
-    pub(crate) fn slope(&self, heads: &[f64; CORNERS]) -> [f64; D] {
-        std::array::from_fn(|axis| (0..1 << D).map(|k| self.gradient[k][axis] * heads[k]).sum())
-    }
-}
-
-/// Product of a tensor and a vector.
-pub(crate) fn apply<const D: usize>(tensor: &[[f64; D]; D], vector: &[f64; D]) -> [f64; D] {
-    std::array::from_fn(|row| dot(&tensor[row], vector))
-}
-
-pub(crate) fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
-    (0..D).map(|axis| a[axis] * b[axis]).sum()
-}
-
 /// Equations of a cell or of two.
 struct Local<'a> {
     unknowns: &'a [usize],
@@ -220,9 +146,9 @@ impl<'a, const D: usize> System<'a, D> {
         Ok(Self {
             grid,
             cells,
+            conditions,
             tensors,
             shared,
-            conditions,
             held,
             pairs,
             corners,
@@ -242,7 +168,7 @@ impl<'a, const D: usize> System<'a, D> {
         &self.tensors[self.shared[cell].unwrap_or(soil)]
     }
 
-    fn curve(&self, soil: usize) -> crate::curve::Curve {
+    fn curve(&self, soil: usize) -> Curve {
         self.conditions.soils[soil].curve
     }
 
@@ -261,7 +187,7 @@ impl<'a, const D: usize> System<'a, D> {
         cell: usize,
         heads: &[f64; CORNERS],
         relative: &Relative,
-    ) -> Vec<crate::ground::Point<D>> {
+    ) -> Vec<Point<D>> {
         let own = &self.cells[cell];
         let Some(soil) = own.whole else {
             return own.points.clone();
@@ -440,18 +366,16 @@ impl<'a, const D: usize> System<'a, D> {
             .product();
         let height = ends[1][1][axis] - lower[axis];
         let across = (pair.cells).map(|cell| self.tensor(cell, self.some_soil(cell))[axis][axis]);
-        let rate = GHOST * height * across[0].min(across[1]) * side / (1 << (D - 1)) as f64;
+        let rate = GHOST * height * across[0].min(across[1]) * side / 2_f64.powi(D as i32 - 1);
         for corner in 0..1_usize << (D - 1) {
             let mut x = lower;
-            let mut bit = 0;
-            for d in (0..D).filter(|d| *d != axis) {
+            for (bit, d) in (0..D).filter(|d| *d != axis).enumerate() {
                 let share = if corner >> bit & 1 == 1 {
                     HIGH
                 } else {
                     1.0 - HIGH
                 };
                 x[d] = lower[d] + share * (upper[d] - lower[d]);
-                bit += 1;
             }
             let mut jump = [0.0; 2 * CORNERS];
             for (k, sign) in [(0, -1.0), (1, 1.0)] {
@@ -479,44 +403,6 @@ impl<'a, const D: usize> System<'a, D> {
     }
 }
 
-/// The upper one of two points of Gauss on 0 to 1.
-const HIGH: f64 = 0.788_675_134_594_812_9;
-/// Points and weights of Gauss on 0 to 1.
-const TWO: [(f64, f64); 2] = [(1.0 - HIGH, 0.5), (HIGH, 0.5)];
-const FOUR: [(f64, f64); 4] = [
-    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
-    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
-    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
-    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
-];
-
-fn gauss<const D: usize>(
-    [lower, upper]: [[f64; D]; 2],
-    along: &[(f64, f64)],
-    soil: usize,
-) -> Vec<crate::ground::Point<D>> {
-    let count = along.len().pow(D as u32);
-    (0..count)
-        .map(|number| {
-            let mut rest = number;
-            let (mut x, mut volume) = (lower, 1.0);
-            for axis in 0..D {
-                let (place, weight) = along[rest % along.len()];
-                rest /= along.len();
-                let size = upper[axis] - lower[axis];
-                x[axis] += place * size;
-                volume *= weight * size;
-            }
-            crate::ground::Point {
-                x,
-                volume,
-                soil,
-                region: None,
-            }
-        })
-        .collect()
-}
-
 fn add(local: &Local<'_>, residual: &mut [f64], matrix: Option<&mut TangentMatrix>) {
     for (i, &row) in local.unknowns.iter().enumerate() {
         residual[row] += local.residual[i];
@@ -533,18 +419,6 @@ fn add(local: &Local<'_>, residual: &mut [f64], matrix: Option<&mut TangentMatri
             values[first + place] += local.tangent[i][j];
         }
     }
-}
-
-/// Nodes at the corners of a cell, the first axis fastest.
-pub(crate) fn nodes_of<const D: usize>(
-    grid: &Grid<D>,
-    place: [usize; D],
-) -> impl Iterator<Item = usize> + '_ {
-    (0..1_usize << D).map(move |corner| {
-        grid.node_index(std::array::from_fn(|axis| {
-            place[axis] + (corner >> axis & 1)
-        }))
-    })
 }
 
 /// Cells beside each other of which one is cut.
@@ -619,64 +493,4 @@ fn pattern<const D: usize>(
         coupled,
         if pairs.is_empty() { 1 } else { 2 },
     )
-}
-
-/// What holds at the facets, in the order of cells.
-fn held<const D: usize>(
-    cells: &[Cell<D>],
-    conditions: &Conditions<D>,
-    free: FreeWater<'_, D>,
-    grid: &Grid<D>,
-) -> Vec<Held<D>> {
-    let axes = grid.axes.iter();
-    let spans = axes.map(|axis| axis.end() - axis.start());
-    let reach = 1e-6 * spans.fold(f64::INFINITY, f64::min);
-    let mut held = Vec::new();
-    for (cell, own) in cells.iter().enumerate() {
-        for facet in &own.facets {
-            let (at, owner) = at(facet, conditions, free, reach);
-            held.push(Held {
-                cell,
-                facet: *facet,
-                at,
-                owner,
-            });
-        }
-    }
-    held
-}
-
-/// What holds at a facet, and who says so.
-fn at<const D: usize>(
-    facet: &Facet<D>,
-    conditions: &Conditions<D>,
-    free: FreeWater<'_, D>,
-    reach: f64,
-) -> (At, usize) {
-    let rises = facet.normal[D - 1];
-    let faces = conditions.faces.len();
-    let is_below = |head: f64| conditions.confined || head >= facet.x[D - 1];
-    let else_at = if rises > UPRIGHT && !conditions.confined {
-        (At::Open(0.0), faces + 1)
-    } else {
-        (At::Closed, faces + 1)
-    };
-    let last = (conditions.faces.iter().enumerate().rev())
-        .find(|(_, own)| own.within.holds(&facet.x, reach));
-    match last.map(|(index, own)| (index, own.what)) {
-        Some((index, OnFaces::Head(head))) if is_below(head) => return (At::Head(head), index),
-        Some((_, OnFaces::Head(_))) => return else_at,
-        Some((index, OnFaces::Inflow(inflow))) => return (At::Inflow(inflow), index),
-        Some((index, OnFaces::Closed)) => return (At::Closed, index),
-        _ => {}
-    }
-    if let Some(level) = free(&facet.x).filter(|level| *level >= facet.x[D - 1] && rises > UPRIGHT)
-    {
-        return (At::Head(level), faces);
-    }
-    match last.map(|(index, own)| (index, own.what)) {
-        Some((index, OnFaces::Recharge(rain))) => (At::Open(rain * rises.max(0.0)), index),
-        Some((index, OnFaces::Open)) => (At::Open(0.0), index),
-        _ => else_at,
-    }
 }

@@ -1,7 +1,7 @@
 //! Water in the ground as particles find it: the conditions of a case, averaged over domains (theory, eqs. 51 and 52).
 
 pub(crate) mod pores;
-pub(crate) mod seepage;
+mod seepage;
 
 use std::sync::Arc;
 

@@ -8,11 +8,8 @@ use igimp_model::{Case, Every, in_plane};
 use igimp_report::patches::Pieces;
 use igimp_report::pictures::{self, Canvas, Failing, Seen, Shown, mechanism};
 use igimp_results::paraview::frames::{Scene, StateOfSearch};
-use igimp_results::paraview::seepage_grid;
 use igimp_results::rigid;
 use igimp_results::summary::StageSummary;
-use igimp_results::tables::table::Table;
-use igimp_seepage::Seepage;
 use rayon::prelude::*;
 
 use super::Output;
@@ -21,7 +18,6 @@ use crate::run::model::Model;
 use crate::run::output::outlines;
 use crate::run::resume::End;
 use crate::run::state::State;
-use crate::run::water::seepage;
 
 impl<const D: usize> Output<D> {
     /// Frames and pictures of the states at the ends of a search, and of the way in which the body fails.
@@ -224,35 +220,6 @@ impl<const D: usize> Output<D> {
             .map(|&field| drawn.pictures(shown, field, compared, &planes))
             .collect::<Result<Vec<_>, _>>()?;
         self.figures.extend(notes.concat());
-        Ok(())
-    }
-
-    /// Flows that were computed: a file for ParaView, the free surface as a table, and in the plane a picture.
-    pub(crate) fn seepage(&mut self, model: &Model<'_, D>) -> Result<(), CaseError> {
-        let clock = Instant::now();
-        let case = model.case;
-        for (name, flow) in seepage::flows(model) {
-            let name = igimp_report::pictures::file_name(&format!("seepage-{name}"));
-            if self.every != Every::Never {
-                let grid = seepage_grid(flow, case.water_unit_weight);
-                grid.write(&self.folder.paraview().join(format!("{name}.vtu")))?;
-            }
-            let Some(flow) = in_plane::<_, Seepage<2>>(flow) else {
-                continue;
-            };
-            let mut table = Table::new(&*name, &["x [m]", "free surface y [m]"]);
-            for &x in flow.grid.axes[0].nodes() {
-                if let Some(level) = flow.free_surface(&[x, 0.0]) {
-                    table.push(vec![x, level]);
-                }
-            }
-            table.write_csv(&self.folder.sections())?;
-            if let Some(case) = in_plane::<_, Case<2>>(case).filter(|_| self.draws) {
-                let picture = pictures::seepage_picture(self.folder.root(), case, &name, flow)?;
-                self.figures.push(picture);
-            }
-        }
-        self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
 

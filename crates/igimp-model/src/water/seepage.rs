@@ -3,7 +3,8 @@
 use igimp_geometry::region::Region;
 use igimp_seepage::{Conditions, Extent, InGround, Named, Soil};
 
-use super::{Case, Material, PoreSource, StageKind};
+use super::PoreSource;
+use crate::{Case, Material, StageKind};
 
 /// Steady seepage that is to be computed.
 #[derive(Clone, Debug, PartialEq)]
