@@ -30,6 +30,12 @@ pub(crate) struct Held<const D: usize> {
     pub(crate) owner: usize,
 }
 
+/// How far beyond a box a face still counts as within it \[m\]: round-off.
+pub(crate) fn reach<const D: usize>(grid: &Grid<D>) -> f64 {
+    let spans = grid.axes.iter().map(|axis| axis.end() - axis.start());
+    1e-6 * spans.fold(f64::INFINITY, f64::min)
+}
+
 /// What holds at the facets, in the order of cells.
 pub(crate) fn held<const D: usize>(
     cells: &[Cell<D>],
@@ -37,9 +43,7 @@ pub(crate) fn held<const D: usize>(
     free: FreeWater<'_, D>,
     grid: &Grid<D>,
 ) -> Vec<Held<D>> {
-    let axes = grid.axes.iter();
-    let spans = axes.map(|axis| axis.end() - axis.start());
-    let reach = 1e-6 * spans.fold(f64::INFINITY, f64::min);
+    let reach = reach(grid);
     let mut held = Vec::new();
     for (cell, own) in cells.iter().enumerate() {
         for facet in &own.facets {

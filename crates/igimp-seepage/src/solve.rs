@@ -3,7 +3,7 @@
 use igimp_linear::{SolverKind, TangentMatrix};
 use igimp_shape::Grid;
 
-use crate::boundary::{At, Held};
+use crate::boundary::{At, Held, reach};
 use crate::conditions::{Conditions, FreeWater, InGround, Named, OnFaces};
 use crate::curve::{Curve, Relative};
 use crate::error::SeepageError;
@@ -288,7 +288,8 @@ fn check_places<const D: usize>(system: &System<'_, D>) -> Result<(), SeepageErr
             what,
         })
     };
-    let bare = |own: &Named<D, OnFaces>, held: &Held<D>| own.within.holds(&held.facet.x, 1e-6);
+    let reach = reach(system.grid);
+    let bare = |own: &Named<D, OnFaces>, held: &Held<D>| own.within.holds(&held.facet.x, reach);
     for own in &system.conditions.faces {
         if !system.held.iter().any(|held| bare(own, held)) {
             return refuse(
