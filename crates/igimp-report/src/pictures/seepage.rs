@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use igimp_figures::{ColourMap, FieldPlot, Outline, OutlineStyle};
-use igimp_geometry::polygon::{area_and_centroid, clip_to_box};
+use igimp_geometry::polygon::{area_and_centroid, clip_to_box, contains};
 use igimp_model::Case;
 use igimp_results::summary::FigureNote;
 use igimp_seepage::Seepage;
@@ -48,11 +48,15 @@ pub fn seepage_picture(
         }
     }
     let line = |style| move |points| Outline { points, style };
+    let is_ground = |x: &[f64; 2]| (case.bodies.iter()).any(|own| contains(own.polygon(), *x));
     let [lines, levels] = LINES;
+    // Cells that soil fills in part have heads beyond its surface too.
     let equal = flow.equipotentials(levels).into_iter();
+    let equal = equal.filter(|[a, b]| is_ground(&[0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]));
     plot.outlines
         .extend(equal.map(|piece| line(OutlineStyle::Grid)(piece.to_vec())));
-    let along = flow.flow_lines(lines).into_iter();
+    let within = |line: Vec<[f64; 2]>| line.into_iter().filter(is_ground).collect();
+    let along = flow.flow_lines(lines).into_iter().map(within);
     plot.outlines.extend(along.map(line(OutlineStyle::Edge)));
     let surface = flow.free_surface_lines().into_iter();
     plot.outlines.extend(surface.map(line(OutlineStyle::Water)));
