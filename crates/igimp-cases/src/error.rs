@@ -69,6 +69,23 @@ pub enum CaseError {
         /// The one it starts from.
         from: String,
     },
+    /// There is no steady seepage.
+    #[error("the seepage of the water `{water}` cannot be computed")]
+    Seepage {
+        /// The condition of the water.
+        water: String,
+        /// Why.
+        #[source]
+        source: igimp_seepage::SeepageError,
+    },
+    /// Seepage through soil that has no permeability.
+    #[error("the water `{water}` flows through `{material}`, which has no permeability")]
+    NoPermeability {
+        /// The condition of the water.
+        water: String,
+        /// The material.
+        material: String,
+    },
     /// The case has no stage.
     #[error("the case has no stage: there is nothing to run")]
     NoStages,

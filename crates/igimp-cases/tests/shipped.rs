@@ -494,6 +494,25 @@ fn a_full_pool_and_a_drawdown_weaken_a_dam() {
 }
 
 #[test]
+fn water_seeps_through_a_dam() {
+    let ran = ran(
+        "dam_seepage",
+        &["stages.1.tolerance=0.02", "output.figures=[]"],
+    );
+    assert_eq!(ran.outcomes(), [Completed; 2]);
+    between(ran.measured("factor of safety"), 1.06, 1.13);
+    let discharges = &ran.run.summary.setup;
+    let title = "Seepage: discharges";
+    let discharges = discharges.iter().find(|own| own.title == title).unwrap();
+    let of = |place: &str| {
+        let row = discharges.rows.iter().find(|row| row[1].starts_with(place));
+        row.unwrap()[2].parse::<f64>().unwrap()
+    };
+    // All that enters passes the section in the axis of the dam.
+    assert!((of("section axis") / of("all") - 1.0).abs() < 1e-3);
+}
+
+#[test]
 fn what_is_left_below_a_pit_is_its_buoyant_weight() {
     let ran = ran(
         "excavation",

@@ -126,7 +126,7 @@ impl<const D: usize> Ground<D> {
                 on_ground - raster.at([x, level]).max(0.0)
             }
             (None, Some((PoreSource::Ratio(ratio), _))) => -ratio * weight,
-            (None, Some((PoreSource::Dry, _)) | None) => 0.0,
+            (None, Some((PoreSource::Dry | PoreSource::Seepage(_), _)) | None) => 0.0,
         };
         (weight + by_water).max(0.0)
     }

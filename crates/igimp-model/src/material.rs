@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use igimp_assembly::SharedLaw;
 use igimp_material::{Elasticity, MaterialError};
+use igimp_seepage::Soil;
 
 use super::{Drainage, Profiles};
 use strength::Strength;
@@ -33,6 +34,8 @@ pub struct Material {
     pub saturated: Option<f64>,
     /// Its drainage.
     pub drainage: Drainage,
+    /// Its permeability, where seepage is computed.
+    pub permeability: Option<Soil>,
     /// A law that takes the place of the one that `strength` names; case files know none.
     pub given: Option<GivenLaw>,
 }

@@ -1,11 +1,14 @@
 //! Water in the ground: conditions that stages move between, and what materials do with it.
 
+pub(crate) mod seepage;
+
 use std::sync::Arc;
 
 use igimp_geometry::region::Region;
 use igimp_geometry::solid::Terrain;
 
 use super::{Case, Raster, StageKind, in_space};
+use seepage::SeepageCase;
 
 impl<const D: usize> Case<D> {
     /// By body: whether it is there at the end of a stage, by index.
@@ -75,6 +78,8 @@ pub enum PoreSource {
     /// Pressures by points in the plane \[Pa\], as a seepage analysis gives them; negative values count as zero. On the ground it is that
     /// of the free water there.
     Points(Raster),
+    /// Steady seepage that is computed.
+    Seepage(Arc<SeepageCase>),
     /// r_u: the pressure as a share of the weight of the ground above, as the bodies present from the start are
     /// drawn \[-\].
     Ratio(f64),
@@ -96,7 +101,7 @@ impl PoreSource {
                 Some(level.unwrap_or(f64::NEG_INFINITY))
             }
             Self::Drained(own) => Some(own.level(&in_space(place))),
-            Self::Dry | Self::Points(_) | Self::Ratio(_) => None,
+            Self::Dry | Self::Points(_) | Self::Ratio(_) | Self::Seepage(_) => None,
         }
     }
 }

@@ -256,6 +256,7 @@ mod tests {
             strength,
             k0: None,
             profiles: Profiles::default(),
+            permeability: None,
             saturated: None,
             drainage: igimp_model::Drainage::Drained,
             given: None,

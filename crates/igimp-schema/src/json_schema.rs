@@ -11,7 +11,7 @@ use super::tree::{Node, Value, from_value};
 /// A decimal number or a fraction, as a regular expression.
 const NUMBER: &str = r"[-+]?([0-9_]+\.?[0-9_]*|\.[0-9_]+)([eE][-+]?[0-9]+)?";
 /// Dimensions that keys take.
-const DIMENSIONS: [Dimension; 12] = [
+const DIMENSIONS: [Dimension; 15] = [
     Dimension::Length,
     Dimension::Stress,
     Dimension::UnitWeight,
@@ -24,6 +24,9 @@ const DIMENSIONS: [Dimension; 12] = [
     Dimension::Force,
     Dimension::Moment,
     Dimension::Time,
+    Dimension::Velocity,
+    Dimension::DischargePerLength,
+    Dimension::Discharge,
 ];
 
 /// JSON Schema (draft 2020-12) of a case file.

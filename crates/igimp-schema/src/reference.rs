@@ -81,6 +81,9 @@ fn units(out: &mut String) {
         Dimension::Force,
         Dimension::Moment,
         Dimension::Time,
+        Dimension::Velocity,
+        Dimension::DischargePerLength,
+        Dimension::Discharge,
     ] {
         let units: Vec<_> = dimension.units().map(|unit| format!("`{unit}`")).collect();
         let _ = writeln!(out, "| {} | {} |", bare(dimension), units.join(" "));

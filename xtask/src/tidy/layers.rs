@@ -3,7 +3,7 @@
 use crate::metadata::{Metadata, Package};
 
 /// Crates of the project with those that they may depend on, for tests too.
-const LAYERS: [(&str, &[&str]); 20] = [
+const LAYERS: [(&str, &[&str]); 21] = [
     ("igimp-shape", &[]),
     ("igimp-material", &[]),
     ("igimp-linear", &[]),
@@ -13,12 +13,13 @@ const LAYERS: [(&str, &[&str]); 20] = [
     ("igimp-text", &[]),
     ("igimp-schema", &["igimp-text"]),
     ("igimp-geometry", LIBRARIES.split_at(8).0),
-    ("igimp-model", LIBRARIES.split_at(9).0),
-    ("igimp-results", LIBRARIES.split_at(10).0),
-    ("igimp-input", LIBRARIES.split_at(11).0),
-    ("igimp-report", LIBRARIES.split_at(12).0),
-    ("igimp-cases", LIBRARIES.split_at(13).0),
-    ("igimp-study", LIBRARIES.split_at(14).0),
+    ("igimp-seepage", LIBRARIES.split_at(9).0),
+    ("igimp-model", LIBRARIES.split_at(10).0),
+    ("igimp-results", LIBRARIES.split_at(11).0),
+    ("igimp-input", LIBRARIES.split_at(12).0),
+    ("igimp-report", LIBRARIES.split_at(13).0),
+    ("igimp-cases", LIBRARIES.split_at(14).0),
+    ("igimp-study", LIBRARIES.split_at(15).0),
     ("igimp", LIBRARIES),
     ("igimp-benchmarks", LIBRARIES),
     ("igimp-validation", LIBRARIES),
@@ -49,6 +50,7 @@ const LIBRARIES: &[&str] = &[
     "igimp-text",
     "igimp-schema",
     "igimp-geometry",
+    "igimp-seepage",
     "igimp-model",
     "igimp-results",
     "igimp-input",
@@ -120,7 +122,7 @@ mod tests {
 
     type Row<'a> = (&'a str, bool, Option<&'a str>, &'a [&'a str]);
 
-    const SOUND: [Row<'_>; 21] = [
+    const SOUND: [Row<'_>; 22] = [
         ("igimp-shape", true, None, &["thiserror"]),
         ("igimp-material", true, None, &[]),
         ("igimp-linear", true, None, &[]),
@@ -135,7 +137,8 @@ mod tests {
         ("igimp-text", true, None, &[]),
         ("igimp-schema", true, None, &["igimp-text"]),
         ("igimp-geometry", true, None, &["igimp-text"]),
-        ("igimp-model", true, None, &["igimp-geometry"]),
+        ("igimp-seepage", true, None, &["igimp-geometry"]),
+        ("igimp-model", true, None, &["igimp-seepage"]),
         ("igimp-results", true, None, &["igimp-model"]),
         ("igimp-input", true, None, &["igimp-results"]),
         ("igimp-report", true, None, &["igimp-figures"]),

@@ -16,6 +16,7 @@ use igimp_solver::StepError;
 use super::model::Model;
 use super::output::export::Export;
 use super::output::records::{Moment, Records, largest_displacement};
+use super::output::seepage;
 use super::output::{Output, checks, sections};
 use super::resources::memory::{self, Before};
 use super::resources::processor;
@@ -62,7 +63,7 @@ pub(super) fn one_mesh<const D: usize>(
             title_block: case.title_block.clone(),
             date: target.and_then(|target| target.date.clone()),
             input_sha256: target.map(|target| sha256(target.completed.as_bytes())),
-            setup: setup::tables(case),
+            setup: [setup::tables(case), seepage::tables(&model)].concat(),
             method: case.method.label(),
             size: model.size(&initial.body),
             ..Summary::default()
@@ -138,6 +139,7 @@ impl<const D: usize> Stages<D> {
             stages.left = Some(left);
         } else {
             output.model_picture(case)?;
+            output.seepage(session.model)?;
             for text in pores::dilatant(case) {
                 session.warn(text);
             }

@@ -54,6 +54,14 @@ impl<'c, const D: usize> Model<'c, D> {
     /// # Errors
     /// [`CaseError`] for what cannot be made.
     pub fn new(case: &'c Case<D>) -> Result<(Self, State<D>), CaseError> {
+        Self::with_water(case, None)
+    }
+
+    /// The same with water that is known, so that no flow is solved for again.
+    fn with_water(
+        case: &'c Case<D>,
+        water: Option<&[Arc<GroundWater<D>>]>,
+    ) -> Result<(Self, State<D>), CaseError> {
         let mut model = Self {
             case,
             laws: Vec::new(),
@@ -100,8 +108,12 @@ impl<'c, const D: usize> Model<'c, D> {
                 .collect();
         }
         let seeded = Arc::new(seeded);
-        let water = |condition| Arc::new(GroundWater::of(case, condition, &seeded));
-        model.water = case.water.iter().map(water).collect();
+        model.water = match water {
+            Some(known) => known.to_vec(),
+            None => (0..case.water.len())
+                .map(|index| Ok(Arc::new(GroundWater::of(case, index, &seeded)?)))
+                .collect::<Result<_, CaseError>>()?,
+        };
         let mut particles = Particles::new(&seeds)?
             .with_ratios(ratios)?
             .with_initial_histories(&model.laws)?;
@@ -157,7 +169,7 @@ impl<'c, const D: usize> Model<'c, D> {
 
     /// The undeformed, stress-free state of the bodies that are there in a state, of the materials that they have there.
     pub(crate) fn undeformed(&self, state: &State<D>) -> Result<State<D>, CaseError> {
-        let (model, mut base) = Model::new(self.case)?;
+        let (model, mut base) = Model::with_water(self.case, Some(&self.water))?;
         let there = &state.body.particles;
         if let Some(later) = &model.later {
             base.body.particles = base.body.particles.joined_by(later);

@@ -39,6 +39,7 @@ pub(crate) mod records;
 mod resume;
 mod saved;
 pub(crate) mod sections;
+pub(crate) mod seepage;
 
 /// The files of a run, open.
 #[derive(Debug)]

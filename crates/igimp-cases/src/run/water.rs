@@ -1,12 +1,15 @@
 //! Water in the ground as particles find it: the conditions of a case, averaged over domains (theory, eqs. 51 and 52).
 
 pub(crate) mod pores;
+mod seepage;
 
 use std::sync::Arc;
 
 use igimp_assembly::{PoreSite, PoreState, PoreWater};
-use igimp_model::{Case, Drainage, Ground, Material, PoreSource, Raster, WaterCondition};
+use igimp_model::{Case, Drainage, Ground, Material, PoreSource, Raster};
+use igimp_seepage::Seepage;
 
+use crate::error::CaseError;
 use crate::run::state::gravity_of_weights;
 
 /// Points and weights of Gauss, three on −1 to 1.
@@ -80,9 +83,19 @@ pub(crate) struct GroundWater<const D: usize> {
 #[derive(Debug)]
 enum Source<const D: usize> {
     Dry,
-    Table { table: PoreSource, unit_weight: f64 },
+    Table {
+        table: PoreSource,
+        unit_weight: f64,
+    },
     Points(Raster),
-    Ratio { ratio: f64, ground: Ground<D> },
+    Seepage {
+        flow: Arc<Seepage<D>>,
+        unit_weight: f64,
+    },
+    Ratio {
+        ratio: f64,
+        ground: Ground<D>,
+    },
 }
 
 /// Means over a domain.
@@ -95,26 +108,31 @@ struct Over<const D: usize> {
 }
 
 impl<const D: usize> Source<D> {
-    fn of(case: &Case<D>, source: &PoreSource) -> Self {
-        match source {
+    /// The source of the condition of that index, or of a body in it.
+    fn of(case: &Case<D>, condition: usize, source: &PoreSource) -> Result<Self, CaseError> {
+        Ok(match source {
             PoreSource::Dry => Self::Dry,
             PoreSource::Table(_) | PoreSource::Surface(_) | PoreSource::Drained(_) => Self::Table {
                 table: source.clone(),
                 unit_weight: case.water_unit_weight,
             },
             PoreSource::Points(raster) => Self::Points(raster.clone()),
+            PoreSource::Seepage(own) => Self::Seepage {
+                flow: Arc::new(seepage::solved(case, condition, own)?),
+                unit_weight: case.water_unit_weight,
+            },
             PoreSource::Ratio(ratio) => Self::Ratio {
                 ratio: *ratio,
                 ground: case.ground(),
             },
-        }
+        })
     }
 
     /// The level above which there is no pressure \[m\].
     fn top(&self, place: &[f64; D]) -> f64 {
         match self {
             Self::Dry => f64::NEG_INFINITY,
-            Self::Points(_) => f64::INFINITY,
+            Self::Points(_) | Self::Seepage { .. } => f64::INFINITY,
             Self::Table { table, .. } => table.table(place).unwrap_or(f64::NEG_INFINITY),
             Self::Ratio { ground, .. } => ground.surface(place).unwrap_or(f64::NEG_INFINITY),
         }
@@ -122,7 +140,7 @@ impl<const D: usize> Source<D> {
 
     /// The level above which there is no pressure between two levels \[m\]; the lower one where there is none at all.
     fn top_within(&self, place: &[f64; D], [lower, upper]: [f64; 2]) -> f64 {
-        let Self::Points(_) = self else {
+        let (Self::Points(_) | Self::Seepage { .. }) = self else {
             return self.top(place).min(upper);
         };
         if self.below(place, upper) > 0.0 {
@@ -149,6 +167,9 @@ impl<const D: usize> Source<D> {
         match self {
             Self::Dry => 0.0,
             Self::Points(raster) => raster.at([place[0], level]).max(0.0),
+            Self::Seepage { flow, unit_weight } => {
+                unit_weight * flow.pressure_head(&at_level(place, level)).max(0.0)
+            }
             Self::Table { unit_weight, .. } => unit_weight * (self.top(place) - level),
             Self::Ratio { ratio, ground } => ratio * ground.weight_above(&at_level(place, level)),
         }
@@ -217,23 +238,39 @@ impl<const D: usize> Source<D> {
 }
 
 impl<const D: usize> GroundWater<D> {
-    /// A condition of a case.
-    pub(crate) fn of(case: &Case<D>, condition: &WaterCondition, seeded: &Arc<Seeded<D>>) -> Self {
+    /// The condition of a case of that index.
+    ///
+    /// # Errors
+    /// [`CaseError::Seepage`] and [`CaseError::NoPermeability`] where seepage is to be computed.
+    pub(crate) fn of(
+        case: &Case<D>,
+        index: usize,
+        seeded: &Arc<Seeded<D>>,
+    ) -> Result<Self, CaseError> {
+        let condition = &case.water[index];
         let mut own: Vec<Option<Source<D>>> = case.bodies.iter().map(|_| None).collect();
         for (body, source) in &condition.bodies {
-            own[*body] = Some(Source::of(case, source));
+            own[*body] = Some(Source::of(case, index, source)?);
         }
         let gravity = gravity_of_weights(case.gravity);
         let added = |material: &Material| material.added_by_water() / gravity;
         let is_total = |material: &Material| material.drainage == Drainage::Total;
-        Self {
-            reference: Source::of(case, &condition.source),
+        Ok(Self {
+            reference: Source::of(case, index, &condition.source)?,
             own,
             added_density: case.materials.iter().map(added).collect(),
             is_total: case.materials.iter().map(is_total).collect(),
             density: case.water_unit_weight / gravity,
             carried: condition.carried,
             seeded: Arc::clone(seeded),
+        })
+    }
+
+    /// The flow that was computed, if one was.
+    pub(crate) fn flow(&self) -> Option<&Arc<Seepage<D>>> {
+        match &self.reference {
+            Source::Seepage { flow, .. } => Some(flow),
+            _ => None,
         }
     }
 
@@ -248,6 +285,7 @@ impl<const D: usize> GroundWater<D> {
         let own = self.own[self.seeded.body[number]].as_ref();
         let table = match own.unwrap_or(&self.reference) {
             source @ Source::Table { .. } => source.top(x),
+            Source::Seepage { flow, .. } => flow.free_surface(x).unwrap_or(f64::NEG_INFINITY),
             _ => f64::NEG_INFINITY,
         };
         let surface = ground.surface(x).unwrap_or(x[D - 1]);
@@ -278,7 +316,7 @@ impl<const D: usize> PoreWater<D> for GroundWater<D> {
         let source = self.own[self.seeded.body[site.number]].as_ref();
         // Shares of soil that a table saturates, and of soil whose pores are known to be full.
         let [saturated, full] = match source.unwrap_or(&self.reference) {
-            Source::Table { .. } => [own.wet, own.wet],
+            Source::Table { .. } | Source::Seepage { .. } => [own.wet, own.wet],
             Source::Points(_) => [0.0, own.wet],
             Source::Dry | Source::Ratio { .. } => [0.0, 0.0],
         };

@@ -150,6 +150,7 @@ fn materials() -> Vec<Material> {
         },
         k0: None,
         profiles: Profiles::default(),
+        permeability: None,
         saturated: None,
         drainage: Drainage::Drained,
         given: None,

@@ -12,6 +12,7 @@ use igimp_schema::schema::materials::{self as keys, MaterialCommon, Model, MohrC
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::read::{At, Either, Found, Named};
 use igimp_schema::tree::{Node, Wrong};
+use igimp_seepage::{Curve, Soil};
 
 use profiles::{Extent, Property, TABLES, Terms, property};
 
@@ -134,6 +135,7 @@ fn material<const D: usize>(
     let material = Material {
         saturated: saturated.ok()?,
         drainage: drainage?,
+        permeability: permeability(common, problems).ok()?,
         given: None,
         name: name.clone(),
         unit_weight: unit_weight?.constant,
@@ -260,6 +262,48 @@ fn friction<const D: usize>(
         return None;
     }
     property(stated, "friction", extent, FRICTION, problems)
+}
+
+/// The permeability, if the material states one.
+fn permeability(common: &MaterialCommon, problems: &mut Problems) -> Result<Option<Soil>, Wrong> {
+    let stated = common.permeability.as_ref().map_err(|_| Wrong)?;
+    let Some(stated) = stated else {
+        return Ok(None);
+    };
+    let own = match &**stated {
+        Either::First(permeability) => return Ok(Some(Soil::isotropic(*permeability))),
+        Either::Second(own) => own,
+    };
+    let curve = match (&own.gardner, &own.van_genuchten) {
+        (Some(_), Some(second)) => {
+            problems
+                .error(second.place, "both `gardner` and `van_genuchten` are given")
+                .help("keep the curve that was measured");
+            return Err(Wrong);
+        }
+        (Some(height), None) => Curve::Gardner {
+            alpha: 1.0 / **height,
+        },
+        (None, Some(own)) => {
+            if *own.n <= 1.0 {
+                problems
+                    .error(own.n.place, "n of van Genuchten's curve has to be above 1")
+                    .help("clay has about 1.1 to 1.4, sand 2 to 3");
+                return Err(Wrong);
+            }
+            Curve::VanGenuchten {
+                alpha: 1.0 / *own.height,
+                n: *own.n,
+            }
+        }
+        (None, None) => Curve::Ramp,
+    };
+    Ok(Some(Soil {
+        along: *own.horizontal,
+        across: own.vertical.as_ref().map_or(*own.horizontal, |own| **own),
+        angle: *own.angle,
+        curve,
+    }))
 }
 
 /// The unit weight below a water table, if the material states one.

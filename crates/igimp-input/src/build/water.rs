@@ -1,13 +1,14 @@
 //! Conditions of the water.
 
 pub(crate) mod checks;
+mod seepage;
 
 use igimp_model::{BodyPart, Material, PoreSource, WaterCondition};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::materials::Points;
 use igimp_schema::schema::solids::Terrain;
 use igimp_schema::schema::stages::Stage;
-use igimp_schema::schema::water::{Water, WaterPressures, WaterTables};
+use igimp_schema::schema::water::{Seepage, Water, WaterPressures, WaterTables};
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::Node;
@@ -44,7 +45,7 @@ impl<const D: usize> Around<'_, D> {
 }
 
 const FORMS: &str = "write one of level = \"24 m\", line = [[\"0 m\", \"24 m\"], [\"60 m\", \"20 m\"]], inside and outside, \
-                     r_u = 0.25, u = { raster = \"u.csv\" }, dry = true";
+                     r_u = 0.25, u = { raster = \"u.csv\" }, seepage = { ... }, dry = true";
 const OWN_FORMS: &str = "write one of level = \"24 m\", line = [[\"0 m\", \"24 m\"], [\"60 m\", \"20 m\"]], r_u = 0.25, \
                          u = { raster = \"u.csv\" }, dry = true";
 
@@ -87,10 +88,14 @@ fn condition<const D: usize>(
     let levels = [own.inside.as_ref(), own.outside.as_ref()];
     let form = form(
         (&own.tables, &own.pressures, levels),
+        own.seepage.as_ref(),
         (own.place, &who, FORMS),
         problems,
     );
     let source = match form {
+        Some(Form::Seepage(stated)) => {
+            seepage::source(around, (own, index), stated, &who, problems)
+        }
         Some(Form::Drawdown) => drawdown(around, index, own, &who, problems),
         Some(form) => source_of(&form, &who, problems),
         None => None,
@@ -106,6 +111,7 @@ fn condition<const D: usize>(
         let body = around.names.bodies.find(&own.body, &asks, problems);
         let form = self::form(
             (&own.tables, &own.pressures, [None; 2]),
+            None,
             (own.place, &who, OWN_FORMS),
             problems,
         );
@@ -135,6 +141,7 @@ enum Form<'a> {
     Surface(&'a At<Terrain>),
     Ratio(&'a At<f64>),
     Points(&'a At<Points>),
+    Seepage(&'a At<Seepage>),
     Dry,
     Drawdown,
 }
@@ -146,6 +153,7 @@ fn form<'a>(
         &'a WaterPressures,
         [Option<&At<f64>>; 2],
     ),
+    seepage: Option<&'a At<Seepage>>,
     (place, who, forms): (Place, &str, &str),
     problems: &mut Problems,
 ) -> Option<Form<'a>> {
@@ -166,6 +174,7 @@ fn form<'a>(
         (surface.as_ref()).map(|own| ("surface", own.place, Form::Surface(own))),
         (r_u.as_ref()).map(|own| ("r_u", own.place, Form::Ratio(own))),
         (u.as_ref()).map(|own| ("u", own.place, Form::Points(own))),
+        seepage.map(|own| ("seepage", own.place, Form::Seepage(own))),
         dry.map(|own| ("dry", own.place, Form::Dry)),
         drawn_down.map(|(key, place)| (key, place, Form::Drawdown)),
     ];
@@ -228,7 +237,7 @@ fn source_of(form: &Form<'_>, who: &str, problems: &mut Problems) -> Option<Pore
             PoreSource::Ratio(ratio)
         }
         Form::Points(own) => PoreSource::Points(points(own, own.place, "u", problems).ok()?),
-        Form::Dry | Form::Drawdown => PoreSource::Dry,
+        Form::Dry | Form::Drawdown | Form::Seepage(_) => PoreSource::Dry,
     })
 }
 

@@ -8,6 +8,7 @@
 //! | [`safety_picture`] | `safety-STAGE` |
 //! | [`monitor_pictures`] | `monitor-NAME-KIND` |
 //! | [`section_pictures`] | `section-NAME-KIND` |
+//! | [`seepage_picture`] | `seepage-WATER` |
 //! | [`mechanism_picture`] | `mechanism-STAGE` |
 //! | [`field_picture`] | `field-STAGE-FIELD` |
 //! | [`InSpace`] | `space-STAGE-FIELD`, `cut-AXIS-STAGE-FIELD` |
@@ -27,6 +28,7 @@ mod meshes;
 mod model;
 pub mod rigid;
 mod safety;
+mod seepage;
 mod space;
 pub mod water;
 
@@ -43,6 +45,7 @@ pub use mechanism::{Failing, Mechanism, mechanism, mechanism_picture};
 pub use meshes::mesh_pictures;
 pub use model::model_picture;
 pub use safety::safety_picture;
+pub use seepage::seepage_picture;
 pub use space::InSpace;
 
 use crate::error::ReportError;

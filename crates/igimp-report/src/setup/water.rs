@@ -63,6 +63,19 @@ fn source<const D: usize>(own: &PoreSource) -> String {
                 raster.y.len()
             )
         }
+        PoreSource::Seepage(own) => {
+            let own = &own.conditions;
+            let kind = if own.confined {
+                "confined flow"
+            } else {
+                "flow with a free surface"
+            };
+            format!(
+                "computed: steady {kind}, {} conditions on faces, {} regions",
+                own.faces.len(),
+                own.regions.len()
+            )
+        }
         PoreSource::Surface(terrain) => {
             let (lower, upper) = terrain.bounds();
             format!(

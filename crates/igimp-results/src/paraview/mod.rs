@@ -4,3 +4,6 @@ pub mod frames;
 pub mod particles;
 pub mod pvd;
 pub mod read_back;
+mod seepage;
+
+pub use seepage::seepage_grid;

@@ -31,6 +31,12 @@ pub enum Dimension {
     Area,
     /// Time \[s\].
     Time,
+    /// Velocity: permeability, rain \[m/s\].
+    Velocity,
+    /// Discharge per metre run, in plane strain \[m²/s\].
+    DischargePerLength,
+    /// Discharge, in space \[m³/s\].
+    Discharge,
 }
 
 impl Dimension {
@@ -51,6 +57,9 @@ impl Dimension {
             Self::Moment => "a moment",
             Self::Area => "an area",
             Self::Time => "a time",
+            Self::Velocity => "a velocity",
+            Self::DischargePerLength => "a discharge per length",
+            Self::Discharge => "a discharge",
         }
     }
 
@@ -71,6 +80,9 @@ impl Dimension {
             Self::Moment => "kNm",
             Self::Area => "m2",
             Self::Time => "s",
+            Self::Velocity => "m/s",
+            Self::DischargePerLength => "m2/s",
+            Self::Discharge => "m3/s",
         }
     }
 
@@ -91,6 +103,9 @@ impl Dimension {
             Self::Moment => "Nm",
             Self::Area => "m2",
             Self::Time => "s",
+            Self::Velocity => "m/s",
+            Self::DischargePerLength => "m2/s",
+            Self::Discharge => "m3/s",
         }
     }
 
@@ -111,6 +126,9 @@ impl Dimension {
             Self::Moment => "50 kNm",
             Self::Area => "2 m2",
             Self::Time => "5 s",
+            Self::Velocity => "1e-5 m/s",
+            Self::DischargePerLength => "2e-5 m2/s",
+            Self::Discharge => "3e-3 m3/s",
         }
     }
 
@@ -197,6 +215,15 @@ const fn ten(symbol: &'static str, dimension: Dimension, power: i32) -> Unit {
     }
 }
 
+/// So much in the SI unit of the dimension.
+const fn rate(symbol: &'static str, dimension: Dimension, above: f64, below: f64) -> Unit {
+    Unit {
+        symbol,
+        dimension,
+        scale: Scale::Fraction(above, below),
+    }
+}
+
 /// So many seconds.
 const fn seconds(symbol: &'static str, count: f64) -> Unit {
     Unit {
@@ -270,7 +297,7 @@ const fn pounds_inch(symbol: &'static str, dimension: Dimension, times: f64, pow
     customary(symbol, dimension, times, true, (INCH, power))
 }
 
-static UNITS: [Unit; 95] = [
+static UNITS: [Unit; 118] = [
     ten("m", Dimension::Length, 0),
     ten("mm", Dimension::Length, -3),
     ten("cm", Dimension::Length, -2),
@@ -366,4 +393,27 @@ static UNITS: [Unit; 95] = [
     seconds("h", 3600.0),
     seconds("d", 86_400.0),
     seconds("a", 31_557_600.0),
+    rate("m/s", Dimension::Velocity, 1.0, 1.0),
+    rate("cm/s", Dimension::Velocity, 1.0, 100.0),
+    rate("mm/s", Dimension::Velocity, 1.0, 1000.0),
+    rate("m/h", Dimension::Velocity, 1.0, 3600.0),
+    rate("mm/h", Dimension::Velocity, 1.0, 3_600_000.0),
+    rate("m/d", Dimension::Velocity, 1.0, 86_400.0),
+    rate("m/day", Dimension::Velocity, 1.0, 86_400.0),
+    rate("mm/d", Dimension::Velocity, 1.0, 86_400_000.0),
+    rate("mm/day", Dimension::Velocity, 1.0, 86_400_000.0),
+    rate("m/a", Dimension::Velocity, 1.0, 31_557_600.0),
+    rate("mm/a", Dimension::Velocity, 1.0, 31_557_600_000.0),
+    rate("ft/s", Dimension::Velocity, 0.3048, 1.0),
+    rate("ft/d", Dimension::Velocity, 0.3048, 86_400.0),
+    rate("m2/s", Dimension::DischargePerLength, 1.0, 1.0),
+    rate("m2/d", Dimension::DischargePerLength, 1.0, 86_400.0),
+    rate("m2/day", Dimension::DischargePerLength, 1.0, 86_400.0),
+    rate("m3/d/m", Dimension::DischargePerLength, 1.0, 86_400.0),
+    rate("m3/s", Dimension::Discharge, 1.0, 1.0),
+    rate("m3/h", Dimension::Discharge, 1.0, 3600.0),
+    rate("m3/d", Dimension::Discharge, 1.0, 86_400.0),
+    rate("m3/day", Dimension::Discharge, 1.0, 86_400.0),
+    rate("l/s", Dimension::Discharge, 1.0, 1000.0),
+    rate("l/min", Dimension::Discharge, 1.0, 60_000.0),
 ];

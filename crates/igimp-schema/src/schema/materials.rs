@@ -95,6 +95,25 @@ table! {
         "Poisson's ratio of undrained soil with its water, above `poisson`";
     pore_water: apart(quantity(Stress, Positive)), optional "`undrained_poisson` says it",
         "bulk modulus of the water over the porosity, K_w/n, of undrained soil";
+    permeability: apart(either(quantity(Velocity, Positive), table(PERMEABILITY: Permeability))),
+        optional "none is needed without computed seepage", "permeability, for computed seepage";
+}
+
+table! {
+    PERMEABILITY: Permeability, "A permeability that differs by direction, or that soil above the free surface keeps in part.";
+    horizontal: quantity(Velocity, Positive), required "\"1e-5 m/s\"", "along the bedding";
+    vertical: quantity(Velocity, Positive), optional "as `horizontal`", "across the bedding";
+    angle: quantity(Angle, Any), default "\"0 deg\"", "angle by which the bedding rises towards +x";
+    gardner: quantity(Length, Positive), optional "it falls over one cell at the free surface",
+        "height 1/alpha over which permeability falls to 37 % above the free surface, by Gardner's curve";
+    van_genuchten: table(VAN_GENUCHTEN: VanGenuchten), optional "it falls over one cell at the free surface",
+        "curve of van Genuchten and Mualem above the free surface";
+}
+
+table! {
+    VAN_GENUCHTEN: VanGenuchten, "Relative permeability of van Genuchten and Mualem, m = 1 - 1/n.";
+    height: quantity(Length, Positive), required "\"0.5 m\"", "1/alpha";
+    n: number(Positive), required "2.0", "exponent, above 1";
 }
 
 choices! {

@@ -38,8 +38,64 @@ table! {
 }
 
 table! {
+    SEEPAGE: Seepage,
+    "Steady seepage: the free surface and the pressures are computed, in the ground as it is drawn when the condition first holds. \
+     What nothing is said of is closed where it is upright, hangs over or is the base, and a seepage face where it rises.";
+    free_water: list(pair(length), 1, MANY), optional "`of_water` or boxes of `faces` say it",
+        "levels of free water from left to right, x and height; where they stand above the ground they are ponds. Level beyond the ends";
+    of_water: reference("water condition"), optional "`free_water` or boxes of `faces` say it",
+        "another condition whose water table is that of the free water";
+    faces: each(table(SEEPAGE_FACE: SeepageFace), 0, MOST_THINGS), default "[]",
+        "what holds on faces of the ground within boxes; the last that holds a face counts";
+    regions: each(table(SEEPAGE_REGION: SeepageRegion), 0, MOST_THINGS), default "[]",
+        "wells, drains and cut-off walls: what holds within boxes of the ground; the last that holds a point counts";
+    sections: each(table(SEEPAGE_SECTION: SeepageSection), 0, MOST_THINGS), default "[]",
+        "sections whose discharge is wanted";
+    confined: flag, default "false", "whether all pores are full: no free surface";
+    fall: quantity(Length, Positive), optional "the height of the tallest cell",
+        "height about the free surface over which permeability falls";
+    floor: number(Share), default "1e-3", "share of the permeability that dry soil keeps";
+}
+
+table! {
+    SEEPAGE_FACE: SeepageFace,
+    "Faces of the ground within a box: one of `head`, `inflow`, `recharge`, `open` and `closed`.";
+    name: name, required "\"upstream\"", "name";
+    from: list(length, 2, 3), required "[\"0 m\", \"0 m\"]", "one corner of the box";
+    to: list(length, 2, 3), required "[\"0 m\", \"8 m\"]", "the opposite corner";
+    head: length, optional "another key says it", "level of the water before them; above it they are as if nothing were said";
+    inflow: quantity(Velocity, Any), optional "another key says it", "water that enters by area; negative leaves";
+    recharge: quantity(Velocity, NotNegative), optional "another key says it",
+        "rain by area in plan; what cannot enter runs off, and water may come out";
+    open: flag, optional "another key says it", "water comes out and none enters: a seepage face, a filter";
+    closed: flag, optional "another key says it", "no water passes";
+}
+
+table! {
+    SEEPAGE_REGION: SeepageRegion,
+    "A box of the ground: one of `head`, `drain`, `discharge` and `permeability`.";
+    name: name, required "\"well\"", "name";
+    from: list(length, 2, 3), required "[\"10 m\", \"2 m\"]", "one corner of the box";
+    to: list(length, 2, 3), required "[\"11 m\", \"3 m\"]", "the opposite corner";
+    head: length, optional "another key says it", "head that is kept there";
+    drain: flag, optional "another key says it", "water leaves where its pressure would be positive, and none enters";
+    discharge: quantity(DischargePerLength, Any), optional "another key says it",
+        "water that is pumped out of all of it; negative enters", in_plane,
+        quantity(Discharge, Any), optional "another key says it",
+        "water that is pumped out of all of it; negative enters", in_space;
+    permeability: quantity(Velocity, Positive), optional "another key says it", "permeability there: a core, a cut-off wall";
+}
+
+table! {
+    SEEPAGE_SECTION: SeepageSection, "A section across an axis: its corners have one coordinate in common.";
+    name: name, required "\"axis\"", "name";
+    from: list(length, 2, 3), required "[\"20 m\", \"0 m\"]", "one corner";
+    to: list(length, 2, 3), required "[\"20 m\", \"8 m\"]", "the opposite corner";
+}
+
+table! {
     WATER: Water,
-    "A condition of the water: one of `level`, `line`, in space `surface`, `inside` with `outside`, `r_u`, `u` and `dry`. The first holds from the \
+    "A condition of the water: one of `level`, `line`, in space `surface`, `inside` with `outside`, `r_u`, `u`, `seepage` and `dry`. The first holds from the \
      start, the others from the stages that name them.";
     name: name_apart, required "\"full\"", "name";
     tables: part(TABLES: WaterTables);
@@ -47,6 +103,7 @@ table! {
         "level of the table within the ground, with `outside`: drawdown; where the ground lies lower, the table follows it";
     outside: length, optional "another key says it", "level of the free water outside, with `inside`";
     pressures: part(PRESSURES: WaterPressures);
+    seepage: table(SEEPAGE: Seepage), optional "another key says it", "steady seepage that is computed";
     pond: flag, derived "true with `level` and `outside`, false otherwise",
         "whether water above the ground is meant: a pond that presses on it";
     carried: flag, default "false", "whether soil carries the pressure of the place where it started along";

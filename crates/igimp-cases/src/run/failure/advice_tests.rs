@@ -20,6 +20,7 @@ fn case(kind: StageKind) -> Case<2> {
         strength,
         k0: None,
         profiles: Profiles::default(),
+        permeability: None,
         saturated: None,
         drainage: igimp_model::Drainage::Drained,
         given: None,

@@ -64,14 +64,14 @@ impl<const D: usize> Output<D> {
         let (Some(case), Some(kept)) = (in_plane(model.case), kept_in_plane) else {
             return Ok(());
         };
-        self.mechanism(case, &model.seeded.body, number, kept)
+        self.mechanism(case, model, number, kept)
     }
 
     /// The way in which the body fails: the slip line as a table, and its picture.
     fn mechanism(
         &mut self,
         case: &Case<2>,
-        body_of: &[usize],
+        model: &Model<'_, D>,
         number: usize,
         kept: &[(&'static str, End<2>)],
     ) -> Result<(), CaseError> {
@@ -98,7 +98,7 @@ impl<const D: usize> Output<D> {
                     case,
                     pieces: &pieces,
                 };
-                let over = outlines::of_state(case, body_of, &end.state);
+                let over = outlines::of_state(case, model, &end.state);
                 let picture = pictures::mechanism_picture(&canvas, &failing, &found, &over)?;
                 self.figures.push(picture);
             }
@@ -168,7 +168,7 @@ impl<const D: usize> Output<D> {
                 Some(Seen { particles, laws })
             })
             .collect();
-        let over = outlines::of_state(case, &model.seeded.body, state);
+        let over = outlines::of_state(case, model, state);
         let drawn = wanted
             .par_iter()
             .map(|&field| pictures::field_picture(&canvas, shown, field, own, &compared, &over))

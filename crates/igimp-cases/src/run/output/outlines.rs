@@ -4,21 +4,34 @@
 use std::collections::HashSet;
 
 use igimp_figures::{Outline, OutlineStyle};
-use igimp_model::{Case, LoadKind};
+use igimp_model::{Case, LoadKind, in_plane};
 use igimp_report::pictures::rigid::{POINTS_OF_CIRCLE, block};
 use igimp_report::pictures::{Over, water};
 use igimp_results::paraview::frames::Structures;
 use igimp_results::reinforcement;
 use igimp_results::rigid::Standing;
+use igimp_seepage::Seepage;
 use igimp_solver::Body;
 
+use crate::run::model::Model;
 use crate::run::rigid;
 use crate::run::state::{Controls, State};
 
 /// The lines over a state: everything rigid in it, as far as it lies within the grid, the water tables that act, and
-/// reinforcement. `body_of` has the body of each particle by its number.
-pub(crate) fn of_state(case: &Case<2>, body_of: &[usize], state: &State<2>) -> Over {
-    let water = water_tables(case, body_of, state);
+/// reinforcement.
+pub(crate) fn of_state<const D: usize>(
+    case: &Case<2>,
+    model: &Model<'_, D>,
+    state: &State<2>,
+) -> Over {
+    let water = water_tables(case, &model.seeded.body, state);
+    let computed = (state.controls.water.and_then(|k| model.ground_water(k)))
+        .and_then(|own| in_plane::<_, Seepage<2>>(&**own.flow()?));
+    let surface = computed.map_or_else(Vec::new, Seepage::free_surface_lines);
+    let surface = surface.into_iter().map(|points| Outline {
+        points,
+        style: OutlineStyle::Water,
+    });
     let bodies = rigid::outlines(case, state, POINTS_OF_CIRCLE);
     let bodies = bodies.filter_map(|(_, outline)| block(case, &outline));
     let footing = footing(case, state.controls.settlement);
@@ -31,6 +44,7 @@ pub(crate) fn of_state(case: &Case<2>, body_of: &[usize], state: &State<2>) -> O
             .into_iter()
             .chain(bodies)
             .chain(water)
+            .chain(surface)
             .chain(members_drawn)
             .collect(),
         labels: reinforcement::labels(&members),

@@ -102,6 +102,7 @@ impl<const D: usize> Checker<'_, D> {
         let (place, when) = when(stage.map(|stage| &around.stages[stage]), own);
         match &condition.source {
             PoreSource::Dry => {}
+            PoreSource::Seepage(_) => self.permeable(scene, (place, &who, &when), problems),
             PoreSource::Points(raster) => points(
                 raster,
                 (around, scene, &**surface),
@@ -169,6 +170,33 @@ impl<const D: usize> Checker<'_, D> {
         }
     }
 
+    /// Refuses bodies without a permeability where seepage is computed.
+    fn permeable(
+        &self,
+        scene: &Scene,
+        (place, who, when): (Place, &str, &str),
+        problems: &mut Problems,
+    ) {
+        let there = (0..scene.present.len()).filter(|&body| scene.present[body]);
+        let mut materials: Vec<usize> = there.filter_map(|body| scene.material[body]).collect();
+        materials.sort_unstable();
+        materials.dedup();
+        for number in materials {
+            let material = self.around.materials[number].as_ref();
+            if let Some(material) = material.filter(|own| own.permeability.is_none()) {
+                problems
+                    .error(
+                        place,
+                        format!(
+                            "{who} flows through `{}`, which has no permeability{when}",
+                            clip(&material.name, 40)
+                        ),
+                    )
+                    .help("write permeability = \"1e-6 m/s\" in the material; clay 1e-9, silt 1e-7, sand 1e-4");
+            }
+        }
+    }
+
     /// Checks what the condition does to the materials of the bodies that are there.
     fn materials(
         &mut self,
@@ -189,7 +217,10 @@ impl<const D: usize> Checker<'_, D> {
             };
             let is_below_table = matches!(
                 condition.source,
-                PoreSource::Table(_) | PoreSource::Surface(_) | PoreSource::Drained(_)
+                PoreSource::Table(_)
+                    | PoreSource::Surface(_)
+                    | PoreSource::Drained(_)
+                    | PoreSource::Seepage(_)
             ) && condition.bodies.iter().all(|(named, _)| *named != body);
             if is_below_table
                 && material.saturated.is_none()
@@ -329,6 +360,7 @@ fn when(stage: Option<&Thing<Stage>>, own: &At<Water>) -> (Place, String) {
         own.inside.as_ref().map(|own| own.place),
         own.pressures.r_u.as_ref().map(|own| own.place),
         own.pressures.u.as_ref().map(|own| own.place),
+        own.seepage.as_ref().map(|own| own.place),
     ];
     let own = stated.into_iter().flatten().next().unwrap_or(own.place);
     let Some(Some(stage)) = stage else {
@@ -373,6 +405,7 @@ fn is_wet<const D: usize>(earth: &dyn Earth<D>, source: &PoreSource, part: &Body
     match source {
         PoreSource::Dry => false,
         PoreSource::Ratio(ratio) => *ratio > 0.0,
+        PoreSource::Seepage(_) => true,
         PoreSource::Points(_)
         | PoreSource::Table(_)
         | PoreSource::Surface(_)

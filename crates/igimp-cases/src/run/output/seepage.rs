@@ -1,0 +1,128 @@
+//! What is written of seepage that was computed: tables of discharges, files for ParaView, the free surface, pictures.
+
+use std::time::Instant;
+
+use igimp_model::{Case, Every, in_plane};
+use igimp_report::pictures;
+use igimp_results::paraview::seepage_grid;
+use igimp_results::summary::SetupTable;
+use igimp_results::tables::table::Table;
+use igimp_seepage::{Discharge, Seepage};
+use igimp_text::short;
+
+use super::Output;
+use crate::error::CaseError;
+use crate::run::model::Model;
+
+impl<const D: usize> Output<D> {
+    /// Flows that were computed: a file for ParaView, the free surface as a table, and in the plane a picture.
+    pub(crate) fn seepage(&mut self, model: &Model<'_, D>) -> Result<(), CaseError> {
+        let clock = Instant::now();
+        let case = model.case;
+        for (name, flow) in flows(model) {
+            let name = pictures::file_name(&format!("seepage-{name}"));
+            if self.every != Every::Never {
+                let grid = seepage_grid(flow, case.water_unit_weight);
+                grid.write(&self.folder.paraview().join(format!("{name}.vtu")))?;
+            }
+            let Some(flow) = in_plane::<_, Seepage<2>>(flow) else {
+                continue;
+            };
+            let mut table = Table::new(&*name, &["x [m]", "free surface y [m]"]);
+            for &x in flow.grid.axes[0].nodes() {
+                if let Some(level) = flow.free_surface(&[x, 0.0]) {
+                    table.push(vec![x, level]);
+                }
+            }
+            table.write_csv(&self.folder.sections())?;
+            if let Some(case) = in_plane::<_, Case<2>>(case).filter(|_| self.draws) {
+                let picture = pictures::seepage_picture(self.folder.root(), case, &name, flow)?;
+                self.figures.push(picture);
+            }
+        }
+        self.seconds += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+}
+
+/// The flows of a model, with the names of their conditions.
+fn flows<'m, const D: usize>(
+    model: &'m Model<'_, D>,
+) -> impl Iterator<Item = (&'m str, &'m Seepage<D>)> {
+    let conditions = model.case.water.iter().enumerate();
+    conditions.filter_map(|(index, own)| {
+        let flow = model.ground_water(index)?.flow()?;
+        Some((own.name.as_str(), &**flow))
+    })
+}
+
+/// Tables of discharges, and of how flows were found; empty without computed seepage.
+pub(crate) fn tables<const D: usize>(model: &Model<'_, D>) -> Vec<SetupTable> {
+    let unit = if D == 2 { "m³/s per m" } else { "m³/s" };
+    let (mut through, mut found) = (Vec::new(), Vec::new());
+    for (name, flow) in flows(model) {
+        through.extend(discharges(name, flow));
+        found.push(vec![
+            name.to_owned(),
+            "as the case draws it".to_owned(),
+            flow.unknowns.to_string(),
+            flow.corrections.to_string(),
+            format!("{:.1e}", flow.residual),
+            if flow.confined {
+                "all pores are full".to_owned()
+            } else {
+                format!("{} m, to {}", short(flow.width), short(flow.floor))
+            },
+        ]);
+    }
+    if found.is_empty() {
+        return Vec::new();
+    }
+    let header = |own: &[&str]| own.iter().map(|&own| own.to_owned()).collect();
+    vec![
+        SetupTable {
+            title: "Seepage: discharges".to_owned(),
+            header: header(&[
+                "Water",
+                "Where",
+                &format!("Enters the ground [{unit}]"),
+                &format!("Leaves it [{unit}]"),
+            ]),
+            rows: through,
+        },
+        SetupTable {
+            title: "Seepage: solution".to_owned(),
+            header: header(&[
+                "Water",
+                "Ground",
+                "Heads",
+                "Corrections",
+                "Largest imbalance over the flow",
+                "Permeability falls over",
+            ]),
+            rows: found,
+        },
+    ]
+}
+
+fn discharges<const D: usize>(name: &str, flow: &Seepage<D>) -> Vec<Vec<String>> {
+    let number = |value: f64| format!("{value:.4e}");
+    let row = |place: &str, ends: [String; 2]| {
+        let [enters, leaves] = ends;
+        vec![name.to_owned(), place.to_owned(), enters, leaves]
+    };
+    let flows = |own: &&Discharge| own.inflow > 0.0 || own.outflow > 0.0;
+    let mut rows: Vec<Vec<String>> = (flow.discharges.iter().filter(flows))
+        .map(|own| row(&own.name, [own.inflow, own.outflow].map(number)))
+        .collect();
+    rows.push(row("all", [flow.inflow, flow.outflow].map(number)));
+    if let Some(outflow) = flow.outflow_at_lower_floor {
+        let place = format!("all, with a floor of {}", short(0.1 * flow.floor));
+        rows.push(row(&place, [outflow, outflow].map(number)));
+    }
+    rows.extend(flow.sections.iter().map(|own| {
+        let place = format!("section {}, towards the positive axis", own.name);
+        row(&place, [number(own.inflow), String::new()])
+    }));
+    rows
+}

@@ -1,0 +1,335 @@
+//! Computed seepage as a source of pore pressure: the same as water that is given where nothing flows, factors of safety, files,
+//! and what is refused and why.
+
+use std::sync::atomic::AtomicBool;
+
+use igimp_cases::run::{Nobody, Run, Start, Target, in_memory, run};
+use igimp_input::CaseFile;
+use igimp_model::PoreSource;
+
+const SLOPE: &str = r#"
+igimp = 1
+
+[case]
+title = "Slope with seepage"
+
+[grid]
+cell = "1 m"
+domain = { x = ["0 m", "30 m"], y = ["0 m", "12 m"] }
+
+[materials.sand]
+model = "mohr-coulomb"
+unit_weight = "18 kN/m3"
+saturated_unit_weight = "20 kN/m3"
+young = "20 MPa"
+poisson = 0.3
+cohesion = "5 kPa"
+friction = "30 deg"
+permeability = { horizontal = "1e-5 m/s", vertical = "5e-6 m/s" }
+
+[[bodies]]
+name = "ground"
+material = "sand"
+polygon = [["0 m", "0 m"], ["30 m", "0 m"], ["30 m", "4.3 m"], ["20 m", "4.3 m"], ["9 m", "10 m"], ["0 m", "10 m"]]
+
+[[water]]
+name = "steady"
+seepage = { faces = [{ name = "left", from = ["0 m", "0 m"], to = ["0 m", "10 m"], head = "9 m" }] }
+
+[[stages]]
+name = "weight"
+type = "gravity"
+steps = 1
+"#;
+
+/// The slope with texts replaced.
+fn edited(edits: &[(&str, &str)]) -> String {
+    edits.iter().fold(SLOPE.to_owned(), |text, (from, to)| {
+        assert!(text.contains(from), "{from}");
+        text.replace(from, to)
+    })
+}
+
+fn ran(edits: &[(&str, &str)]) -> Run<2> {
+    let file = CaseFile::parse("seepage.toml", &edited(edits), &[]);
+    in_memory(file.unwrap_or_else(|error| panic!("{error}")).case()).unwrap()
+}
+
+/// What is refused, in words.
+fn refused(from: &str, to: &str) -> String {
+    match CaseFile::parse("seepage.toml", &edited(&[(from, to)]), &[]) {
+        Ok(_) => panic!("{to} was taken"),
+        Err(error) => error.to_string(),
+    }
+}
+
+const FORM: &str = "seepage = { faces = [{ name = \"left\", from = [\"0 m\", \"0 m\"], to = [\"0 m\", \"10 m\"], head = \"9 m\" }] }";
+
+/// GOAL: where no water flows, computed pressure is that of a level, under a pond too. ORACLE: the level.
+#[test]
+fn water_at_rest_is_a_level() {
+    let still = "seepage = { free_water = [[\"0 m\", \"6.5 m\"]] }";
+    let [computed, given] =
+        [still, "level = \"6.5 m\""].map(|form| ran(&[(FORM, form)]).body.particles);
+    let greatest = given.pore_pressure.iter().copied().fold(0.0, f64::max);
+    for (a, b) in std::iter::zip(&computed.pore_pressure, &given.pore_pressure) {
+        assert!((a - b).abs() < 2e-4 * greatest, "{a} {b}");
+    }
+    for (a, b) in std::iter::zip(&computed.displacement, &given.displacement) {
+        assert!((a[1] - b[1]).abs() < 1e-3 * 0.02, "{a:?} {b:?}");
+    }
+}
+
+/// GOAL: the free surface falls towards the toe, the pressure is that of the flow, and threads change no bit.
+#[test]
+fn a_slope_drains_to_its_toe() {
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        pool.build().unwrap().install(|| ran(&[]))
+    };
+    let [one, two] = [1, 2].map(on);
+    assert_eq!(
+        one.body.particles.pore_pressure,
+        two.body.particles.pore_pressure
+    );
+    let bits = |run: &Run<2>| {
+        run.body
+            .particles
+            .x
+            .iter()
+            .map(|x| x.map(f64::to_bits))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(bits(&one), bits(&two));
+    let wet = |x: f64| {
+        let particles = &one.body.particles;
+        let there = std::iter::zip(&particles.x, &particles.pore_pressure);
+        let there = there.filter(|(at, u)| (at[0] - x).abs() < 0.6 && **u > 0.0);
+        there.map(|(at, _)| at[1]).fold(0.0, f64::max)
+    };
+    assert!(
+        (wet(0.5) - 9.0).abs() < 0.8 && wet(8.0) < wet(0.5) - 0.5,
+        "{}",
+        wet(8.0)
+    );
+    assert!(wet(25.0) < 4.4);
+    let rows = &one.summary.setup;
+    let rows = rows
+        .iter()
+        .find(|own| own.title == "Seepage: discharges")
+        .unwrap();
+    let all = rows.rows.iter().find(|row| row[1] == "all").unwrap();
+    assert_eq!(all[2], all[3]);
+}
+
+/// GOAL: a factor of safety with computed seepage. ORACLE: Duncan and Wright, fig. 6.37: 1.138 to 1.142, ± 1.5 %.
+#[test]
+fn a_slope_of_duncan_and_wright() {
+    let text = r#"
+igimp = 1
+case = { title = "Seepage and stability", water_unit_weight = "62.4 pcf" }
+grid = { cell = { x = "5 ft", y = "4 ft" }, domain = { x = ["0 ft", "440 ft"], y = ["0 ft", "84 ft"] } }
+[materials.soil]
+model = "mohr-coulomb"
+unit_weight = "125 pcf"
+saturated_unit_weight = "125 pcf"
+young = "2000 ksf"
+poisson = 0.3
+cohesion = "200 psf"
+friction = "20 deg"
+dilation = "20 deg"
+permeability = "1e-6 m/s"
+[[bodies]]
+name = "slope"
+material = "soil"
+polygon = [["0 ft", "0 ft"], ["440 ft", "0 ft"], ["440 ft", "80 ft"], ["200 ft", "80 ft"], ["120 ft", "40 ft"], ["0 ft", "40 ft"]]
+[[water]]
+name = "steady"
+[water.seepage]
+faces = [
+    { name = "left", from = ["0 ft", "0 ft"], to = ["0 ft", "40 ft"], head = "40 ft" },
+    { name = "right", from = ["440 ft", "0 ft"], to = ["440 ft", "80 ft"], head = "75 ft" },
+]
+[[stages]]
+name = "weight"
+type = "gravity"
+steps = 2
+[[stages]]
+name = "safety"
+type = "strength-reduction"
+"#;
+    let file = CaseFile::parse("slope.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let found = in_memory(file.case()).unwrap();
+    let safety = found.summary.stages[1].safety.as_ref().unwrap();
+    let factor = 0.5 * (safety.stable.unwrap() + safety.failed.unwrap());
+    println!("factor of safety {factor:.4} of 1.138 to 1.142");
+    assert!(
+        (1.138 / 1.015..=1.142 * 1.015).contains(&factor),
+        "{factor}"
+    );
+}
+
+/// GOAL: seepage in space, from the case file on. ORACLE: the discharge of the same slope in the plane times its width.
+#[test]
+fn a_slope_in_space_lets_through_what_it_does_in_the_plane() {
+    let all = |setup: &[igimp_results::summary::SetupTable]| -> f64 {
+        let table = setup.iter().find(|own| own.title == "Seepage: discharges");
+        let rows = &table.unwrap().rows;
+        let all = rows.iter().find(|row| row[1] == "all").unwrap();
+        all[2].parse().unwrap()
+    };
+    let plane = all(&ran(&[]).summary.setup);
+    let space = edited(&[
+        ("title = ", "analysis = \"3d\"\ntitle = "),
+        (
+            "y = [\"0 m\", \"12 m\"]",
+            "y = [\"0 m\", \"2 m\"], z = [\"0 m\", \"12 m\"]",
+        ),
+        ("[[water]]", "across = [\"0 m\", \"2 m\"]\n\n[[water]]"),
+        (
+            "from = [\"0 m\", \"0 m\"], to = [\"0 m\", \"10 m\"]",
+            "from = [\"0 m\", \"0 m\", \"0 m\"], to = [\"0 m\", \"2 m\", \"10 m\"]",
+        ),
+    ]);
+    let file = CaseFile::parse("space.toml", &space, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let found = in_memory(file.case_in_space()).unwrap();
+    let space = all(&found.summary.setup);
+    println!("plane {plane:.4e}, space {space:.4e} over 2 m");
+    assert!(
+        (space / (2.0 * plane) - 1.0).abs() < 0.01,
+        "{space} {plane}"
+    );
+    assert!(found.body.particles.pore_pressure.iter().any(|u| *u > 5e4));
+}
+
+/// GOAL: the results folder has the flow for ParaView, the free surface and a picture.
+#[test]
+fn a_flow_is_written_and_drawn() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("seepage");
+    let text = SLOPE.replacen("igimp = 1", "igimp = 1\noutput.figures = [\"u\"]", 1);
+    let file =
+        CaseFile::parse("seepage.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let target = Target::of(&file, &folder);
+    let done = AtomicBool::new(false);
+    let found = run(
+        file.case(),
+        Some(&target),
+        Start::Afresh,
+        &mut Nobody,
+        &done,
+    )
+    .unwrap();
+    let names = found.summary.figures.iter().map(|own| own.file.as_str());
+    assert!({ names }.any(|name| name == "figures/seepage-steady"));
+    for name in [
+        "figures/seepage-steady.svg",
+        "sections/seepage-steady.csv",
+        "paraview/seepage-steady.vtu",
+    ] {
+        assert!(folder.join(name).is_file(), "{name}");
+    }
+}
+
+/// GOAL: conditions of a flow are read as they are stated.
+#[test]
+fn conditions_are_read() {
+    let form = r#"
+[water.seepage]
+of_water = "level"
+floor = 0.01
+faces = [{ name = "rain", from = ["0 m", "10 m"], to = ["9 m", "10 m"], recharge = "800 mm/a" }]
+regions = [
+    { name = "well", from = ["3 m", "1 m"], to = ["5 m", "3 m"], discharge = "0.2 m2/d" },
+    { name = "wall", from = ["10 m", "0 m"], to = ["11 m", "4 m"], permeability = "1e-9 m/s" },
+]
+[[water]]
+name = "level"
+level = "6 m"
+"#;
+    let file = CaseFile::parse("seepage.toml", &edited(&[(FORM, form)]), &[]);
+    let file = file.unwrap_or_else(|error| panic!("{error}"));
+    let case = file.case();
+    let PoreSource::Seepage(own) = &case.water[0].source else {
+        panic!("{:?}", case.water[0]);
+    };
+    assert_eq!(own.free_water, Some(case.water[1].source.clone()));
+    let stated = format!("{:?}", own.conditions);
+    for text in ["Recharge(2.5", "Inflow(-2.3148", "Soil(0)", "along: 1e-9"] {
+        assert!(stated.contains(text), "{text} in {stated}");
+    }
+    let soil = case.materials[0].permeability.unwrap();
+    assert!((soil.along / soil.across - 2.0).abs() < 1e-12);
+}
+
+/// GOAL: what makes no flow is refused where it stands.
+#[test]
+fn what_makes_no_flow_is_refused() {
+    for (from, to, message) in [
+        (
+            "permeability = { horizontal = \"1e-5 m/s\", vertical = \"5e-6 m/s\" }",
+            "",
+            "flows through `sand`, which has no permeability",
+        ),
+        (
+            "head = \"9 m\"",
+            "head = \"9 m\", open = true",
+            "says several things: head, open",
+        ),
+        (", head = \"9 m\"", "", "does not say what holds there"),
+        (
+            "from = [\"0 m\", \"0 m\"]",
+            "from = [\"0 m\", \"0 m\", \"0 m\"]",
+            "a corner has 2 coordinates here, and not 3",
+        ),
+        ("head = \"9 m\"", "head = \"9 kPa\"", "expected a length"),
+        (
+            "vertical = \"5e-6 m/s\"",
+            "gardner = \"1 m\", van_genuchten = { height = \"1 m\", n = 2.0 }",
+            "both `gardner` and `van_genuchten`",
+        ),
+        (
+            "vertical = \"5e-6 m/s\"",
+            "van_genuchten = { height = \"1 m\", n = 1.0 }",
+            "has to be above 1",
+        ),
+        (
+            "seepage = {",
+            "carried = true\nseepage = {",
+            "cannot be carried along",
+        ),
+        (
+            "seepage = {",
+            "level = \"3 m\"\nseepage = {",
+            "several sources of pressure: level, seepage",
+        ),
+        (
+            "seepage = {",
+            "seepage = { of_water = \"steady\",",
+            "has no table that free water could stand at",
+        ),
+        (
+            "seepage = {",
+            "seepage = { sections = [{ name = \"a\", from = [\"0 m\", \"0 m\"], to = [\"2 m\", \"2 m\"] }],",
+            "lies across no axis: it measures 2 by 2 m",
+        ),
+    ] {
+        let found = refused(from, to);
+        assert!(found.contains(message), "{message}: {found}");
+    }
+    let nowhere = edited(&[
+        ("[\"0 m\", \"10 m\"], head", "[\"-1 m\", \"10 m\"], head"),
+        ("from = [\"0 m\", \"0 m\"]", "from = [\"-2 m\", \"0 m\"]"),
+    ]);
+    let file =
+        CaseFile::parse("seepage.toml", &nowhere, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let error = in_memory(file.case()).unwrap_err();
+    let cause = std::error::Error::source(&error).unwrap().to_string();
+    assert_eq!(
+        error.to_string(),
+        "the seepage of the water `steady` cannot be computed"
+    );
+    assert!(
+        cause.starts_with("`left` holds no face of the ground"),
+        "{cause}"
+    );
+}

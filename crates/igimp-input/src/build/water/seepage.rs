@@ -1,0 +1,245 @@
+//! Steady seepage as it is stated.
+
+use std::sync::Arc;
+
+use igimp_model::{PoreSource, SeepageCase};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::water::{Seepage, SeepageFace, SeepageRegion, SeepageSection, Water};
+use igimp_schema::source::Place;
+use igimp_schema::text::{clip, number};
+use igimp_schema::tree::Wrong;
+use igimp_schema::tree::read::At;
+use igimp_seepage::{Conditions, Extent, InGround, Named, OnFaces, Soil};
+
+use super::{Around, Form, source_of};
+
+const FACES: &str = "write one of head = \"8 m\", inflow = \"1e-7 m/s\", recharge = \"800 mm/a\", open = true, closed = true";
+const REGIONS: &str =
+    "write one of head = \"8 m\", drain = true, discharge = ..., permeability = \"1e-9 m/s\"";
+
+/// The source that a condition of computed seepage states.
+pub(super) fn source<const D: usize>(
+    around: &Around<'_, D>,
+    (condition, index): (&At<Water>, usize),
+    own: &At<Seepage>,
+    who: &str,
+    problems: &mut Problems,
+) -> Option<PoreSource> {
+    let before = problems.errors();
+    if *condition.carried {
+        problems
+            .error(
+                condition.carried.place,
+                format!("{who} is computed, and cannot be carried along by the soil"),
+            )
+            .help("remove carried: the pressure is that of the place");
+    }
+    let free_water = free_water(around, index, own, who, problems);
+    let mut soils = Vec::new();
+    let faces = (own.faces.iter().flatten())
+        .filter_map(|own| face::<D>(own, problems).ok())
+        .collect();
+    let regions = (own.regions.iter().flatten())
+        .filter_map(|own| region::<D>(own, &mut soils, problems).ok())
+        .collect();
+    let sections = (own.sections.iter().flatten())
+        .filter_map(|own| section::<D>(own, problems).ok())
+        .collect();
+    let is_read = own.faces.iter().all(Result::is_ok)
+        && own.regions.iter().all(Result::is_ok)
+        && own.sections.iter().all(Result::is_ok);
+    if problems.errors() > before || !is_read {
+        return None;
+    }
+    Some(PoreSource::Seepage(Arc::new(SeepageCase {
+        conditions: Conditions {
+            soils,
+            faces,
+            regions,
+            sections,
+            confined: *own.confined,
+            width: own.fall.as_ref().map(|own| **own),
+            floor: *own.floor,
+        },
+        free_water,
+    })))
+}
+
+/// The table of the free water.
+fn free_water<const D: usize>(
+    around: &Around<'_, D>,
+    index: usize,
+    own: &Seepage,
+    who: &str,
+    problems: &mut Problems,
+) -> Option<PoreSource> {
+    match (&own.free_water, &own.of_water) {
+        (Some(_), Some(second)) => {
+            problems
+                .error(
+                    second.place,
+                    format!("{who} has both `free_water` and `of_water`"),
+                )
+                .help("keep one of them");
+            None
+        }
+        (Some(line), None) => source_of(&Form::Line(line), who, problems),
+        (None, None) => None,
+        (None, Some(name)) => {
+            let other = around
+                .names
+                .water
+                .find(name, &format!("{who} names"), problems)?;
+            let stated = around.own[other].as_ref()?;
+            let tables = &stated.tables;
+            let form = match (&tables.level, &tables.line, &tables.surface) {
+                (Some(own), ..) => Some(Form::Level(own)),
+                (_, Some(own), _) => Some(Form::Line(own)),
+                (.., Some(own)) => Some(Form::Surface(own)),
+                _ => None,
+            };
+            let Some(form) = form.filter(|_| other != index) else {
+                problems
+                    .error(name.place, format!("the water `{}` has no table that free water could stand at", clip(name, 40)))
+                    .help("name a condition with level, line or surface, or write free_water = [[\"0 m\", \"8 m\"]]");
+                return None;
+            };
+            source_of(&form, who, problems)
+        }
+    }
+}
+
+/// A box with as many axes as the analysis has.
+fn extent<const D: usize>(
+    from: &At<Vec<At<f64>>>,
+    to: &At<Vec<At<f64>>>,
+    problems: &mut Problems,
+) -> Result<Extent<3>, Wrong> {
+    let mut within = Extent {
+        lower: [0.0; 3],
+        upper: [0.0; 3],
+    };
+    for corner in [from, to] {
+        if corner.len() != D {
+            problems
+                .error(
+                    corner.place,
+                    format!(
+                        "a corner has {D} coordinates here, and not {}",
+                        corner.len()
+                    ),
+                )
+                .help("in plane strain write x and y, in space x, y and z");
+            return Err(Wrong);
+        }
+    }
+    for axis in 0..D {
+        let [a, b] = [*from[axis], *to[axis]];
+        (within.lower[axis], within.upper[axis]) = (a.min(b), a.max(b));
+    }
+    Ok(within)
+}
+
+/// The only key that is stated of several.
+fn only<T>(
+    stated: Vec<(&str, Place, T)>,
+    (place, what, forms): (Place, &str, &str),
+    problems: &mut Problems,
+) -> Result<T, Wrong> {
+    let keys: Vec<&str> = stated.iter().map(|(key, ..)| *key).collect();
+    if let [.., (_, last, _)] = stated[..]
+        && stated.len() > 1
+    {
+        problems
+            .error(
+                last,
+                format!("{what} says several things: {}", keys.join(", ")),
+            )
+            .help("keep one of them");
+        return Err(Wrong);
+    }
+    if stated.is_empty() {
+        problems
+            .error(place, format!("{what} does not say what holds there"))
+            .help(forms);
+    }
+    stated.into_iter().next().map(|(.., own)| own).ok_or(Wrong)
+}
+
+fn is_set<'a>(key: &'a str, own: Option<&At<bool>>) -> Option<(&'a str, Place)> {
+    own.filter(|own| own.value).map(|own| (key, own.place))
+}
+
+fn face<const D: usize>(
+    own: &At<SeepageFace>,
+    problems: &mut Problems,
+) -> Result<Named<3, OnFaces>, Wrong> {
+    let what = format!("the face `{}`", clip(&own.name, 40));
+    let value = |key: &'static str, own: &Option<At<f64>>, of: fn(f64) -> OnFaces| {
+        own.as_ref().map(|own| (key, own.place, of(**own)))
+    };
+    let flag = |key, own: &Option<At<bool>>, of: OnFaces| {
+        is_set(key, own.as_ref()).map(|(key, place)| (key, place, of))
+    };
+    let stated = [
+        value("head", &own.head, OnFaces::Head),
+        value("inflow", &own.inflow, OnFaces::Inflow),
+        value("recharge", &own.recharge, OnFaces::Recharge),
+        flag("open", &own.open, OnFaces::Open),
+        flag("closed", &own.closed, OnFaces::Closed),
+    ];
+    let stated = stated.into_iter().flatten().collect();
+    let held = only(stated, (own.place, &what, FACES), problems);
+    Ok(Named {
+        name: own.name.value.clone(),
+        within: extent::<D>(&own.from, &own.to, problems)?,
+        what: held?,
+    })
+}
+
+fn region<const D: usize>(
+    own: &At<SeepageRegion>,
+    soils: &mut Vec<Soil>,
+    problems: &mut Problems,
+) -> Result<Named<3, InGround>, Wrong> {
+    let what = format!("the region `{}`", clip(&own.name, 40));
+    let number = soils.len();
+    let stated = [
+        (own.head.as_ref()).map(|own| ("head", own.place, InGround::Head(**own))),
+        is_set("drain", own.drain.as_ref()).map(|(key, place)| (key, place, InGround::Drain)),
+        (own.discharge.as_ref()).map(|own| ("discharge", own.place, InGround::Inflow(-**own))),
+        (own.permeability.as_ref()).map(|own| ("permeability", own.place, InGround::Soil(number))),
+    ];
+    let stated = stated.into_iter().flatten().collect();
+    let held = only(stated, (own.place, &what, REGIONS), problems);
+    let within = extent::<D>(&own.from, &own.to, problems)?;
+    let held = held?;
+    if let (InGround::Soil(_), Some(permeability)) = (held, &own.permeability) {
+        soils.push(Soil::isotropic(**permeability));
+    }
+    Ok(Named {
+        name: own.name.value.clone(),
+        within,
+        what: held,
+    })
+}
+
+fn section<const D: usize>(
+    own: &At<SeepageSection>,
+    problems: &mut Problems,
+) -> Result<(String, Extent<3>), Wrong> {
+    let within = extent::<D>(&own.from, &own.to, problems)?;
+    let flat = (0..D).filter(|&axis| within.upper[axis] <= within.lower[axis]);
+    if flat.count() != 1 {
+        let sizes = (0..D).map(|axis| number(within.upper[axis] - within.lower[axis]));
+        let sizes: Vec<String> = sizes.collect();
+        problems
+            .error(
+                own.place,
+                format!("the section `{}` lies across no axis: it measures {} m", clip(&own.name, 40), sizes.join(" by ")),
+            )
+            .help("let its corners have one coordinate in common: from = [\"20 m\", \"0 m\"], to = [\"20 m\", \"8 m\"]");
+        return Err(Wrong);
+    }
+    Ok((own.name.value.clone(), within))
+}

@@ -1,0 +1,98 @@
+//! Steady seepage as a case states it.
+
+use igimp_geometry::region::Region;
+use igimp_seepage::{Conditions, Extent, InGround, Named, Soil};
+
+use super::PoreSource;
+use crate::{Case, Material, StageKind};
+
+/// Steady seepage that is to be computed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeepageCase {
+    /// Conditions, with corners in space; in the plane their third entries say nothing. Of soils those of regions alone.
+    pub conditions: Conditions<3>,
+    /// The levels of free water, by a water table; none where boxes say it all.
+    pub free_water: Option<PoreSource>,
+}
+
+impl SeepageCase {
+    /// The conditions with the soils of materials, by their index, and those of regions behind them; soil without a
+    /// permeability of its own is not there.
+    pub fn with_soils<const D: usize>(&self, materials: &[Material]) -> Conditions<D> {
+        let own = &self.conditions;
+        let soil = |material: &Material| material.permeability.unwrap_or(Soil::isotropic(1.0));
+        let of_materials = materials.iter().map(soil);
+        let behind = |what: InGround| match what {
+            InGround::Soil(number) => InGround::Soil(materials.len() + number),
+            other => other,
+        };
+        Conditions {
+            soils: of_materials.chain(own.soils.iter().copied()).collect(),
+            faces: (own.faces.iter())
+                .map(|named| Named {
+                    name: named.name.clone(),
+                    within: extent(&named.within),
+                    what: named.what,
+                })
+                .collect(),
+            regions: (own.regions.iter())
+                .map(|named| Named {
+                    name: named.name.clone(),
+                    within: extent(&named.within),
+                    what: behind(named.what),
+                })
+                .collect(),
+            sections: (own.sections.iter())
+                .map(|(name, within)| (name.clone(), extent(within)))
+                .collect(),
+            confined: own.confined,
+            width: own.width,
+            floor: own.floor,
+        }
+    }
+}
+
+/// The first corners of an extent in space.
+fn extent<const D: usize>(own: &Extent<3>) -> Extent<D> {
+    let first = |corner: [f64; 3]| std::array::from_fn(|axis| corner[axis]);
+    Extent {
+        lower: first(own.lower),
+        upper: first(own.upper),
+    }
+}
+
+impl<const D: usize> Case<D> {
+    /// The bodies through which the water of a condition flows with their materials, both by index: those that are there at
+    /// the end of the first stage in which it holds, or from the start.
+    pub fn bodies_of_water(&self, condition: usize) -> Vec<(&dyn Region<D>, usize)> {
+        let first =
+            (0..self.stages.len()).find(|&stage| self.water_after(stage) == Some(condition));
+        let there = match first {
+            Some(stage) if condition > 0 => self.bodies_after(stage),
+            _ => self.bodies.iter().map(|body| body.from_start).collect(),
+        };
+        let changed = |body: usize| {
+            let until = first.filter(|_| condition > 0)?;
+            (self.stages[..=until].iter().rev()).find_map(|stage| match &stage.kind {
+                StageKind::Construction(own) => {
+                    let change = own.materials.iter().find(|(other, _)| *other == body);
+                    change.map(|(_, material)| *material)
+                }
+                _ => None,
+            })
+        };
+        let bodies = self
+            .bodies
+            .iter()
+            .enumerate()
+            .filter(|(body, _)| there[*body]);
+        bodies
+            .map(|(body, part)| {
+                (
+                    &*part.region as &dyn Region<D>,
+                    changed(body).unwrap_or(part.material),
+                )
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,95 @@
+//! What holds at the faces of the ground: the condition of a box, free water, or nothing that is said.
+
+use igimp_shape::Grid;
+
+use crate::conditions::{Conditions, FreeWater, OnFaces};
+use crate::ground::{Cell, Facet};
+
+/// Faces that rise less than this are upright or hang over \[-\].
+const UPRIGHT: f64 = 1e-6;
+
+/// What holds at a facet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum At {
+    /// This head \[m\].
+    Head(f64),
+    /// So much enters \[m/s\].
+    Inflow(f64),
+    /// So much rain \[m/s\], and water may come out.
+    Open(f64),
+    Closed,
+}
+
+/// A facet with what holds there, and the condition that says so.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Held<const D: usize> {
+    pub(crate) cell: usize,
+    pub(crate) facet: Facet<D>,
+    pub(crate) at: At,
+    /// By condition on faces; then free water, and faces of which nothing is said.
+    pub(crate) owner: usize,
+}
+
+/// How far beyond a box a face still counts as within it \[m\]: round-off.
+pub(crate) fn reach<const D: usize>(grid: &Grid<D>) -> f64 {
+    let spans = grid.axes.iter().map(|axis| axis.end() - axis.start());
+    1e-6 * spans.fold(f64::INFINITY, f64::min)
+}
+
+/// What holds at the facets, in the order of cells.
+pub(crate) fn held<const D: usize>(
+    cells: &[Cell<D>],
+    conditions: &Conditions<D>,
+    free: FreeWater<'_, D>,
+    grid: &Grid<D>,
+) -> Vec<Held<D>> {
+    let reach = reach(grid);
+    let mut held = Vec::new();
+    for (cell, own) in cells.iter().enumerate() {
+        for facet in &own.facets {
+            let (at, owner) = at(facet, conditions, free, reach);
+            held.push(Held {
+                cell,
+                facet: *facet,
+                at,
+                owner,
+            });
+        }
+    }
+    held
+}
+
+/// What holds at a facet, and who says so.
+fn at<const D: usize>(
+    facet: &Facet<D>,
+    conditions: &Conditions<D>,
+    free: FreeWater<'_, D>,
+    reach: f64,
+) -> (At, usize) {
+    let rises = facet.normal[D - 1];
+    let faces = conditions.faces.len();
+    let is_below = |head: f64| conditions.confined || head >= facet.x[D - 1];
+    let else_at = if rises > UPRIGHT && !conditions.confined {
+        (At::Open(0.0), faces + 1)
+    } else {
+        (At::Closed, faces + 1)
+    };
+    let last = (conditions.faces.iter().enumerate().rev())
+        .find(|(_, own)| own.within.holds(&facet.x, reach));
+    match last.map(|(index, own)| (index, own.what)) {
+        Some((index, OnFaces::Head(head))) if is_below(head) => return (At::Head(head), index),
+        Some((_, OnFaces::Head(_))) => return else_at,
+        Some((index, OnFaces::Inflow(inflow))) => return (At::Inflow(inflow), index),
+        Some((index, OnFaces::Closed)) => return (At::Closed, index),
+        _ => {}
+    }
+    if let Some(level) = free(&facet.x).filter(|level| *level >= facet.x[D - 1] && rises > UPRIGHT)
+    {
+        return (At::Head(level), faces);
+    }
+    match last.map(|(index, own)| (index, own.what)) {
+        Some((index, OnFaces::Recharge(rain))) => (At::Open(rain * rises.max(0.0)), index),
+        Some((index, OnFaces::Open)) => (At::Open(0.0), index),
+        _ => else_at,
+    }
+}

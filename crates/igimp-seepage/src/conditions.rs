@@ -1,0 +1,140 @@
+//! What a flow is given: soils, heads, flows, and what is asked of it.
+
+use crate::curve::Curve;
+
+/// Permeability of a soil.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Soil {
+    /// Along its bedding \[m/s\].
+    pub along: f64,
+    /// Across its bedding \[m/s\].
+    pub across: f64,
+    /// Angle by which the bedding rises towards +x \[rad\].
+    pub angle: f64,
+    /// What it keeps where it is not saturated.
+    pub curve: Curve,
+}
+
+impl Soil {
+    /// The same in all directions \[m/s\].
+    pub fn isotropic(permeability: f64) -> Self {
+        Self {
+            along: permeability,
+            across: permeability,
+            angle: 0.0,
+            curve: Curve::Ramp,
+        }
+    }
+
+    /// The tensor of permeability \[m/s\].
+    pub(crate) fn tensor<const D: usize>(&self) -> [[f64; D]; D] {
+        let (sin, cos) = self.angle.sin_cos();
+        let mut tensor = [[0.0; D]; D];
+        for axis in 1..D - 1 {
+            tensor[axis][axis] = self.along;
+        }
+        tensor[0][0] = self.along * cos * cos + self.across * sin * sin;
+        tensor[D - 1][D - 1] = self.along * sin * sin + self.across * cos * cos;
+        tensor[0][D - 1] = (self.along - self.across) * sin * cos;
+        tensor[D - 1][0] = tensor[0][D - 1];
+        tensor
+    }
+}
+
+/// A box, faces included: lower and upper corner \[m\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent<const D: usize> {
+    /// Lower corner \[m\].
+    pub lower: [f64; D],
+    /// Upper corner \[m\].
+    pub upper: [f64; D],
+}
+
+impl<const D: usize> Extent<D> {
+    /// Whether a point lies in it or no farther off than `reach` \[m\].
+    pub fn holds(&self, x: &[f64; D], reach: f64) -> bool {
+        (0..D)
+            .all(|axis| self.lower[axis] - reach <= x[axis] && x[axis] <= self.upper[axis] + reach)
+    }
+
+    /// Whether it shares more than a face with another.
+    pub(crate) fn meets(&self, lower: &[f64; D], upper: &[f64; D]) -> bool {
+        (0..D).all(|axis| self.lower[axis] < upper[axis] && lower[axis] < self.upper[axis])
+    }
+}
+
+/// What holds on the faces of the ground within a box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OnFaces {
+    /// Water of this head \[m\] stands before them; above its level they are as if nothing were said.
+    Head(f64),
+    /// So much water enters by the area of the face \[m/s\]; negative leaves.
+    Inflow(f64),
+    /// So much rain falls by the area in plan \[m/s\]; what cannot enter runs off, and water may come out.
+    Recharge(f64),
+    /// Water comes out where its pressure would be positive, and none enters: a seepage face, a filter.
+    Open,
+    /// Neither in nor out.
+    Closed,
+}
+
+/// What holds within a box of the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum InGround {
+    /// A head \[m\]: a well that is kept at its level, a spring.
+    Head(f64),
+    /// Water leaves where its pressure would be positive, and none enters: a drain.
+    Drain,
+    /// So much water enters all of it \[m³/s\], in the plane by the metre run \[m²/s\]; negative leaves.
+    Inflow(f64),
+    /// Another soil, by index: a core, a cut-off wall.
+    Soil(usize),
+}
+
+/// A condition under a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Named<const D: usize, T> {
+    /// Name.
+    pub name: String,
+    /// Where it holds.
+    pub within: Extent<D>,
+    /// What holds.
+    pub what: T,
+}
+
+/// A level of free water by place; none where there is none.
+pub type FreeWater<'a, const D: usize> = &'a (dyn Fn(&[f64; D]) -> Option<f64> + Sync);
+
+/// All that a flow is given beside the ground.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Conditions<const D: usize> {
+    /// Soils, by the index that bodies have.
+    pub soils: Vec<Soil>,
+    /// On faces: the last that holds one counts.
+    pub faces: Vec<Named<D, OnFaces>>,
+    /// Within the ground: the last that holds a point counts.
+    pub regions: Vec<Named<D, InGround>>,
+    /// Sections whose discharge is asked for: boxes without extent along one axis.
+    pub sections: Vec<(String, Extent<D>)>,
+    /// Whether all pores are full, and heads may be below the ground: no free surface.
+    pub confined: bool,
+    /// Height over which relative permeability falls \[m\]; none: that of the tallest cell.
+    pub width: Option<f64>,
+    /// Share of the permeability that dry soil keeps \[-\].
+    pub floor: f64,
+}
+
+impl<const D: usize> Conditions<D> {
+    /// Those of soils, with nothing said of faces.
+    pub fn of(soils: Vec<Soil>) -> Self {
+        Self {
+            soils,
+            faces: Vec::new(),
+            regions: Vec::new(),
+            sections: Vec::new(),
+            confined: false,
+            width: None,
+            floor: 1e-3,
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! What cannot be solved.
+
+use igimp_linear::LinearSolverError;
+use thiserror::Error;
+
+/// Why there is no seepage.
+#[derive(Debug, Error)]
+pub enum SeepageError {
+    /// No cell of the grid holds soil.
+    #[error("no cell of the grid holds soil that water could flow through")]
+    NoGround,
+    /// Nothing says how high the water stands.
+    #[error("no face and no region has a head: give one where water enters or leaves")]
+    NoHead,
+    /// A box of a condition touches no soil or no face.
+    #[error("`{name}` {what}")]
+    Empty {
+        /// Name of the condition.
+        name: String,
+        /// What it misses.
+        what: &'static str,
+    },
+    /// A number that does not serve.
+    #[error("{what} is {value}, and has to be {wanted}")]
+    Value {
+        /// The number.
+        what: String,
+        /// Its value.
+        value: f64,
+        /// What it has to be.
+        wanted: &'static str,
+    },
+    /// Corrections that do not lead to a balance of water.
+    #[error(
+        "the free surface was not found: after {corrections} corrections the balance is still off by {residual:.1e} of the flow; \
+         let the permeability fall over more height, or take smaller cells"
+    )]
+    NotFound {
+        /// Corrections made.
+        corrections: usize,
+        /// Largest imbalance of a node over the largest flow \[-\].
+        residual: f64,
+    },
+    /// A linear system that could not be solved.
+    #[error("a part of the ground has no head to go by, or the flow has no one solution: {source}")]
+    Linear {
+        /// Why.
+        #[from]
+        source: LinearSolverError,
+    },
+}

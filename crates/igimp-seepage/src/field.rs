@@ -1,0 +1,255 @@
+//! What a flow answers: heads, pressures, velocities, discharges and the free surface.
+
+use igimp_shape::Grid;
+
+use crate::basis::{Basis, CORNERS, apply, nodes_of};
+use crate::conditions::Extent;
+use crate::curve::Relative;
+use crate::ground::ends_of;
+use crate::system::{Flows, System};
+
+/// Water through a condition or a section \[m³/s\], in the plane by the metre run \[m²/s\].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Discharge {
+    /// Its name.
+    pub name: String,
+    /// What enters the ground there; of a section what passes towards the positive axis.
+    pub inflow: f64,
+    /// What leaves the ground there; of a section nothing.
+    pub outflow: f64,
+}
+
+/// A steady flow.
+#[derive(Clone, Debug)]
+pub struct Seepage<const D: usize> {
+    /// The grid that it was solved on.
+    pub grid: Grid<D>,
+    /// Head by node \[m\]; beyond the ground that of the nearest soil.
+    pub heads: Vec<f64>,
+    /// Whether a node is a corner of a cell with soil.
+    pub is_ground: Vec<bool>,
+    /// Share that soil fills by cell \[-\].
+    pub filled: Vec<f64>,
+    /// Darcy velocity by cell \[m/s\], the mean over its soil; zero without soil.
+    pub velocities: Vec<[f64; D]>,
+    /// By condition, then `free water`, `open faces`, and by region.
+    pub discharges: Vec<Discharge>,
+    /// By section.
+    pub sections: Vec<Discharge>,
+    /// All that enters.
+    pub inflow: f64,
+    /// All that leaves.
+    pub outflow: f64,
+    /// All that leaves where the floor is a tenth of that asked for; none without a free surface.
+    pub outflow_at_lower_floor: Option<f64>,
+    /// Share of permeability that dry soil keeps \[-\].
+    pub floor: f64,
+    /// Height over which permeability falls \[m\].
+    pub width: f64,
+    /// Corrections that it took.
+    pub corrections: usize,
+    /// Largest imbalance of a node over all that enters \[-\].
+    pub residual: f64,
+    /// Number of heads.
+    pub unknowns: usize,
+    /// Whether all pores were taken to be full.
+    pub confined: bool,
+}
+
+impl<const D: usize> Seepage<D> {
+    pub(crate) fn of(
+        system: &System<'_, D>,
+        heads: &[f64],
+        relative: Relative,
+        (residual, flows, dry): (&[f64], &Flows, Option<&Flows>),
+        corrections: usize,
+    ) -> Self {
+        let grid = system.grid.clone();
+        let mut all = vec![f64::NAN; grid.node_count()];
+        for (&node, &head) in std::iter::zip(&system.nodes, heads) {
+            all[node] = head;
+        }
+        let is_ground: Vec<bool> = all.iter().map(|head| !head.is_nan()).collect();
+        extend(&grid, &mut all);
+        let through = Through::of(system, heads, &relative);
+        let sum = |own: &[f64]| own.iter().sum::<f64>();
+        let (inflow, outflow) = (sum(&flows.inwards), sum(&flows.outwards));
+        let largest = residual
+            .iter()
+            .fold(0.0, |most: f64, own| most.max(own.abs()));
+        Self {
+            heads: all,
+            is_ground,
+            filled: through.filled,
+            velocities: through.velocities,
+            discharges: discharges(system, flows),
+            sections: through.sections,
+            inflow,
+            outflow,
+            outflow_at_lower_floor: dry.map(|own| sum(&own.outwards)),
+            floor: relative.floor,
+            width: relative.width,
+            corrections,
+            residual: largest / inflow.max(outflow).max(f64::MIN_POSITIVE),
+            unknowns: heads.len(),
+            confined: relative.confined,
+            grid,
+        }
+    }
+
+    /// The head at a point \[m\]; beyond the grid that of its nearest place.
+    pub fn head(&self, x: &[f64; D]) -> f64 {
+        let (lower, upper) = self.grid.bounds();
+        let x = std::array::from_fn(|axis| x[axis].max(lower[axis]).min(upper[axis]));
+        let Some(place) = self.grid.cell_at(&x) else {
+            return f64::NAN;
+        };
+        let basis = Basis::at(ends_of(&self.grid, place), &x);
+        let mut own = [0.0; CORNERS];
+        for (k, node) in nodes_of(&self.grid, place).enumerate() {
+            own[k] = self.heads[node];
+        }
+        basis.head(&own)
+    }
+
+    /// The pressure head ψ = h − z at a point \[m\], negative above the free surface.
+    pub fn pressure_head(&self, x: &[f64; D]) -> f64 {
+        self.head(x) - x[D - 1]
+    }
+
+    /// The level of the free surface on the upright line through a place \[m\]: the highest at which ψ = 0 in the cells of the
+    /// ground; none where all of the line is dry.
+    pub fn free_surface(&self, x: &[f64; D]) -> Option<f64> {
+        let levels = self.grid.axes[D - 1].nodes();
+        let at = |level: f64| {
+            let mut place = *x;
+            place[D - 1] = level;
+            place
+        };
+        let mut upper: Option<[f64; 2]> = None;
+        for &level in levels.iter().rev() {
+            let place = at(level);
+            let psi = self.pressure_head(&place);
+            if psi >= 0.0 {
+                return Some(match upper {
+                    Some([above, dry]) => level + (above - level) * psi / (psi - dry),
+                    None => level,
+                });
+            }
+            upper = Some([level, psi]);
+        }
+        None
+    }
+}
+
+/// What passes through cells.
+struct Through<const D: usize> {
+    filled: Vec<f64>,
+    velocities: Vec<[f64; D]>,
+    sections: Vec<Discharge>,
+}
+
+impl<const D: usize> Through<D> {
+    fn of(system: &System<'_, D>, heads: &[f64], relative: &Relative) -> Self {
+        let grid = system.grid;
+        let asked = &system.conditions.sections;
+        let section = |(name, _): &(String, Extent<D>)| Discharge {
+            name: name.clone(),
+            inflow: 0.0,
+            outflow: 0.0,
+        };
+        let mut found = Self {
+            filled: vec![0.0; grid.cell_count()],
+            velocities: vec![[0.0; D]; grid.cell_count()],
+            sections: asked.iter().map(section).collect(),
+        };
+        for cell in 0..system.cells.len() {
+            let place = system.cells[cell].place;
+            let ends = ends_of(grid, place);
+            let own = system.heads(cell, heads);
+            let (mut sum, mut volume) = ([0.0; D], 0.0);
+            for point in system.points(cell, &own, relative) {
+                let basis = Basis::at(ends, &point.x);
+                let psi = basis.head(&own) - point.x[D - 1];
+                let [share, _] = system.share(relative, point.soil, psi);
+                let slope = apply(system.tensor(cell, point.soil), &basis.slope(&own));
+                let velocity = slope.map(|slope| -share * slope);
+                volume += point.volume;
+                for axis in 0..D {
+                    sum[axis] += point.volume * velocity[axis];
+                }
+                for (section, (_, extent)) in std::iter::zip(&mut found.sections, asked) {
+                    if let Some(axis) = crosses(extent, ends, &point.x) {
+                        let thick = ends[1][axis] - ends[0][axis];
+                        section.inflow += point.volume * velocity[axis] / thick;
+                    }
+                }
+            }
+            found.filled[grid.cell_index(place)] = system.cells[cell].filled;
+            found.velocities[grid.cell_index(place)] = sum.map(|sum| sum / volume);
+        }
+        found
+    }
+}
+
+/// Flows with the names of who lets them in.
+fn discharges<const D: usize>(system: &System<'_, D>, flows: &Flows) -> Vec<Discharge> {
+    let conditions = system.conditions;
+    let names = (conditions.faces.iter().map(|own| own.name.as_str()))
+        .chain(["free water", "open faces"])
+        .chain(conditions.regions.iter().map(|own| own.name.as_str()));
+    let of = |(k, name): (usize, &str)| Discharge {
+        name: name.to_owned(),
+        inflow: flows.inwards[k],
+        outflow: flows.outwards[k],
+    };
+    names.enumerate().map(of).collect()
+}
+
+/// The axis of a section that a point of a cell counts for.
+fn crosses<const D: usize>(extent: &Extent<D>, ends: [[f64; D]; 2], x: &[f64; D]) -> Option<usize> {
+    let axis = (0..D).find(|&axis| extent.upper[axis] <= extent.lower[axis])?;
+    let at = extent.lower[axis];
+    let others = (0..D).filter(|other| *other != axis);
+    let is_along = { others }.all(|d| extent.lower[d] <= x[d] && x[d] <= extent.upper[d]);
+    (ends[0][axis] <= at && at < ends[1][axis] && is_along).then_some(axis)
+}
+
+/// Gives nodes beyond the ground the mean of their neighbours, outwards from it.
+fn extend<const D: usize>(grid: &Grid<D>, heads: &mut [f64]) {
+    let mut open: Vec<usize> = (0..heads.len()).filter(|&k| heads[k].is_nan()).collect();
+    while !open.is_empty() {
+        let mut found = Vec::new();
+        for &node in &open {
+            let place = grid.node_place(node);
+            let (mut sum, mut count) = (0.0, 0.0);
+            for axis in 0..D {
+                for step in [-1, 1] {
+                    let mut beside = place;
+                    let Some(own) = beside[axis].checked_add_signed(step) else {
+                        continue;
+                    };
+                    if own >= grid.axes[axis].node_count() {
+                        continue;
+                    }
+                    beside[axis] = own;
+                    let head = heads[grid.node_index(beside)];
+                    if !head.is_nan() {
+                        sum += head;
+                        count += 1.0;
+                    }
+                }
+            }
+            if count > 0.0 {
+                found.push((node, sum / count));
+            }
+        }
+        if found.is_empty() {
+            return;
+        }
+        for &(node, head) in &found {
+            heads[node] = head;
+        }
+        open.retain(|&node| heads[node].is_nan());
+    }
+}

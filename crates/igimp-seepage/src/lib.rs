@@ -1,0 +1,24 @@
+//! Steady seepage with a free surface on the background grid.
+//!
+//! One unknown head per node of the cells that hold soil, linear along each axis. Faces of the ground need not lie on lines of
+//! the grid: heads on them are set weakly, and cells that soil fills in part are tied to their neighbours by a penalty that
+//! lets no water through (theory, eqs. 78 to 84). Nothing here knows of files, stress or stages.
+
+mod basis;
+mod boundary;
+mod conditions;
+mod curve;
+mod error;
+mod field;
+mod ground;
+mod layers;
+mod lines;
+mod solve;
+mod system;
+
+pub use conditions::{Conditions, Extent, FreeWater, InGround, Named, OnFaces, Soil};
+pub use curve::Curve;
+pub use error::SeepageError;
+pub use field::{Discharge, Seepage};
+pub use ground::SeepageBody;
+pub use solve::solve;

@@ -1,0 +1,496 @@
+//! The equations of a flow: unknown heads, their pattern, residual and tangent (theory, eqs. 78, 82 to 84).
+
+use std::sync::Arc;
+
+use igimp_linear::{NodeBlock, Pattern, TangentMatrix};
+use igimp_shape::Grid;
+
+use crate::basis::{Basis, CORNERS, FOUR, HIGH, TWO, apply, dot, gauss, nodes_of};
+use crate::boundary::{At, Held, held};
+use crate::conditions::{Conditions, FreeWater, InGround, Soil};
+use crate::curve::{Curve, Relative};
+use crate::error::SeepageError;
+use crate::ground::{Cell, Facet, Point, ends_of};
+use crate::layers;
+
+/// Factor of Nitsche's method: penalty on heads over k / h \[-\].
+const NITSCHE: f64 = 10.0;
+/// The same within regions, over k / h² \[-\].
+const REGION: f64 = 1e3;
+/// Penalty on jumps of the gradient at cells that are cut \[-\].
+const GHOST: f64 = 0.01;
+/// Equations of a cell or of two.
+struct Local<'a> {
+    unknowns: &'a [usize],
+    residual: [f64; 2 * CORNERS],
+    tangent: [[f64; 2 * CORNERS]; 2 * CORNERS],
+}
+
+impl<'a> Local<'a> {
+    fn of(unknowns: &'a [usize]) -> Self {
+        Self {
+            unknowns,
+            residual: [0.0; 2 * CORNERS],
+            tangent: [[0.0; 2 * CORNERS]; 2 * CORNERS],
+        }
+    }
+}
+
+/// Cells that share a side of which one is cut.
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    cells: [usize; 2],
+    axis: usize,
+}
+
+/// A flow to be solved.
+#[derive(Debug)]
+pub(crate) struct System<'a, const D: usize> {
+    pub(crate) grid: &'a Grid<D>,
+    pub(crate) cells: Vec<Cell<D>>,
+    pub(crate) conditions: &'a Conditions<D>,
+    /// By soil, then of cells that several soils share.
+    tensors: Vec<[[f64; D]; D]>,
+    /// By cell: the tensor of the soils that share it.
+    shared: Vec<Option<usize>>,
+    pub(crate) held: Vec<Held<D>>,
+    pairs: Vec<Pair>,
+    /// Unknowns of the corners of each cell.
+    corners: Vec<[usize; CORNERS]>,
+    /// Node by unknown.
+    pub(crate) nodes: Vec<usize>,
+    pub(crate) pattern: Arc<Pattern>,
+    /// Volume in which each region acts \[m^D\].
+    volumes: Vec<f64>,
+}
+
+/// Flows by who lets them in \[m^D/s\]: conditions on faces, free water, open faces, then regions; inwards positive.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Flows {
+    pub(crate) inwards: Vec<f64>,
+    pub(crate) outwards: Vec<f64>,
+}
+
+impl Flows {
+    fn of(count: usize) -> Self {
+        Self {
+            inwards: vec![0.0; count],
+            outwards: vec![0.0; count],
+        }
+    }
+
+    /// What goes in and out within a region is one flow.
+    fn balance_from(&mut self, first: usize) {
+        for owner in first..self.inwards.len() {
+            let net = self.inwards[owner] - self.outwards[owner];
+            self.inwards[owner] = net.max(0.0);
+            self.outwards[owner] = (-net).max(0.0);
+        }
+    }
+
+    fn add(&mut self, owner: usize, inwards: f64) {
+        if inwards > 0.0 {
+            self.inwards[owner] += inwards;
+        } else {
+            self.outwards[owner] -= inwards;
+        }
+    }
+}
+
+impl<'a, const D: usize> System<'a, D> {
+    pub(crate) fn new(
+        grid: &'a Grid<D>,
+        cells: Vec<Cell<D>>,
+        conditions: &'a Conditions<D>,
+        free: FreeWater<'_, D>,
+    ) -> Result<Self, SeepageError> {
+        if cells.is_empty() {
+            return Err(SeepageError::NoGround);
+        }
+        let mut unknown = vec![usize::MAX; grid.node_count()];
+        for cell in &cells {
+            for node in nodes_of(grid, cell.place) {
+                unknown[node] = 0;
+            }
+        }
+        let nodes: Vec<usize> = (0..unknown.len()).filter(|&k| unknown[k] == 0).collect();
+        for (index, &node) in nodes.iter().enumerate() {
+            unknown[node] = index;
+        }
+        let corners: Vec<[usize; CORNERS]> = (cells.iter())
+            .map(|cell| {
+                let mut own = [0; CORNERS];
+                for (k, node) in nodes_of(grid, cell.place).enumerate() {
+                    own[k] = unknown[node];
+                }
+                own
+            })
+            .collect();
+        let pairs = pairs(grid, &cells);
+        let pattern = Arc::new(pattern(grid, &nodes, &corners, &pairs));
+        let mut volumes = vec![0.0; conditions.regions.len()];
+        for point in cells.iter().flat_map(|cell| &cell.points) {
+            if let Some(region) = point.region {
+                volumes[region] += point.volume;
+            }
+        }
+        let held = held(&cells, conditions, free, grid);
+        let mut tensors: Vec<_> = conditions.soils.iter().map(Soil::tensor).collect();
+        let shared = (cells.iter())
+            .map(|cell| {
+                let own = layers::laminate(&cell.points, &tensors)?;
+                tensors.push(own);
+                Some(tensors.len() - 1)
+            })
+            .collect();
+        Ok(Self {
+            grid,
+            cells,
+            conditions,
+            tensors,
+            shared,
+            held,
+            pairs,
+            corners,
+            nodes,
+            pattern,
+            volumes,
+        })
+    }
+
+    /// Number of owners of flows.
+    pub(crate) fn owners(&self) -> usize {
+        self.conditions.faces.len() + 2 + self.conditions.regions.len()
+    }
+
+    /// Permeability of a soil within a cell \[m/s\].
+    pub(crate) fn tensor(&self, cell: usize, soil: usize) -> &[[f64; D]; D] {
+        &self.tensors[self.shared[cell].unwrap_or(soil)]
+    }
+
+    fn curve(&self, soil: usize) -> Curve {
+        self.conditions.soils[soil].curve
+    }
+
+    /// The heads at the corners of a cell.
+    pub(crate) fn heads(&self, cell: usize, heads: &[f64]) -> [f64; CORNERS] {
+        let mut own = [0.0; CORNERS];
+        for (k, head) in own.iter_mut().enumerate().take(1 << D) {
+            *head = heads[self.corners[cell][k]];
+        }
+        own
+    }
+
+    /// The points of a cell with their weights and soils: as many as the flow asks for.
+    pub(crate) fn points(
+        &self,
+        cell: usize,
+        heads: &[f64; CORNERS],
+        relative: &Relative,
+    ) -> Vec<Point<D>> {
+        let own = &self.cells[cell];
+        let Some(soil) = own.whole else {
+            return own.points.clone();
+        };
+        let [lower, upper] = ends_of(self.grid, own.place);
+        let heads = &heads[..1 << D];
+        let lowest = heads.iter().copied().fold(f64::INFINITY, f64::min);
+        let is_full = relative.confined || lowest - upper[D - 1] > 0.5 * relative.width;
+        gauss([lower, upper], if is_full { &TWO } else { &FOUR }, soil)
+    }
+
+    /// What share of its permeability soil has at a point, and the slope of that.
+    pub(crate) fn share(&self, relative: &Relative, soil: usize, psi: f64) -> [f64; 2] {
+        relative.at(self.curve(soil), psi)
+    }
+
+    /// Residual \[m^D/s\], outflow positive; tangent where there is a matrix, and flows.
+    pub(crate) fn assemble(
+        &self,
+        heads: &[f64],
+        relative: &Relative,
+        mut matrix: Option<&mut TangentMatrix>,
+    ) -> (Vec<f64>, Flows) {
+        let mut residual = vec![0.0; heads.len()];
+        let mut flows = Flows::of(self.owners());
+        if let Some(matrix) = matrix.as_deref_mut() {
+            matrix.values.fill(0.0);
+        }
+        let mut facets = self.held.iter().peekable();
+        for cell in 0..self.cells.len() {
+            let own = self.heads(cell, heads);
+            let mut local = Local::of(&self.corners[cell][..1 << D]);
+            self.volume(cell, &own, relative, (&mut local, &mut flows));
+            while let Some(held) = facets.next_if(|held| held.cell == cell) {
+                self.face(held, &own, relative, (&mut local, &mut flows));
+            }
+            add(&local, &mut residual, matrix.as_deref_mut());
+        }
+        for pair in &self.pairs {
+            let mut unknowns = [0; 2 * CORNERS];
+            for (k, cell) in pair.cells.into_iter().enumerate() {
+                unknowns[k << D..(k + 1) << D].copy_from_slice(&self.corners[cell][..1 << D]);
+            }
+            let mut local = Local::of(&unknowns[..2 << D]);
+            self.ghost(pair, heads, &mut local);
+            add(&local, &mut residual, matrix.as_deref_mut());
+        }
+        flows.balance_from(self.conditions.faces.len() + 2);
+        (residual, flows)
+    }
+
+    /// Flow through the soil of a cell, and what regions let in (eqs. 78 and 84).
+    fn volume(
+        &self,
+        cell: usize,
+        heads: &[f64; CORNERS],
+        relative: &Relative,
+        (local, flows): (&mut Local<'_>, &mut Flows),
+    ) {
+        let ends = ends_of(self.grid, self.cells[cell].place);
+        let corners = 1 << D;
+        for point in self.points(cell, heads, relative) {
+            let basis = Basis::at(ends, &point.x);
+            let tensor = self.tensor(cell, point.soil);
+            let (head, slope) = (basis.head(heads), basis.slope(heads));
+            let [share, fall] = self.share(relative, point.soil, head - point.x[D - 1]);
+            let flux = apply(tensor, &slope);
+            for i in 0..corners {
+                let through = point.volume * dot(&flux, &basis.gradient[i]);
+                local.residual[i] += share * through;
+                let pull = apply(tensor, &basis.gradient[i]);
+                for j in 0..corners {
+                    local.tangent[i][j] += share * point.volume * dot(&pull, &basis.gradient[j])
+                        + fall * through * basis.value[j];
+                }
+            }
+            let Some(region) = point.region else { continue };
+            let size = self.grid.cell_size(self.cells[cell].place);
+            let least = size.into_iter().fold(f64::INFINITY, f64::min);
+            let soil = &self.conditions.soils[point.soil];
+            let rate = REGION * soil.along.max(soil.across) / (least * least) * point.volume;
+            let (outflow, stiffness) = match self.conditions.regions[region].what {
+                InGround::Head(wanted) => (rate * (head - wanted), rate),
+                InGround::Drain if head > point.x[D - 1] => (rate * (head - point.x[D - 1]), rate),
+                InGround::Inflow(all) => (-all * point.volume / self.volumes[region], 0.0),
+                InGround::Drain | InGround::Soil(_) => (0.0, 0.0),
+            };
+            flows.add(self.conditions.faces.len() + 2 + region, -outflow);
+            for i in 0..corners {
+                local.residual[i] += outflow * basis.value[i];
+                for j in 0..corners {
+                    local.tangent[i][j] += stiffness * basis.value[i] * basis.value[j];
+                }
+            }
+        }
+    }
+
+    /// Flow through a facet (eqs. 82 and 83).
+    fn face(
+        &self,
+        held: &Held<D>,
+        heads: &[f64; CORNERS],
+        relative: &Relative,
+        (local, flows): (&mut Local<'_>, &mut Flows),
+    ) {
+        let Facet {
+            x,
+            normal,
+            area,
+            soil,
+        } = held.facet;
+        let place = self.cells[held.cell].place;
+        let basis = Basis::at(ends_of(self.grid, place), &x);
+        let pull = apply(self.tensor(held.cell, soil), &normal);
+        let across = dot(&pull, &normal);
+        let size = self.grid.cell_size(place);
+        let height: f64 = (0..D).map(|axis| normal[axis].abs() * size[axis]).sum();
+        let penalty = NITSCHE * across / height;
+        let (head, slope) = (basis.head(heads), basis.slope(heads));
+        let towards = dot(&pull, &slope);
+        let corners = 1 << D;
+        match held.at {
+            At::Closed => {}
+            At::Inflow(inflow) => {
+                flows.add(held.owner, inflow * area);
+                for i in 0..corners {
+                    local.residual[i] -= inflow * area * basis.value[i];
+                }
+            }
+            At::Head(wanted) => {
+                let [share, _] = self.share(relative, soil, wanted - x[D - 1]);
+                let outflow = share * (penalty * (head - wanted) - towards);
+                flows.add(held.owner, -outflow * area);
+                for i in 0..corners {
+                    let own = dot(&pull, &basis.gradient[i]);
+                    local.residual[i] +=
+                        area * (outflow * basis.value[i] - share * own * (head - wanted));
+                    for j in 0..corners {
+                        let other = dot(&pull, &basis.gradient[j]);
+                        local.tangent[i][j] += area
+                            * share
+                            * ((penalty * basis.value[j] - other) * basis.value[i]
+                                - own * basis.value[j]);
+                    }
+                }
+            }
+            At::Open(rain) => {
+                let [share, fall] = self.share(relative, soil, head - x[D - 1]);
+                let pressed = rain - share * towards + penalty * (head - x[D - 1]);
+                let outflow = pressed.max(0.0) - rain;
+                flows.add(held.owner, -outflow * area);
+                for i in 0..corners {
+                    local.residual[i] += area * outflow * basis.value[i];
+                    for j in (0..corners).filter(|_| pressed > 0.0) {
+                        let other = dot(&pull, &basis.gradient[j]);
+                        local.tangent[i][j] += area
+                            * basis.value[i]
+                            * ((penalty - fall * towards) * basis.value[j] - share * other);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Jumps of the gradient from cell to cell where one is cut: no flow follows from them.
+    fn ghost(&self, pair: &Pair, heads: &[f64], local: &mut Local<'_>) {
+        let axis = pair.axis;
+        let ends = pair
+            .cells
+            .map(|cell| ends_of(self.grid, self.cells[cell].place));
+        let [lower, mut upper] = ends[1];
+        upper[axis] = lower[axis];
+        let side: f64 = (0..D)
+            .filter(|d| *d != axis)
+            .map(|d| upper[d] - lower[d])
+            .product();
+        let height = ends[1][1][axis] - lower[axis];
+        let across = (pair.cells).map(|cell| self.tensor(cell, self.some_soil(cell))[axis][axis]);
+        let rate = GHOST * height * across[0].min(across[1]) * side / 2_f64.powi(D as i32 - 1);
+        for corner in 0..1_usize << (D - 1) {
+            let mut x = lower;
+            for (bit, d) in (0..D).filter(|d| *d != axis).enumerate() {
+                let share = if corner >> bit & 1 == 1 {
+                    HIGH
+                } else {
+                    1.0 - HIGH
+                };
+                x[d] = lower[d] + share * (upper[d] - lower[d]);
+            }
+            let mut jump = [0.0; 2 * CORNERS];
+            for (k, sign) in [(0, -1.0), (1, 1.0)] {
+                let basis = Basis::at(ends[k], &x);
+                for corner in 0..1 << D {
+                    jump[(k << D) + corner] = sign * basis.gradient[corner][axis];
+                }
+            }
+            let count = 2 << D;
+            let found: f64 = (0..count).map(|k| jump[k] * heads[local.unknowns[k]]).sum();
+            for i in 0..count {
+                local.residual[i] += rate * found * jump[i];
+                for j in 0..count {
+                    local.tangent[i][j] += rate * jump[i] * jump[j];
+                }
+            }
+        }
+    }
+
+    /// The soil of a cell that has one only.
+    fn some_soil(&self, cell: usize) -> usize {
+        let own = &self.cells[cell];
+        own.whole
+            .unwrap_or_else(|| own.points.first().map_or(0, |point| point.soil))
+    }
+}
+
+fn add(local: &Local<'_>, residual: &mut [f64], matrix: Option<&mut TangentMatrix>) {
+    for (i, &row) in local.unknowns.iter().enumerate() {
+        residual[row] += local.residual[i];
+    }
+    let Some(matrix) = matrix else { return };
+    let TangentMatrix {
+        pattern, values, ..
+    } = matrix;
+    for (j, &column) in local.unknowns.iter().enumerate() {
+        let rows = pattern.coupled_to(column);
+        let first = pattern.first_value[column];
+        for (i, &row) in local.unknowns.iter().enumerate() {
+            let place = rows.partition_point(|own| (*own as usize) < row);
+            values[first + place] += local.tangent[i][j];
+        }
+    }
+}
+
+/// Cells beside each other of which one is cut.
+fn pairs<const D: usize>(grid: &Grid<D>, cells: &[Cell<D>]) -> Vec<Pair> {
+    let mut number = vec![usize::MAX; grid.cell_count()];
+    for (index, cell) in cells.iter().enumerate() {
+        number[grid.cell_index(cell.place)] = index;
+    }
+    let is_cut = |cell: usize| cells[cell].filled < 1.0 - 1e-6;
+    let mut pairs = Vec::new();
+    for (index, cell) in cells.iter().enumerate() {
+        for axis in 0..D {
+            let mut place = cell.place;
+            place[axis] += 1;
+            if place[axis] >= grid.axes[axis].cell_count() {
+                continue;
+            }
+            let other = number[grid.cell_index(place)];
+            if other != usize::MAX && (is_cut(index) || is_cut(other)) {
+                pairs.push(Pair {
+                    cells: [index, other],
+                    axis,
+                });
+            }
+        }
+    }
+    pairs
+}
+
+/// Which heads are coupled.
+fn pattern<const D: usize>(
+    grid: &Grid<D>,
+    nodes: &[usize],
+    corners: &[[usize; CORNERS]],
+    pairs: &[Pair],
+) -> Pattern {
+    let mut lists: Vec<Vec<u32>> = vec![Vec::new(); nodes.len()];
+    let mut join = |a: &[usize], b: &[usize]| {
+        for &i in a {
+            lists[i].extend(b.iter().map(|&j| j as u32));
+        }
+    };
+    for own in corners {
+        join(&own[..1 << D], &own[..1 << D]);
+    }
+    for pair in pairs {
+        let [a, b] = pair.cells.map(|cell| &corners[cell][..1 << D]);
+        join(a, b);
+        join(b, a);
+    }
+    let mut starts = vec![0];
+    let mut coupled = Vec::new();
+    for list in &mut lists {
+        list.sort_unstable();
+        list.dedup();
+        coupled.append(list);
+        starts.push(coupled.len());
+    }
+    let block = |(index, &node): (usize, &usize)| {
+        let own = grid.node_place(node);
+        NodeBlock {
+            first: index,
+            len: 1,
+            free: 1,
+            place: std::array::from_fn(|axis| own.get(axis).copied().unwrap_or(0)),
+        }
+    };
+    let blocks = nodes.iter().enumerate().map(block).collect();
+    Pattern::new(
+        blocks,
+        starts,
+        coupled,
+        if pairs.is_empty() { 1 } else { 2 },
+    )
+}

@@ -1,0 +1,217 @@
+//! Flow that fills all pores, against exact and published values.
+
+mod common;
+
+use common::{faces, flow, grid, rectangle};
+use igimp_seepage::{Conditions, Extent, InGround, Named, OnFaces, SeepageError, Soil};
+
+fn confined(soils: &[f64]) -> Conditions<2> {
+    Conditions {
+        confined: true,
+        ..Conditions::of(soils.iter().copied().map(Soil::isotropic).collect())
+    }
+}
+
+/// GOAL: discharge round the tip of a sheet pile, from a half of the layer and two meshes: the error falls with the size of
+/// cells at the tip. ORACLE: q/(k h) = K(k')/(2 K(k)), k = sin(π s / 2T).
+#[test]
+fn sheet_piles_let_the_known_flow_round_their_tip() {
+    for (driven, exact) in [
+        (0.1, 1.02981),
+        (0.25, 0.73461),
+        (0.5, 0.5),
+        (0.75, 0.34032),
+        (0.9, 0.24276),
+    ] {
+        let [coarse, fine] = [20_u32, 40].map(|cells| {
+            let size = cells as usize;
+            let grid = grid([0.0, 0.0], 1.0 / f64::from(cells), [3 * size, size]);
+            let mut conditions = confined(&[1.0]);
+            conditions.faces = vec![
+                faces("ground", [0.0, 1.0], [3.0, 1.0], OnFaces::Head(0.0)),
+                faces("gap", [0.0, 0.0], [0.0, 1.0 - driven], OnFaces::Head(0.5)),
+            ];
+            let ground = [rectangle([0.0, 0.0], [3.0, 1.0])];
+            flow(&grid, &ground, &conditions).unwrap().outflow
+        });
+        let found = 2.0 * fine - coarse;
+        println!("s/T {driven}: {coarse:.5} {fine:.5} -> {found:.5} of {exact}");
+        assert!((found / exact - 1.0).abs() < 0.01);
+    }
+}
+
+/// GOAL: layers one above the other, on lines of the grid and off them, through a section too. ORACLE: the harmonic mean.
+#[test]
+fn layers_have_the_harmonic_mean() {
+    for shift in [0.0, 0.3] {
+        let grid = grid([0.0, -shift * 0.25], 0.25, [4, 17]);
+        let mut conditions = confined(&[1e-5, 1e-7, 4e-6]);
+        conditions.faces = vec![
+            faces("bottom", [0.0, 0.0], [1.0, 0.0], OnFaces::Head(7.0)),
+            faces("top", [0.0, 4.0], [1.0, 4.0], OnFaces::Head(4.0)),
+        ];
+        let across = Extent {
+            lower: [0.0, 2.1],
+            upper: [1.0, 2.1],
+        };
+        conditions.sections = vec![("middle".to_owned(), across)];
+        let ground = [0.0, 1.0, 2.5, 4.0];
+        let ground: Vec<_> = (ground.windows(2))
+            .map(|ends| rectangle([0.0, ends[0]], [1.0, ends[1]]))
+            .collect();
+        let found = flow(&grid, &ground, &conditions).unwrap();
+        let exact = 3.0 / (1.0 / 1e-5 + 1.5 / 1e-7 + 1.5 / 4e-6);
+        for own in [found.inflow, found.outflow, found.sections[0].inflow] {
+            assert!((own / exact - 1.0).abs() < 1e-9, "{own} of {exact}");
+        }
+    }
+}
+
+/// GOAL: layers that slope against the grid, by bedding and angle. ORACLE: the tensor of the bedding turned by its angle.
+#[test]
+fn bedding_turns_the_flow() {
+    let grid = grid([0.0, 0.0], 0.25, [4, 4]);
+    let angle: f64 = 0.5;
+    let mut conditions = confined(&[1.0]);
+    conditions.soils[0] = Soil {
+        along: 4.0,
+        across: 1.0,
+        angle,
+        ..Soil::isotropic(1.0)
+    };
+    conditions.faces = vec![
+        faces("left", [0.0, 0.0], [0.0, 1.0], OnFaces::Head(1.0)),
+        faces("right", [1.0, 0.0], [1.0, 1.0], OnFaces::Head(0.0)),
+        // What leaves through top and bottom where the head has no slope along y.
+        faces(
+            "top",
+            [0.1, 1.0],
+            [0.9, 1.0],
+            OnFaces::Inflow(-1.5 * (2.0 * angle).sin()),
+        ),
+        faces(
+            "bottom",
+            [0.1, 0.0],
+            [0.9, 0.0],
+            OnFaces::Inflow(1.5 * (2.0 * angle).sin()),
+        ),
+    ];
+    conditions.faces[2].within = Extent {
+        lower: [0.0, 1.0],
+        upper: [1.0, 1.0],
+    };
+    conditions.faces[3].within = Extent {
+        lower: [0.0, 0.0],
+        upper: [1.0, 0.0],
+    };
+    let found = flow(&grid, &[rectangle([0.0, 0.0], [1.0, 1.0])], &conditions).unwrap();
+    let along = 4.0 * angle.cos().powi(2) + angle.sin().powi(2);
+    let through = &found.discharges[0];
+    assert!((through.inflow - through.outflow - along).abs() < 1e-9);
+    assert!((found.head(&[0.3, 0.7]) - 0.7).abs() < 1e-9);
+}
+
+/// GOAL: a boundary that lies on no line of the grid. ORACLE: heads round a cylinder as published programs have them.
+#[test]
+fn flow_round_a_cylinder() {
+    let grid = grid([0.0, 0.0], 0.125, [64, 32]);
+    let arc = (0..=90).map(|k| std::f64::consts::PI * (1.0 - f64::from(k) / 90.0));
+    let mut ground = vec![[0.0, 0.0]];
+    ground.extend(arc.map(|angle| [4.0 + angle.cos(), angle.sin()]));
+    ground.extend([[8.0, 0.0], [8.0, 4.0], [0.0, 4.0]]);
+    let mut conditions = confined(&[1.0]);
+    conditions.faces = vec![
+        faces("left", [0.0, 0.0], [0.0, 4.0], OnFaces::Head(1.0)),
+        faces("right", [8.0, 0.0], [8.0, 4.0], OnFaces::Head(0.0)),
+    ];
+    let found = flow(&grid, &[ground], &conditions).unwrap();
+    for (x, known) in [
+        ([4.0, 1.0], 0.5),
+        ([4.5, 0.866], 0.381),
+        ([5.0, 0.0], 0.263),
+        ([6.0, 0.0], 0.203),
+    ] {
+        let head = found.head(&x);
+        println!("cylinder {x:?}: {head:.4} of {known}");
+        assert!((head / known - 1.0).abs() < 0.01);
+    }
+    assert!((found.inflow / found.outflow - 1.0).abs() < 1e-10);
+}
+
+/// GOAL: heads under a dam. ORACLE: published values, within 1 % of the difference of heads.
+#[test]
+fn heads_under_a_dam() {
+    let grid = grid([0.0, -10.0], 0.5, [80, 20]);
+    let mut conditions = confined(&[1.0]);
+    conditions.faces = vec![
+        faces("pond", [0.0, 0.0], [8.0, 0.0], OnFaces::Head(5.0)),
+        faces("toe", [20.0, 0.0], [40.0, 0.0], OnFaces::Head(0.0)),
+    ];
+    let found = flow(&grid, &[rectangle([0.0, -10.0], [40.0, 0.0])], &conditions).unwrap();
+    for (x, known) in [
+        (0.0, 4.5),
+        (10.0, 3.45),
+        (14.0, 2.47),
+        (20.0, 1.05),
+        (30.0, 0.2),
+        (40.0, 0.07),
+    ] {
+        let head = found.head(&[x, -4.0]);
+        println!("under a dam x {x}: {head:.3} of {known}");
+        assert!((head - known).abs() < 0.01 * 5.0);
+    }
+}
+
+/// GOAL: a well held at a level, a well that is pumped, a cut-off. ORACLE: flow along a strip; the resistances in a row.
+#[test]
+fn wells_and_walls() {
+    let grid = grid([0.0, 0.0], 0.5, [40, 20]);
+    let ground = [rectangle([0.0, 0.0], [20.0, 10.0])];
+    let region = |name: &str, left: f64, right: f64, what| Named {
+        name: name.to_owned(),
+        within: Extent {
+            lower: [left, 0.0],
+            upper: [right, 10.0],
+        },
+        what,
+    };
+    let mut conditions = confined(&[1e-4]);
+    conditions.faces = vec![faces("left", [0.0, 0.0], [0.0, 10.0], OnFaces::Head(12.0))];
+    conditions.regions = vec![region("well", 19.0, 20.0, InGround::Head(10.0))];
+    let outflow = flow(&grid, &ground, &conditions).unwrap().outflow;
+    assert!((outflow / (1e-4 * 10.0 * 2.0 / 19.0) - 1.0).abs() < 1e-3);
+
+    conditions.regions = vec![region("pump", 19.0, 20.0, InGround::Inflow(-3e-5))];
+    let found = flow(&grid, &ground, &conditions).unwrap();
+    assert!((found.head(&[19.0, 4.0]) - (12.0 - 3e-5 / 1e-3 * 19.0)).abs() < 1e-6);
+    assert!((found.outflow / 3e-5 - 1.0).abs() < 1e-10);
+
+    conditions.soils.push(Soil::isotropic(1e-7));
+    conditions.faces.push(faces(
+        "right",
+        [20.0, 0.0],
+        [20.0, 10.0],
+        OnFaces::Head(10.0),
+    ));
+    conditions.regions = vec![region("wall", 8.25, 9.0, InGround::Soil(1))];
+    let outflow = flow(&grid, &ground, &conditions).unwrap().outflow;
+    let exact = 2.0 * 10.0 / (19.25 / 1e-4 + 0.75 / 1e-7);
+    assert!((outflow / exact - 1.0).abs() < 1e-9, "{outflow} of {exact}");
+}
+
+/// GOAL: what makes no flow is refused by name.
+#[test]
+fn what_makes_no_flow_is_refused() {
+    let grid = grid([0.0, 0.0], 0.5, [4, 4]);
+    let ground = [rectangle([0.0, 0.0], [2.0, 2.0])];
+    let mut conditions = confined(&[1e-4]);
+    let error = flow(&grid, &ground, &conditions).unwrap_err();
+    assert!(matches!(error, SeepageError::NoHead), "{error}");
+    conditions.faces = vec![faces("pond", [5.0, 0.0], [6.0, 1.0], OnFaces::Head(1.0))];
+    let error = flow(&grid, &ground, &conditions).unwrap_err().to_string();
+    assert!(error.starts_with("`pond` holds no face"), "{error}");
+    conditions.faces = vec![faces("pond", [0.0, 0.0], [0.0, 1.0], OnFaces::Head(1.0))];
+    conditions.soils[0].across = -1.0;
+    let error = flow(&grid, &ground, &conditions).unwrap_err().to_string();
+    assert!(error.contains("is -1, and has to be positive"), "{error}");
+}
