@@ -71,8 +71,8 @@ struct Arguments {
     /// Accept what an earlier run left beside the snapshots, without running anything.
     #[arg(long, conflicts_with_all = ["case", "quick", "full", "accept", "matrix", "out", "threads"])]
     accept_left: bool,
-    /// Rewrite the verification matrix in the book with today's results, at the full level.
-    #[arg(long, requires = "full", conflicts_with = "case")]
+    /// Rewrite the verification matrix in the book with today's results, at the full level; of some cases their sections.
+    #[arg(long, requires = "full")]
     matrix: bool,
     /// Folder for tables, pictures and the summary.
     #[arg(long, value_name = "DIR", default_value = "target/validation")]
@@ -329,10 +329,10 @@ fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
     let pictures = arguments.out.join("review");
     let mut missed = harness::snapshot::compare(&studies, &arguments.snapshots()?, &pictures)?;
     harness::table::write_summary(&studies, &missed, &arguments.out)?;
-    if arguments.matrix && errors.is_empty() {
-        harness::matrix::write(&studies)?;
-    }
     let all_cases = arguments.case.is_empty() && errors.is_empty();
+    if arguments.matrix && errors.is_empty() {
+        harness::matrix::write(&studies, all_cases)?;
+    }
     let drift = harness::matrix::drift(&studies, level, all_cases)?;
     missed.extend(drift.into_iter().map(|told| Difference {
         name: "verification matrix".to_owned(),

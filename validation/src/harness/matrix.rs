@@ -25,13 +25,15 @@ const SAME_SIZE: f64 = 2.0;
 /// Measured values below this are round-off: errors that are zero by theory.
 const ROUND_OFF: f64 = 1e-9;
 
+/// How a negative control begins.
+const CONTROL: &str = "**control**: ";
 const HEADER: &str = "| variant | quantity | oracle | expected | band | measured |\n\
                       |---|---|---|---|---|---|\n";
 
 /// The cells of a row of the matrix, its oracle as a number in brackets.
 fn cells(row: &Row, number: usize) -> [String; 6] {
     let check = &row.check;
-    let control = if row.control { "**control**: " } else { "" };
+    let control = if row.control { CONTROL } else { "" };
     [
         check.variant.clone(),
         check.quantity.clone(),
@@ -83,9 +85,8 @@ fn rows(study: &Study) -> Vec<Printed> {
     rows.collect()
 }
 
-/// How many checks there are, by kind of oracle.
-fn count(studies: &[Study]) -> String {
-    let rows = || studies.iter().flat_map(|study| &study.rows);
+/// How many checks a page has, by kind of oracle.
+fn count(rows: &[Printed]) -> String {
     let kinds = [
         OracleKind::Exact,
         OracleKind::LimitAnalysis,
@@ -95,32 +96,57 @@ fn count(studies: &[Study]) -> String {
     ];
     let kinds: Vec<String> = kinds
         .iter()
-        .map(|kind| (kind, rows().filter(|row| row.oracle == *kind).count()))
-        .map(|(kind, number)| format!("{number} {kind}"))
+        .map(|kind| {
+            let of_kind = |row: &&Printed| row.kind() == kind.to_string();
+            format!("{} {kind}", rows.iter().filter(of_kind).count())
+        })
         .collect();
     format!(
         "{} checks: {}; of them {} are negative controls.",
-        rows().count(),
+        rows.len(),
         kinds.join(", "),
-        rows().filter(|row| row.control).count(),
+        rows.iter().filter(|row| row.is_control()).count(),
     )
 }
 
-/// The checks of each study as a Markdown table under its name.
-fn text(studies: &[Study]) -> String {
-    let mut text = format!("{}\n\n", count(studies));
-    for study in studies.iter().filter(|study| !study.rows.is_empty()) {
-        let _ = write!(text, "### {}\n\n{}\n\n{HEADER}", study.case, study.about);
-        for row in rows(study) {
-            let _ = writeln!(text, "| {} |", row.cells.join(" | "));
-        }
-        text.push('\n');
-        for (index, source) in sources(study).iter().enumerate() {
-            let _ = writeln!(text, "- [{}] {source}", index + 1);
-        }
-        text.push('\n');
+/// The checks of a study as a Markdown table under its name.
+fn section(study: &Study) -> String {
+    let mut text = format!("### {}\n\n{}\n\n{HEADER}", study.case, study.about);
+    for row in rows(study) {
+        let _ = writeln!(text, "| {} |", row.cells.join(" | "));
     }
+    text.push('\n');
+    for (index, source) in sources(study).iter().enumerate() {
+        let _ = writeln!(text, "- [{}] {source}", index + 1);
+    }
+    text.push('\n');
     text
+}
+
+/// The matrix with sections of studies in place of those that it has under their names. A study that it does not have yet
+/// comes behind the one that was run before it, or first.
+fn with_sections(matrix: &str, studies: &[Study]) -> String {
+    let parts = matrix.split("### ").skip(1);
+    let mut sections: Vec<String> = parts.map(|part| format!("### {part}")).collect();
+    let place_of = |sections: &[String], case: &str| {
+        let title = format!("### {case}\n");
+        sections.iter().position(|own| own.starts_with(&title))
+    };
+    let mut behind = None;
+    for study in studies.iter().filter(|study| !study.rows.is_empty()) {
+        let own = section(study);
+        let place = if let Some(place) = place_of(&sections, study.case) {
+            sections[place] = own;
+            place
+        } else {
+            let place = behind.map_or(0, |last: usize| last + 1);
+            sections.insert(place, own);
+            place
+        };
+        behind = Some(place);
+    }
+    let sections = sections.concat();
+    format!("{}\n\n{sections}", count(&printed(&sections)))
 }
 
 /// A row as the page has it.
@@ -136,6 +162,16 @@ impl Printed {
     fn number(&self) -> Option<&str> {
         let (_, number) = self.cells.get(2)?.rsplit_once('[')?;
         number.strip_suffix(']')
+    }
+
+    /// The kind of its oracle.
+    fn kind(&self) -> &str {
+        let (kind, _) = self.cell(2).rsplit_once(" [").unwrap_or_default();
+        kind.strip_prefix(CONTROL).unwrap_or(kind)
+    }
+
+    fn is_control(&self) -> bool {
+        self.cell(2).starts_with(CONTROL)
     }
 
     fn cell(&self, number: usize) -> &str {
@@ -262,8 +298,8 @@ fn differences(on_page: &[Printed], studies: &[Study], complete: bool) -> Vec<St
     lines
 }
 
-/// Writes the matrix between its marks.
-pub(crate) fn write(studies: &[Study]) -> Result<(), CaseError> {
+/// Writes the matrix between its marks: all of it, or the sections of the studies that were run.
+pub(crate) fn write(studies: &[Study], all_cases: bool) -> Result<(), CaseError> {
     let path = Path::new(PAGE);
     let file = |source| ResultsError::File {
         path: path.to_owned(),
@@ -278,7 +314,9 @@ pub(crate) fn write(studies: &[Study]) -> Result<(), CaseError> {
         ))
         .into());
     };
-    let page = page.replacen(old, &format!("\n\n{}", text(studies)), 1);
+    let kept = if all_cases { "" } else { old };
+    let matrix = with_sections(kept, studies);
+    let page = page.replacen(old, &format!("\n\n{matrix}"), 1);
     Ok(std::fs::write(path, page).map_err(file)?)
 }
 
@@ -322,11 +360,27 @@ mod tests {
     #[test]
     fn a_page_that_was_written_is_not_adrift() {
         let studies = [study(5.1)];
-        let on_page = printed(&text(&studies));
+        let on_page = printed(&with_sections("", &studies));
         assert_eq!(on_page.len(), 2);
         assert!(differences(&on_page, &studies, true).is_empty());
         // Another interval of a search is no drift.
         assert!(differences(&on_page, &[study(5.12)], true).is_empty());
+    }
+
+    #[test]
+    fn a_study_that_is_run_alone_takes_the_place_of_its_section() {
+        let others = "1 checks\n\n### before\n\nAbout.\n\n| a | q | theory [1] | 1 | ≤ 2 | 1.5 |\n\n- [1] x\n\n\
+                      ### case\n\nOld.\n\n### behind\n\nAbout.\n\n| b | q | exact [1] | 1 | ≤ 2 | 1.5 |\n\n- [1] y\n\n";
+        let matrix = with_sections(others, &[study(5.1)]);
+        let names: Vec<&str> = matrix
+            .lines()
+            .filter(|line| line.starts_with("### "))
+            .collect();
+        assert_eq!(names, ["### before", "### case", "### behind"]);
+        assert!(!matrix.contains("Old.") && matrix.contains("About it."));
+        let counted = "4 checks: 3 exact, 0 limit analysis, 1 theory, 0 published, 0 independent program; of them 1 are";
+        assert!(matrix.starts_with(counted), "{matrix}");
+        assert_eq!(with_sections(&matrix, &[study(5.1)]), matrix);
     }
 
     #[test]
@@ -348,7 +402,7 @@ mod tests {
 
     #[test]
     fn a_page_that_says_otherwise_is_adrift() {
-        let on_page = printed(&text(&[study(5.1)]));
+        let on_page = printed(&with_sections("", &[study(5.1)]));
         let changed = differences(&on_page, &[study(5.2)], true);
         assert_eq!(changed.len(), 1, "{changed:?}");
         assert!(changed[0].contains("5.2"), "{changed:?}");
@@ -357,7 +411,7 @@ mod tests {
         assert!(differences(&on_page, &[], false).is_empty());
         let new = differences(&[], &[study(5.1)], false);
         assert!(new[0].contains("not on the page"), "{new:?}");
-        let other = text(&[study(5.1)]).replace("eq. 1", "eq. 2");
+        let other = with_sections("", &[study(5.1)]).replace("eq. 1", "eq. 2");
         let moved = differences(&printed(&other), &[study(5.1)], true);
         assert_eq!(moved.len(), 2, "{moved:?}");
     }
