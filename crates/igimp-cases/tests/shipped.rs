@@ -474,7 +474,8 @@ fn wedge_meets_more_resistance_with_depth() {
         ],
     );
     assert_eq!(ran.outcomes(), [Completed]);
-    between(ran.end_of("resistance"), 1.4, 1.8);
+    // A sharp wedge has 1.789, the rounded one less; two cells deep it is known to 8 %.
+    between(ran.end_of("resistance"), 1.4, 1.08 * 1.789);
 }
 
 #[test]

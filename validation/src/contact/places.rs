@@ -32,7 +32,7 @@ const INDIFFERENT: Oracle = Oracle {
 };
 
 /// By how much a load may lie beyond its bounds \[-\].
-const BEYOND: f64 = 0.045;
+const BEYOND: f64 = 0.055;
 /// By how much the loads of five places may differ \[-\].
 const SPREAD: f64 = 0.045;
 /// Where the left side of a body stands in its cell \[cells\].

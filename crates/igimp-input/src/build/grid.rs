@@ -383,35 +383,20 @@ fn levels<const D: usize>(bodies: &[Option<BodyPart<D>>], round_off: f64) -> Vec
     levels.into_iter().map(|(y, _)| y).collect()
 }
 
-/// What is done about small cuts where nothing is said, in the plane and in space.
-const SMALL_CUTS: [SmallCuts; 2] = [
-    SmallCuts {
-        below: 1e-4,
-        remedy: Remedy::Tie,
-        ghost_penalty: 0.0,
-    },
-    SmallCuts {
-        below: 1e-3,
-        remedy: Remedy::Tie,
-        ghost_penalty: 0.0,
-    },
-];
+/// Share of a cell's volume below which a node is a small cut where nothing is said, in the plane and in space \[-\].
+const BELOW: [f64; 2] = [1e-4, 1e-3];
 
 /// The same beside rigid bodies in the plane, which leave slivers of soil in the cells that they cut
 /// (docs/src/contact-measured.md, places of the grid).
-const SMALL_CUTS_AT_BODIES: SmallCuts = SmallCuts {
-    below: 0.05,
-    remedy: Remedy::Extrapolate,
-    ghost_penalty: 1e-3,
-};
+const BELOW_AT_BODIES: f64 = 0.05;
 
 /// The variant of the method, beside rigid bodies in the plane or without.
 pub(super) fn method<const D: usize>(own: &keys::Method, at_bodies: bool) -> Method {
     let cuts = &own.small_cuts;
-    let usual = if at_bodies {
-        SMALL_CUTS_AT_BODIES
+    let (below, remedy) = if at_bodies {
+        (BELOW_AT_BODIES, Remedy::Extrapolate)
     } else {
-        SMALL_CUTS[D - 2]
+        (BELOW[D - 2], Remedy::Tie)
     };
     let basis: Arc<dyn Basis> = match *own.basis {
         keys::Basis::Linear => Arc::new(Linear),
@@ -436,13 +421,13 @@ pub(super) fn method<const D: usize>(own: &keys::Method, at_bodies: bool) -> Met
             keys::DomainUpdate::RootJ => DomainUpdate::RootJ,
         },
         small_cuts: SmallCuts {
-            below: cuts.below.as_deref().copied().unwrap_or(usual.below),
-            remedy: (cuts.remedy.as_deref()).map_or(usual.remedy, |own| match own {
+            below: cuts.below.as_deref().copied().unwrap_or(below),
+            remedy: (cuts.remedy.as_deref()).map_or(remedy, |own| match own {
                 keys::Remedy::Drop => Remedy::Drop,
                 keys::Remedy::Tie => Remedy::Tie,
                 keys::Remedy::Extrapolate => Remedy::Extrapolate,
             }),
-            ghost_penalty: (cuts.ghost_penalty.as_deref().copied()).unwrap_or(usual.ghost_penalty),
+            ghost_penalty: *cuts.ghost_penalty,
         },
     }
 }

@@ -133,10 +133,8 @@ table! {
     remedy: choice(Remedy), derived "\"tie\", and \"extrapolate\" with rigid bodies",
         "what happens to such a node", in_plane,
         choice(Remedy), derived "\"tie\"", "what happens to such a node", in_space;
-    ghost_penalty: number(NotNegative), derived "0, and 1e-3 with rigid bodies",
-        "penalty on jumps of the gradient across faces of boundary cells; 0 switches off", in_plane,
-        number(NotNegative), derived "0",
-            "penalty on jumps of the gradient across faces of boundary cells; 0 switches off", in_space;
+    ghost_penalty: number(NotNegative), default "0",
+        "penalty on jumps of the gradient across faces of boundary cells; 0 switches off";
 }
 
 choices! {
