@@ -74,7 +74,10 @@ pub(crate) fn forces(begun: &Begun<'_>, after: &[RigidBody<2>], u: &[[f64; 2]]) 
     out
 }
 
-/// Shear at a knot that soil touched when the step began and has left at its end (theory, eqs. 47, 50).
+/// Soil that is no further off than so many cells adheres (theory, eq. 47a) \[-\].
+const ADHESIVE_GAP: f64 = 0.1;
+
+/// Shear at a knot that soil touched, or nearly, when the step began and has left at its end (theory, eqs. 47, 47a, 50).
 fn shear_by_law(
     body: &RigidBody<2>,
     knot: usize,
@@ -90,9 +93,17 @@ fn shear_by_law(
     } else {
         before.is_closed
     };
+    let seen = (sums.gap / sums.area).max(0.0);
+    let gap = match before.area {
+        0.0 if bonds => 0.0,
+        0.0 => seen,
+        area if sums.area > area => before.gap.max(seen),
+        _ => before.gap,
+    };
+    let adheres = touched || !before.is_broken && gap <= ADHESIVE_GAP * sums.cell / sums.area;
     let limit = match &body.interfaces[side].shear {
         Shear::Rough if touched => f64::INFINITY,
-        Shear::Limited { .. } if touched => sums.adhesion / sums.area,
+        Shear::Limited { .. } if adheres => sums.adhesion / sums.area,
         _ => return 0.0,
     };
     let growth = (before.area / area).min(2.0);
@@ -320,7 +331,8 @@ fn soil(begun: &Begun<'_>, x: [f64; 2]) -> Option<Soil> {
         let node = grid.node_index([cell[0] + i, cell[1] + j]);
         for carrier in begun.stencils.carriers(node) {
             let fill = begun.stencils.node_fill(grid, carrier.node);
-            if fill > 0.0 && fill >= begun.below {
+            // Nodes that others are extrapolated from keep half of what makes a cut.
+            if fill > 0.0 && fill >= 0.5 * begun.below {
                 nodes.push((carrier.node, carrier.weight * share));
             }
         }
