@@ -469,13 +469,13 @@ fn wedge_meets_more_resistance_with_depth() {
         "wedge",
         &[
             "bodies.0.points_per_cell=4",
-            "stages.0.bodies.0.y=-0.2 m",
+            "stages.0.bodies.0.y=-0.3 m",
             "stages.0.steps=40",
         ],
     );
     assert_eq!(ran.outcomes(), [Completed]);
-    // A sharp wedge has 1.789, the rounded one less; two cells deep it is known to 8 %.
-    between(ran.end_of("resistance"), 1.4, 1.08 * 1.789);
+    // The band of the template's check, from 7.7 to 9.2 at a depth of 1 m: resistance grows with depth.
+    between(ran.end_of("resistance"), 0.3 * 7.7, 0.3 * 9.2);
 }
 
 #[test]

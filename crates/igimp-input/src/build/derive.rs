@@ -8,6 +8,13 @@ use igimp_schema::tree::{Node, Value};
 
 use super::outputs::quantities::unit_of;
 
+/// Share of a cell's volume below which a node is a small cut, in the plane and in space \[-\].
+const BELOW: [f64; 2] = [1e-4, 1e-3];
+
+/// The same beside rigid bodies in the plane, which leave slivers of soil in the cells that they cut
+/// (docs/src/contact-measured.md, places of the grid) \[-\].
+const BELOW_AT_BODIES: f64 = 0.05;
+
 /// Puts them into the tree.
 pub(super) fn derive(tree: &mut Node, file: &Path) {
     let strong = strong_materials(tree);
@@ -83,6 +90,7 @@ pub(super) fn derive(tree: &mut Node, file: &Path) {
     derive_output(tree, file);
     let analysis = tree.get("case").and_then(|case| case.text_at("analysis"));
     let dimensions = if analysis == Some(SPACE) { 3 } else { 2 };
+    derive_small_cuts(tree, dimensions);
     if let Some(curves) = tree.get_mut("curves") {
         for curve in curves.items_mut() {
             for axis in ["x", "y"] {
@@ -195,4 +203,24 @@ fn label(dimensions: usize, axis: &Node) -> Option<String> {
         label.push_str(&text);
     }
     Some(label)
+}
+
+/// Small cuts of a grid that rigid bodies cut, and of others.
+fn derive_small_cuts(tree: &mut Node, dimensions: usize) {
+    let has_bodies = tree.get("rigid").is_some_and(|own| !own.items().is_empty());
+    let (below, remedy) = if has_bodies && dimensions == 2 {
+        (BELOW_AT_BODIES, "extrapolate")
+    } else {
+        (BELOW[dimensions - 2], "tie")
+    };
+    let grid = tree.get_mut("grid");
+    let Some(cuts) = grid.and_then(|grid| grid.get_mut("small_cuts")) else {
+        return;
+    };
+    if cuts.get("below").is_none() {
+        cuts.add_derived("below", Value::Number(below));
+    }
+    if cuts.get("remedy").is_none() {
+        cuts.add_derived("remedy", Value::Text(remedy.to_owned()));
+    }
 }

@@ -383,26 +383,14 @@ fn levels<const D: usize>(bodies: &[Option<BodyPart<D>>], round_off: f64) -> Vec
     levels.into_iter().map(|(y, _)| y).collect()
 }
 
-/// Share of a cell's volume below which a node is a small cut where nothing is said, in the plane and in space \[-\].
-const BELOW: [f64; 2] = [1e-4, 1e-3];
-
-/// The same beside rigid bodies in the plane, which leave slivers of soil in the cells that they cut
-/// (docs/src/contact-measured.md, places of the grid).
-const BELOW_AT_BODIES: f64 = 0.05;
-
-/// The variant of the method, beside rigid bodies in the plane or without.
-pub(super) fn method<const D: usize>(own: &keys::Method, at_bodies: bool) -> Method {
+/// The variant of the method.
+pub(super) fn method(own: &keys::Method) -> Option<Method> {
     let cuts = &own.small_cuts;
-    let (below, remedy) = if at_bodies {
-        (BELOW_AT_BODIES, Remedy::Extrapolate)
-    } else {
-        (BELOW[D - 2], Remedy::Tie)
-    };
     let basis: Arc<dyn Basis> = match *own.basis {
         keys::Basis::Linear => Arc::new(Linear),
         keys::Basis::Gimp => Arc::new(Gimp),
     };
-    Method {
+    Some(Method {
         basis,
         locking: match *own.locking {
             keys::Locking::None => Locking::None,
@@ -421,13 +409,13 @@ pub(super) fn method<const D: usize>(own: &keys::Method, at_bodies: bool) -> Met
             keys::DomainUpdate::RootJ => DomainUpdate::RootJ,
         },
         small_cuts: SmallCuts {
-            below: cuts.below.as_deref().copied().unwrap_or(below),
-            remedy: (cuts.remedy.as_deref()).map_or(remedy, |own| match own {
+            below: **cuts.below.as_ref()?,
+            remedy: match **cuts.remedy.as_ref()? {
                 keys::Remedy::Drop => Remedy::Drop,
                 keys::Remedy::Tie => Remedy::Tie,
                 keys::Remedy::Extrapolate => Remedy::Extrapolate,
-            }),
+            },
             ghost_penalty: *cuts.ghost_penalty,
         },
-    }
+    })
 }
