@@ -57,7 +57,7 @@ const PRINTED: [Printed; 40] = [
     printed("cargo xtask validate --accept", REVIEW, "&[\"--accept\"]", "the column, on a copy of the snapshots"),
     printed("cargo xtask validate --accept-left", REVIEW, "&[\"--accept-left\"]", "on a copy of the snapshots"),
     printed("cargo xtask validate --full --matrix", CI, "cargo xtask validate --quick", "holds its rows against the matrix; what is written is tried in matrix.rs"),
-    printed("cargo install cargo-insta", CI, "cargo install --quiet --locked cargo-insta", "into a folder of its own"),
+    printed("cargo install cargo-insta", CI, "cargo install --quiet --debug --locked cargo-insta", "into a folder of its own"),
     printed("cargo insta review", REVIEW, "insta(\"review\")", "in a clone of the workspace"),
     printed("cargo insta accept", REVIEW, "insta(\"accept\")", "in a clone of the workspace"),
     printed("cargo test -p igimp-cases -p igimp", CI, "phase cargo test --workspace", "the same tests, nothing accepted"),
