@@ -1,11 +1,13 @@
 //! GOAL: the shipped column in memory. What makes no sense is refused with its reason, a run that
-//! finds no equilibrium is a result and not an error, and the exact solution is met.
+//! finds no equilibrium is a result and not an error, and the exact solution is met. So is that of a block under
+//! pressure on its faces, wherever in a cell they lie.
 
 use std::error::Error;
 
 use igimp_assembly::Remedy;
 use igimp_cases::exact;
 use igimp_cases::run::in_memory;
+use igimp_input::CaseFile;
 use igimp_input::shipped::find;
 use igimp_model::{Case, GridSpec, LoadKind, Strength};
 use igimp_results::summary::StageOutcome;
@@ -156,4 +158,141 @@ fn a_factor_listed_is_tried_and_recorded() {
     let curve = result.curves[0].points(0, 1);
     assert_eq!(curve.len(), 2, "{curve:?}");
     assert!((curve[0][1] - 0.379).abs() < 0.01, "{curve:?}");
+}
+
+/// A weightless block of four cells and a share more, on smooth supports at its left and below, of c = 5 kPa and φ = 30°. Both
+/// free faces are pressed by 10 kPa, then the upper one by more until the block fails or has settled by 5 mm; or
+/// up to 28 kPa, and strength is reduced.
+fn block(more: [f64; 2], locking: &str, dilation: u32, stage: &str) -> Case<2> {
+    let [width, height] = more.map(|more| 4.0 + more);
+    let text = format!(
+        r#"
+igimp = 1
+[case]
+title = "block under pressure"
+gravity = "0 m/s2"
+[grid]
+cell = "1 m"
+domain = {{ x = ["0 m", "6 m"], y = ["0 m", "6 m"] }}
+locking = "{locking}"
+[materials.soil]
+model = "mohr-coulomb"
+unit_weight = "18 kN/m3"
+young = "200 MPa"
+poisson = 0.3
+cohesion = "5 kPa"
+friction = "30 deg"
+dilation = "{dilation} deg"
+[[bodies]]
+name = "block"
+material = "soil"
+points_per_cell = 9
+polygon = [["0 m", "0 m"], ["{width} m", "0 m"], ["{width} m", "{height} m"], ["0 m", "{height} m"]]
+[boundaries]
+left = "roller"
+right = "free"
+bottom = "roller"
+[[loads]]
+name = "top"
+type = "pressure"
+from = ["0 m", "{height} m"]
+to = ["{width} m", "{height} m"]
+pressure = "10 kPa"
+[[loads]]
+name = "side"
+type = "pressure"
+from = ["{width} m", "0 m"]
+to = ["{width} m", "{height} m"]
+pressure = "10 kPa"
+[[stages]]
+name = "pressure all around"
+type = "load"
+loads = ["side", "top"]
+factor = 1
+steps = 4
+{stage}
+[[monitors]]
+name = "top of the block"
+point = ["{} m", "{height} m"]
+record = ["displacement_y"]
+[[curves]]
+name = "settlement"
+x = {{ of = "top of the block.displacement_y" }}
+y = {{ of = "top.factor" }}
+"#,
+        0.5 * width
+    );
+    let file = CaseFile::parse("block.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    file.into_case()
+}
+
+/// Where the faces of a block lie: shares of a cell beyond the last whole one.
+const PLACES: [[f64; 2]; 8] = [
+    [0.0, 0.0],
+    [0.02, 0.02],
+    [0.1, 0.0],
+    [0.25, 0.0],
+    [0.0, 0.5],
+    [0.5, 0.5],
+    [0.75, 0.0],
+    [0.9, 0.0],
+];
+
+/// A biaxial test fails at q = K_p p + 2 c √K_p, whatever the dilation and wherever its pressed faces lie in a cell.
+#[test]
+fn a_biaxial_block_carries_its_exact_load_anywhere_in_a_cell() {
+    let exact = 3.0 + 3.0_f64.sqrt();
+    for (locking, dilation) in [
+        ("shared-strain", 0),
+        ("shared-strain", 30),
+        ("b-bar", 0),
+        ("b-bar", 30),
+    ] {
+        for place in PLACES {
+            let stage = "[[stages]]\nname = \"load\"\ntype = \"load\"\nload = \"top\"\nfactor = 4.6\nsteps = 6\n\
+                         [[stages]]\nname = \"limit\"\ntype = \"load\"\nload = \"top\"\nfactor = 5.2\nsteps = 12\n\
+                         stop_when = { no_equilibrium = true, displacement = \"8 mm\" }";
+            let run = in_memory(&block(place, locking, dilation, stage)).unwrap();
+            let rows = run.curves[0].points(0, 1);
+            let settled = rows.iter().find(|[settlement, _]| *settlement <= -0.005);
+            let carried = settled.or(rows.last()).unwrap()[1];
+            println!("{locking}, ψ = {dilation}°, {place:?}: {carried:.3} of {exact:.3}");
+            assert!(
+                (carried / exact - 1.0).abs() < 0.015,
+                "{locking}, {dilation}, {place:?}: {carried}"
+            );
+        }
+    }
+}
+
+/// The same block at q = 28 kPa has the factor at which its reduced strength carries that, on the given geometry.
+#[test]
+fn a_biaxial_block_has_its_exact_factor_anywhere_in_a_cell() {
+    let carried = |factor: f64| {
+        let slope = 30.0_f64.to_radians().tan() / factor;
+        let root = slope + slope.hypot(1.0);
+        10.0 * root * root + 2.0 * 5.0 / factor * root
+    };
+    let exact = (0..60).fold([1.0, 3.0], |[low, high], _| {
+        let middle = f64::midpoint(low, high);
+        if carried(middle) > 28.0 {
+            [middle, high]
+        } else {
+            [low, middle]
+        }
+    })[0];
+    for (dilation, places) in [(15, &PLACES[..]), (0, &PLACES[2..5]), (30, &PLACES[2..5])] {
+        for &place in places {
+            let stage = "[[stages]]\nname = \"load\"\ntype = \"load\"\nload = \"top\"\nfactor = 2.8\nsteps = 4\n\
+                         [[stages]]\nname = \"safety\"\ntype = \"strength-reduction\"\ngeometry = \"given\"";
+            let run = in_memory(&block(place, "shared-strain", dilation, stage)).unwrap();
+            let safety = run.summary.stages[2].safety.as_ref().unwrap();
+            let factor = safety.stable.expect("a factor is found");
+            println!("ψ = {dilation}°, {place:?}: {factor:.3} of {exact:.3}");
+            assert!(
+                (factor / exact - 1.0).abs() < 0.02,
+                "{dilation}, {place:?}: {factor}"
+            );
+        }
+    }
 }

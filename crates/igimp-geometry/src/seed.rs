@@ -20,6 +20,9 @@ const SLIVER: f64 = 0.1;
 /// The centroid of the soil of a particle lies no further out in its domain: soil that joined it may lie beyond \[-\].
 const OUTERMOST: f64 = 0.95;
 
+/// Soil whose volume differs from that of a box by less than so much of its part is that box \[-\].
+const BOX: f64 = 1e-9;
+
 /// A region may reach off the grid by so much of the grid: lines are multiples of a rounded cell \[-\].
 const ROUND_OFF: f64 = 1e-9;
 
@@ -258,8 +261,7 @@ impl<const D: usize> Parts<D> {
                 };
                 if own.volume >= SLIVER * size.iter().product::<f64>() {
                     kept.push((seeds.len(), keep));
-                    let x = std::array::from_fn(|axis| from[axis] + 0.5 * size[axis]);
-                    let half_length = size.map(|size| 0.5 * size);
+                    let (x, half_length) = domain(from, size, &own);
                     seeds.push(ParticleSeed {
                         x,
                         half_length,
@@ -296,6 +298,20 @@ impl<const D: usize> Parts<D> {
         }
         Ok((seeds, kept))
     }
+}
+
+/// Middle and half-lengths of the domain of the soil in a part: the soil itself where it is a box that fills the part up to
+/// one side of each axis, as a face along an axis leaves it, and the whole part otherwise (theory, eq. 44c).
+fn domain<const D: usize>(from: [f64; D], size: [f64; D], soil: &Part<D>) -> ([f64; D], [f64; D]) {
+    let middle: [f64; D] = std::array::from_fn(|axis| from[axis] + 0.5 * size[axis]);
+    let left: [f64; D] =
+        std::array::from_fn(|axis| size[axis] - 2.0 * (soil.centroid[axis] - middle[axis]).abs());
+    let volume: f64 = left.iter().product();
+    let whole: f64 = size.iter().product();
+    if (volume - soil.volume).abs() < BOX * whole && left != size {
+        return (soil.centroid, left.map(|length| 0.5 * length));
+    }
+    (middle, size.map(|size| 0.5 * size))
 }
 
 /// Of a range of particles the nearest to a point; of several the first.

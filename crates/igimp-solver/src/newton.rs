@@ -190,7 +190,7 @@ fn equilibrium<const D: usize>(
     } = attempt;
     let grid = &conditions.grid;
     let clock = Instant::now();
-    let stencils = Stencils::build(&body.particles, method, conditions)?;
+    let stencils = Stencils::build_under(&body.particles, method, conditions, &body.load_points)?;
     let structures = (&body.rigid[..], &body.reinforcement[..]);
     let system =
         System::with_structures(&body.particles, structures, &stencils, conditions, method)?
@@ -346,7 +346,7 @@ fn carried<const D: usize>(
         });
     }
     let carry = |(index, point): (usize, &LoadPoint<D>)| {
-        let carried = point.carried(grid, index, u)?;
+        let carried = point.carried(grid, stencils, index, u)?;
         if grid.contains(&carried.x) {
             Ok(carried)
         } else {

@@ -63,7 +63,7 @@ impl<const D: usize> Increment<'_, D> {
         beside: &[StepConditions<D>],
         workspace: &mut Workspace<D>,
     ) -> Result<Vec<f64>, StepFailure> {
-        let stencils = Stencils::build(&self.body.particles, self.method, self.conditions)?;
+        let stencils = self.stencils()?;
         let mut system = self.system(&stencils, workspace.pattern())?;
         let force = system.force_along(self.u);
         let here = system.out_of_balance(&system.evaluate(self.u, TangentKind::Consistent)?)?;
@@ -98,7 +98,7 @@ impl<const D: usize> Increment<'_, D> {
         from: f64,
         at: &dyn Fn(f64) -> Result<StepConditions<D>, AssemblyError>,
     ) -> Result<Option<KinematicFactor>, StepFailure> {
-        let stencils = Stencils::build(&self.body.particles, self.method, self.conditions)?;
+        let stencils = self.stencils()?;
         let mut system = self.system(&stencils, None)?;
         let trial = system.evaluate(self.u, TangentKind::Consistent)?;
         let mut factor = from;
@@ -116,6 +116,17 @@ impl<const D: usize> Increment<'_, D> {
             }
         }
         Ok(None)
+    }
+
+    /// What of the particles acts on the nodes.
+    fn stencils(&self) -> Result<Stencils<D>, StepFailure> {
+        let Body {
+            particles,
+            load_points,
+            ..
+        } = self.body;
+        let stencils = Stencils::build_under(particles, self.method, self.conditions, load_points);
+        Ok(stencils?)
     }
 
     /// The equations of the step.

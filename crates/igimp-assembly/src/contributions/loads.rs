@@ -91,6 +91,7 @@ pub(crate) fn add_force_of_points<const D: usize>(
             point: index,
             position: padded(&point.x),
         };
+        let point = point.on_soil(grid, stencils);
         let own = stencils.carried(&point.supports(grid, index)?);
         for support in &own {
             if support.value > 0.0 && stencils.node_volume(support.node) == 0.0 {

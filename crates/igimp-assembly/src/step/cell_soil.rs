@@ -1,12 +1,13 @@
 //! The soil in every cell of the grid: how much there is, and where its centroid lies. From it come
 //! gradients that the particles of a cell share, which cells hold slivers only, and what of the weight shared
-//! gradients do not see (theory, eqs. 8a to 8f).
+//! gradients do not see (theory, eqs. 8a to 8h).
 
 use igimp_material::ConstitutiveModel;
 use igimp_shape::{CellPart, Grid, Support, cell_parts};
 use rayon::prelude::*;
 
 use crate::body::particles::{CHUNK, Particles};
+use crate::conditions::loads::LoadPoint;
 use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
 use crate::method::{Geometry, Locking, Method};
@@ -43,7 +44,7 @@ pub(crate) struct CellSoil<const D: usize> {
 }
 
 impl<const D: usize> CellSoil<D> {
-    /// Lays the particles over a grid.
+    /// Lays the particles over a grid; `points` load the faces of some cells.
     ///
     /// # Errors
     /// [`AssemblyError::Shape`] names the first particle whose centre left the grid.
@@ -52,6 +53,7 @@ impl<const D: usize> CellSoil<D> {
         particles: &Particles<D>,
         method: &Method,
         laws: &[SharedLaw],
+        points: &[LoadPoint<D>],
     ) -> Result<Self, AssemblyError> {
         let len = particles.len();
         let parts = (0..len.div_ceil(CHUNK))
@@ -79,15 +81,28 @@ impl<const D: usize> CellSoil<D> {
             own_share: laws.iter().map(of_law).collect(),
             locking: method.locking,
         };
-        if method.geometry == Geometry::Given {
-            soil.find_soil(grid, particles);
+        if method.geometry == Geometry::Given || !points.is_empty() {
+            soil.find_soil(
+                grid,
+                particles,
+                method.geometry,
+                &loaded_cells(grid, points),
+            );
         }
         Ok(soil)
     }
 
-    /// Finds slivers, and the centroid of the soil of every cell: sums of volumes and first moments in
+    /// Finds slivers, and the centroid of the soil of the cells that share it: sums of volumes and first moments in
     /// the order of the particles.
-    fn find_soil(&mut self, grid: &Grid<D>, particles: &Particles<D>) {
+    fn find_soil(
+        &mut self,
+        grid: &Grid<D>,
+        particles: &Particles<D>,
+        geometry: Geometry,
+        is_loaded: &[bool],
+    ) {
+        let is_given = geometry == Geometry::Given;
+        let all = is_given && self.locking == Locking::SharedStrain;
         let mut volume = vec![0.0; grid.cell_count()];
         let mut moment = vec![[0.0; D]; grid.cell_count()];
         for particle in 0..particles.len() {
@@ -101,11 +116,11 @@ impl<const D: usize> CellSoil<D> {
             }
         }
         for (cell, (volume, moment)) in volume.into_iter().zip(moment).enumerate() {
-            if volume > 0.0 && self.locking == Locking::SharedStrain {
+            if volume > 0.0 && (all || is_loaded[cell]) {
                 self.shared_at[cell] = moment.map(|moment| moment / volume);
             }
             let size: f64 = grid.cell_size(grid.cell_place(cell)).iter().product();
-            self.is_sliver[cell] = volume < SLIVER * size;
+            self.is_sliver[cell] = is_given && volume < SLIVER * size;
         }
     }
 
@@ -207,6 +222,28 @@ impl<const D: usize> CellSoil<D> {
         }
         moments
     }
+}
+
+/// Whether loaded points lie in a cell or on its sides, by cell (theory, eq. 8h).
+fn loaded_cells<const D: usize>(grid: &Grid<D>, points: &[LoadPoint<D>]) -> Vec<bool> {
+    let mut is_loaded = vec![false; grid.cell_count()];
+    for point in points {
+        // A point on a line is of the cell before it and of the cell behind.
+        let sides: [[Option<usize>; 2]; D] = std::array::from_fn(|axis| {
+            let own = &grid.axes[axis];
+            let at = own.cell_at(point.x[axis]);
+            let before = at.filter(|&cell| cell > 0 && own.nodes()[cell] == point.x[axis]);
+            [at, before.map(|cell| cell - 1)]
+        });
+        for corner in 0..1_usize << D {
+            let place: [Option<usize>; D] =
+                std::array::from_fn(|axis| sides[axis][corner >> axis & 1]);
+            if place.iter().all(Option::is_some) {
+                is_loaded[grid.cell_index(place.map(Option::unwrap_or_default))] = true;
+            }
+        }
+    }
+    is_loaded
 }
 
 /// What of the weight of the soil of a law shared gradients do not see (theory, eq. 8f).

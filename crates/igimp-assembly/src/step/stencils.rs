@@ -5,6 +5,7 @@ use igimp_shape::{Grid, Support};
 
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
+use crate::conditions::loads::LoadPoint;
 use crate::error::AssemblyError;
 use crate::method::{Method, Remedy, SmallCuts};
 use crate::step::cell_soil::Moments;
@@ -45,9 +46,22 @@ impl<const D: usize> Stencils<D> {
         method: &Method,
         conditions: &StepConditions<D>,
     ) -> Result<Self, AssemblyError> {
+        Self::build_under(particles, method, conditions, &[])
+    }
+
+    /// The same where points load faces of the body: soil of their cells balances what they press (theory, eq. 8h).
+    ///
+    /// # Errors
+    /// As [`Self::build`].
+    pub fn build_under(
+        particles: &Particles<D>,
+        method: &Method,
+        conditions: &StepConditions<D>,
+        points: &[LoadPoint<D>],
+    ) -> Result<Self, AssemblyError> {
         let StepConditions { grid, laws, .. } = conditions;
         conditions.validate(particles)?;
-        let mut supports = Supports::build(grid, particles, method, laws)?;
+        let mut supports = Supports::build(grid, particles, method, laws, points)?;
         let mut strips = Strips::build(grid, &supports);
         let mut shares = node_shares(grid, particles, &supports, &strips);
         let ties = ties(method, conditions, &supports, &shares);

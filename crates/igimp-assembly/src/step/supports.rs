@@ -4,6 +4,7 @@ use igimp_shape::{Grid, Scratch, Support, supports};
 use rayon::prelude::*;
 
 use crate::body::particles::{CHUNK, Particles};
+use crate::conditions::loads::LoadPoint;
 use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
 use crate::method::{Geometry, Locking, Method};
@@ -33,8 +34,8 @@ struct Chunk<const D: usize> {
 
 impl<const D: usize> Supports<D> {
     /// Evaluates the basis of a method at all particles. Here alone is decided of which gradients the
-    /// strain of a particle is made: without locking control ∇S̄ is replaced by ∇S; shared strain and
-    /// a given geometry take both from the cells (theory, eqs. 8a to 8e).
+    /// strain of a particle is made: without locking control ∇S̄ is replaced by ∇S; shared strain, a given geometry
+    /// and loaded faces take both from the cells (theory, eqs. 8a to 8e).
     ///
     /// # Errors
     /// [`AssemblyError::Shape`] names the first particle whose centre left the grid.
@@ -43,12 +44,14 @@ impl<const D: usize> Supports<D> {
         particles: &Particles<D>,
         method: &Method,
         laws: &[SharedLaw],
+        points: &[LoadPoint<D>],
     ) -> Result<Self, AssemblyError> {
         let len = particles.len();
-        let by_cells =
-            method.locking == Locking::SharedStrain || method.geometry == Geometry::Given;
+        let by_cells = method.locking == Locking::SharedStrain
+            || method.geometry == Geometry::Given
+            || !points.is_empty();
         let soil = by_cells
-            .then(|| CellSoil::build(grid, particles, method, laws))
+            .then(|| CellSoil::build(grid, particles, method, laws, points))
             .transpose()?;
         let chunks: Vec<Result<Chunk<D>, AssemblyError>> = (0..len.div_ceil(CHUNK))
             .into_par_iter()

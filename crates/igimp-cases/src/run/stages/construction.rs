@@ -177,7 +177,7 @@ fn holding<const D: usize>(
     let method = model.method(model.case.stages[stage].geometry);
     let conditions = model.conditions(&state.controls, &state.controls, 0.0)?;
     let particles = &state.body.particles;
-    let stencils = Stencils::build(particles, &method, &conditions)?;
+    let stencils = Stencils::build_under(particles, &method, &conditions, &state.body.load_points)?;
     let structures = (&state.body.rigid[..], &state.body.reinforcement[..]);
     let system = System::with_structures(particles, structures, &stencils, &conditions, &method)?
         .with_load_points(&state.body.load_points)?;

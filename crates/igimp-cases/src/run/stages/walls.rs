@@ -65,7 +65,7 @@ pub(super) fn begin<const D: usize>(
         return Ok(Vec::new());
     }
     let particles = &state.body.particles;
-    let stencils = Stencils::build(particles, method, &conditions)?;
+    let stencils = Stencils::build_under(particles, method, &conditions, &state.body.load_points)?;
     let structures = (&state.body.rigid[..], &state.body.reinforcement[..]);
     let system = System::with_structures(particles, structures, &stencils, &conditions, method)?
         .with_load_points(&state.body.load_points)?;

@@ -1,0 +1,15 @@
+//! The equations of soil: one program, as every one compiles them anew.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod energy;
+mod errors;
+mod given_geometry;
+mod invariants;
+mod patch;
+mod pore_water;
+mod residual;
+mod small_cuts;
+mod stencils;
+mod tangent;
+mod threads;

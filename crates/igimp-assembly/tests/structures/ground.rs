@@ -1,0 +1,91 @@
+//! GOAL: with walls, ties and damping of soil the tangent of a step that takes time is the derivative of the internal force.
+//! BODY: 4 × 3 cells with 2 × 2 particles each, moving, in both schemes of time integration.
+//! ORACLE: central differences of the internal force.
+
+use std::sync::Arc;
+
+use crate::common::{Random, conditions, displacements, grid, laws, particles};
+use igimp_assembly::{
+    AbsorbingWall, GroundMotion, Method, Rayleigh, Stencils, System, TimeScheme, TimeStep,
+    WallNode, Walls,
+};
+use igimp_material::TangentKind;
+
+#[test]
+fn the_tangent_of_walls_and_damping_is_the_derivative_of_the_force() {
+    let mut random = Random(11);
+    let grid = grid::<2>(4);
+    let (_, law) = laws().remove(0);
+    let method = Method::default();
+    let wall = |normal, upper| AbsorbingWall {
+        normal,
+        upper,
+        spring: [0.3, 0.2],
+    };
+    let nodes = (0..grid.node_count())
+        .map(|node| WallNode {
+            node,
+            force: [0.1, -0.2],
+            displacement: [1e-3 * node as f64, 2e-3],
+        })
+        .collect();
+    for scheme in [TimeScheme::BackwardEuler, TimeScheme::Newmark] {
+        let body = particles(&grid, 0.1, &mut random);
+        let velocities = (body.x.iter()).map(|x| [0.3 * x[1], 0.1 * x[0]]).collect();
+        let body = body.with_velocities(velocities).unwrap();
+        let conditions = conditions(&grid, &law)
+            .with_time(Some(TimeStep {
+                duration: 0.05,
+                scheme,
+                lumped: 0.0,
+                is_first: false,
+                must_resolve: false,
+            }))
+            .unwrap()
+            .with_walls(Some(Walls {
+                absorbing: vec![wall(1, false), wall(0, true)],
+                tied: Some(0),
+                nodes: Arc::new(Vec::clone(&nodes)),
+            }))
+            .unwrap()
+            .with_ground(Some(GroundMotion {
+                before: [0.1, 0.0],
+                after: [0.4, 0.0],
+            }))
+            .unwrap()
+            .with_damping(Some(Rayleigh {
+                mass: 0.7,
+                stiffness: 0.02,
+            }))
+            .unwrap();
+        let stencils = Stencils::build(&body, &method, &conditions).unwrap();
+        let system = System::new(&body, &stencils, &conditions, &method)
+            .unwrap()
+            .in_motion()
+            .unwrap();
+        let u = displacements(&grid, 0.01, &mut random);
+        let (_, matrix) = system.linearise(&u, TangentKind::Consistent).unwrap();
+        let unknowns = system.unknowns();
+        let (mut largest, mut error) = (0.0_f64, 0.0_f64);
+        for column in 0..unknowns.len() {
+            let (node, axis) = unknowns.place(column).unwrap();
+            let mut unit = vec![0.0; unknowns.len()];
+            let mut own = unit.clone();
+            unit[column] = 1.0;
+            matrix.multiply(&unit, &mut own);
+            let d = 1e-6;
+            let force = |by: f64| {
+                let mut u = u.clone();
+                u[node][axis] += by;
+                let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
+                system.by_unknown(&trial.f_int)
+            };
+            for ((plus, minus), own) in std::iter::zip(force(d), force(-d)).zip(own) {
+                let difference = (plus - minus) / (2.0 * d);
+                largest = largest.max(difference.abs());
+                error = error.max((difference - own).abs());
+            }
+        }
+        assert!(error < 1e-6 * largest, "{scheme:?}: {error} of {largest}");
+    }
+}

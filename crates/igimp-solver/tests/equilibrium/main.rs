@@ -1,0 +1,15 @@
+//! Equilibrium of a step and of a march: one program, as every one compiles the equations anew.
+
+mod beam;
+#[path = "../body_support/mod.rs"]
+mod body_support;
+mod drag;
+mod faults;
+mod guarded;
+mod linear_multigrid;
+mod march;
+mod march_properties;
+mod newton;
+mod newton_failures;
+mod one_dimension;
+mod reinforcement;
