@@ -142,10 +142,6 @@ fn method(kind: SolverKind, symmetric: bool, iterated: bool) -> String {
         SolverKind::Single => {
             format!("{direct} in single precision and an iteration with it, as asked for")
         }
-        SolverKind::FaerCholesky => "Cholesky of faer, as asked for".to_owned(),
-        SolverKind::NalgebraCholesky => "Cholesky of nalgebra, as asked for".to_owned(),
-        SolverKind::MultifrontalCholesky => "Cholesky, as asked for".to_owned(),
-        SolverKind::Multifrontal => "LU, as asked for".to_owned(),
-        SolverKind::SprsBiCgStab => "bi-conjugate gradients, as asked for".to_owned(),
+        other => format!("{}, as asked for", other.build().name()),
     }
 }

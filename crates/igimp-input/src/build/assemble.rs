@@ -104,8 +104,7 @@ pub(super) fn assemble<const D: usize>(
         soil,
         ..
     } = *context;
-    let solver =
-        Root::<D>::solver(tree).map(|own| outputs::solver(&own, &basics.materials, problems));
+    let solver = Root::<D>::solver(tree).map(|own| outputs::solver(&own, problems));
     let output = Root::<D>::output(tree);
     // A stage that was found wrong may be one.
     let is_motion = |stage: &Option<Stage>| {

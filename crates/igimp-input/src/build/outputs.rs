@@ -9,13 +9,13 @@ use std::path::{Path, PathBuf};
 
 use igimp_linear::SolverKind;
 use igimp_model::{
-    Average, Cut, Every, Field, Flow, Material, Monitor, Output, Section, SectionReference,
-    SolverSettings, Stage, StageKind, Strength,
+    Average, Cut, Every, Field, Monitor, Output, Section, SectionReference, SolverSettings, Stage,
+    StageKind,
 };
 use igimp_results::fields::length;
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::outputs::{self as keys, Across, LinearSolver, OutputTime};
-use igimp_schema::text::{clip, point};
+use igimp_schema::text::point;
 use igimp_schema::tree::read::{At, Either};
 
 use super::AllNames;
@@ -37,43 +37,12 @@ fn memory(stated: Option<&At<String>>, problems: &mut Problems) -> Option<Memory
 }
 
 /// Newton's method, step cutting, linear solver.
-pub(super) fn solver(
-    own: &keys::Solver,
-    materials: &[Option<Material>],
-    problems: &mut Problems,
-) -> SolverSettings {
+pub(super) fn solver(own: &keys::Solver, problems: &mut Problems) -> SolverSettings {
     let linear = match *own.linear {
-        LinearSolver::Auto | LinearSolver::Direct => SolverKind::Auto,
+        LinearSolver::Auto => SolverKind::Auto,
         LinearSolver::Multigrid => SolverKind::Multigrid,
         LinearSolver::Single => SolverKind::Single,
-        LinearSolver::Cholesky => SolverKind::MultifrontalCholesky,
-        LinearSolver::Lu => SolverKind::Multifrontal,
-        LinearSolver::FaerCholesky => SolverKind::FaerCholesky,
-        LinearSolver::NalgebraCholesky => SolverKind::NalgebraCholesky,
-        LinearSolver::Bicgstab => SolverKind::SprsBiCgStab,
     };
-    let needs_symmetry = matches!(
-        linear,
-        SolverKind::MultifrontalCholesky | SolverKind::FaerCholesky | SolverKind::NalgebraCholesky
-    );
-    let unsymmetric = materials.iter().flatten().find(|material| {
-        matches!(
-            material.strength,
-            Strength::MohrCoulomb { friction_angle, dilation_angle, flow: Flow::Dilation, .. }
-                if dilation_angle < friction_angle
-        )
-    });
-    if needs_symmetry && let Some(material) = unsymmetric {
-        problems
-            .warning(
-                own.linear.place,
-                "Cholesky needs a symmetric matrix, but flow is not associated",
-            )
-            .help(format!(
-                "`{}` has dilation below friction: linear = \"auto\" or \"lu\", or flow = \"davis\" in the material",
-                clip(&material.name, 40)
-            ));
-    }
     SolverSettings {
         tolerance: *own.tolerance,
         max_iterations: *own.max_iterations,

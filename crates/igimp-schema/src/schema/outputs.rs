@@ -25,14 +25,8 @@ choices! {
     LinearSolver;
     Auto "auto", "Cholesky for symmetric matrices, LU for others; for large systems in space multigrid";
     Multigrid "multigrid", "conjugate gradients or GMRES with geometric multigrid on the grid";
-    Direct "direct", "the same as auto";
     Single "single",
         "factors in single precision, half the memory, and an iteration with them; in double where that does not converge";
-    Cholesky "cholesky", "multifrontal Cholesky";
-    Lu "lu", "multifrontal LU";
-    FaerCholesky "faer-cholesky", "an independent supernodal Cholesky";
-    NalgebraCholesky "nalgebra-cholesky", "an independent Cholesky, slow";
-    Bicgstab "bicgstab", "stabilised bi-conjugate gradients, slow";
 }
 
 table! {
