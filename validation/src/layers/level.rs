@@ -13,6 +13,13 @@ const UNIT_WEIGHTS: [f64; 2] = [2e4, 1.6e4];
 /// Young's modulus of the upper soil \[Pa\]: the ground settles by next to nothing.
 const YOUNG: f64 = 1e10;
 
+/// The weight of half a cell of the heavier soil over the least weight above a boundary \[-\]: as far as that the stress of a
+/// cell, which is that of its middle, is off at its particles.
+pub(super) fn half_a_cell() -> f64 {
+    let most = super::OFFSETS.into_iter().fold(0.0, f64::max);
+    0.5 * UNIT_WEIGHTS[0] / (UNIT_WEIGHTS[1] * (HEIGHTS[1] - most))
+}
+
 /// Level ground on cells of 1 m.
 pub(super) struct Ground {
     /// Height of the boundary above a line of the grid of equal cells \[cells\].

@@ -111,7 +111,7 @@ fn level_ground(study: &mut Study) -> Result<(), CaseError> {
                 study.check(run, largest, OVERBURDEN.says(0.0), band, worst);
             }
             Cells::Mean => {
-                let band = Band::AtMost(0.05);
+                let band = Band::AtMost(level::half_a_cell());
                 study.check(run, largest, OVERBURDEN.says(0.0), band, worst);
             }
             Cells::Own => {

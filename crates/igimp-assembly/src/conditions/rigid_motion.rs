@@ -37,6 +37,12 @@ impl<const D: usize> RigidMotion<D> {
         }
     }
 
+    /// Whether a force pushes it along some axis.
+    pub(crate) fn is_pushed(&self) -> bool {
+        let mut along = self.displacement.iter();
+        along.any(|drive| matches!(drive, Drive::Loaded(force) if *force != 0.0))
+    }
+
     /// Whether every number is finite.
     pub(crate) fn is_finite(&self) -> bool {
         self.displacement

@@ -11,7 +11,7 @@ use super::row::{Functional, Row};
 use super::{ContactNode, ContactState, NODES_PER_BODY, RigidBody};
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
-use crate::conditions::rigid_motion::rotations;
+use crate::conditions::rigid_motion::{RigidMotion, rotations};
 use crate::contributions::nodal_forces::{AddBlock, NodalForces};
 use crate::method::Geometry;
 use crate::step::stencils::Stencils;
@@ -20,6 +20,9 @@ use crate::step::unknowns::Unknowns;
 /// A knot of space that soil covers by a smaller share of the largest one has none: round-off beyond a plane of
 /// symmetry \[-\].
 const LEAST_COVER: f64 = 1e-10;
+
+/// Soil that is no further from a body that a force pushes, in cells, has the body laid on it \[-\].
+const LAID: f64 = 1e-6;
 
 /// Contact of one step, with directions and weights frozen at its start.
 #[derive(Debug)]
@@ -80,6 +83,8 @@ impl<'a, const D: usize> Contact<'a, D> {
             None => 0.0,
         };
         let node = self.first_node + NODES_PER_BODY * index;
+        let motion = conditions.motions.get(index);
+        let is_loaded = conditions.time.is_none() && motion.is_some_and(RigidMotion::is_pushed);
         let knots = Gathering::new(body, node, particles, stencils, conditions, unknowns).sums();
         for (knot, sums) in knots {
             let area = sums.area.min(tents[knot]);
@@ -97,9 +102,15 @@ impl<'a, const D: usize> Contact<'a, D> {
             // Soil that comes near is as far off as it stands, and touches if it overlaps; from then on the
             // gap follows its motion. Where it is bonded it touches at once.
             let interface = &body.interfaces[surface.side_of(knot)];
+            let is_laid =
+                before.area == 0.0 && is_loaded && mean(sums.gap) < LAID * mean(sums.cell);
             if before.area == 0.0 {
                 let bonds = interface.tension != Tension::None && !before.is_broken;
-                before.gap = if bonds { 0.0 } else { mean(sums.gap).max(0.0) };
+                before.gap = if bonds || is_laid {
+                    0.0
+                } else {
+                    mean(sums.gap).max(0.0)
+                };
                 before.is_closed = before.gap == 0.0;
             } else if !before.is_closed && sums.area > before.area {
                 // More of the soil around the knot has come near, the last of it from further off.
@@ -118,6 +129,9 @@ impl<'a, const D: usize> Contact<'a, D> {
                 before,
             };
             row.carry_force(interface, &body.penalty);
+            if is_laid {
+                row.seat(&body.penalty);
+            }
             self.rows.push(row);
         }
     }

@@ -13,6 +13,10 @@ const MOST_GROWTH: f64 = 2.0;
 /// tangent of sticking, whatever round-off says \[-\].
 const ON_THE_LIMIT: f64 = 1e-12;
 
+/// A body that is laid on soil overlaps it by so much of the smoothing length: five per cent of the stiffness of contact, an
+/// eight-hundredth of the pressure at which it is stiff \[-\].
+const SEAT: f64 = 0.05;
+
 /// Soil that is no further off than so many cells still slips along an adhesive side at its limit: the smallest gap that a grid
 /// can tell from none, and as much as soil may go into a body \[-\].
 const ADHESIVE_GAP: f64 = 0.1;
@@ -85,6 +89,12 @@ impl<const D: usize> Row<D> {
         } else {
             -(2.0 * pressure.max(0.0) * smoothing / stiffness).sqrt()
         };
+    }
+
+    /// Begins where a body that a force pushes was laid on soil: with a pressure that is next to nothing, and stiff.
+    /// Without it nothing holds the body before it has moved (theory, eq. 46).
+    pub(crate) fn seat(&mut self, penalty: &Penalty) {
+        self.gap = self.gap.min(-SEAT * penalty.smoothing * self.cell);
     }
 
     /// The mean gap after nodal step displacements `u`.
