@@ -27,7 +27,7 @@ pub use standard::StandardTest;
 pub const COMPONENTS: usize = 4;
 
 /// Most halvings of a step.
-const MOST_HALVINGS: u32 = 12;
+const MOST_HALVINGS: i32 = 12;
 
 /// What is prescribed of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,7 +103,7 @@ impl ElementState {
 
     /// Volumetric strain, ln of the volume over the initial one with its sign changed \[-\], compression positive.
     pub fn volumetric_strain(&self) -> f64 {
-        -(self.strain[0] + self.strain[1] + self.strain[2])
+        0.0 - (self.strain[0] + self.strain[1] + self.strain[2])
     }
 
     /// Component c of the stress \[stress\].
@@ -186,11 +186,14 @@ impl ElementTest {
         let mut begin = self.begin(&point.state);
         for (leg, end) in self.path.legs.iter().enumerate() {
             let end = self.filled(end);
-            let follows = |share: f64| std::array::from_fn(|c| begin[c] + share * (end[c] - begin[c]));
+            let follows =
+                |share: f64| std::array::from_fn(|c| begin[c] + share * (end[c] - begin[c]));
             for step in 0..self.steps {
                 let share = |k: usize| k as f64 / self.steps as f64;
                 let way = [share(step), share(step + 1)];
-                if let Err((share, law)) = self.follow(law, &mut point, way, &follows) {
+                if let Err((share, law)) =
+                    follow(law, (&mut point, &self.path.controls), way, &follows)
+                {
                     let failure = Some(StepLost { leg, share, law });
                     return Ok(ElementRun { states, failure });
                 }
@@ -219,33 +222,32 @@ impl ElementTest {
             _ => end[c],
         })
     }
+}
 
-    /// Takes a step in as many parts as it needs; else how far it came, and what the law said.
-    fn follow(
-        &self,
-        law: &dyn ConstitutiveModel,
-        point: &mut Point,
-        [mut from, to]: [f64; 2],
-        values: &dyn Fn(f64) -> [f64; COMPONENTS],
-    ) -> Result<(), (f64, Option<MaterialError>)> {
-        let whole = to - from;
-        let least = whole * 0.5_f64.powi(MOST_HALVINGS as i32);
-        let mut part = whole;
-        let mut corrections = 0;
-        while to - from > 0.5 * least {
-            part = part.min(to - from);
-            match point.advanced(law, &self.path.controls, &values(from + part), part) {
-                Ok(next) => {
-                    *point = next;
-                    corrections += point.state.corrections;
-                    from += part;
-                    part *= 2.0;
-                }
-                Err(_) if part > 1.5 * least => part *= 0.5,
-                Err(error) => return Err((from, error)),
+/// Takes a step in as many parts as it needs; else how far it came, and what the law said.
+fn follow(
+    law: &dyn ConstitutiveModel,
+    (point, controls): (&mut Point, &[Control; COMPONENTS]),
+    [mut from, to]: [f64; 2],
+    values: &dyn Fn(f64) -> [f64; COMPONENTS],
+) -> Result<(), (f64, Option<MaterialError>)> {
+    let whole = to - from;
+    let least = whole * 0.5_f64.powi(MOST_HALVINGS);
+    let mut part = whole;
+    let mut corrections = 0;
+    while to - from > 0.5 * least {
+        part = part.min(to - from);
+        match point.advanced(law, controls, &values(from + part), part) {
+            Ok(next) => {
+                *point = next;
+                corrections += point.state.corrections;
+                from += part;
+                part *= 2.0;
             }
+            Err(_) if part > 1.5 * least => part *= 0.5,
+            Err(error) => return Err((from, error)),
         }
-        point.state.corrections = corrections;
-        Ok(())
     }
+    point.state.corrections = corrections;
+    Ok(())
 }

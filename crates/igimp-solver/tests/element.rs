@@ -43,7 +43,10 @@ fn driven(
 
 fn close(value: f64, expected: f64, band: f64, what: &str) {
     println!("{what}: {value:.6} expected {expected:.6}");
-    assert!((value / expected - 1.0).abs() < band, "{what}: {value} not {expected}");
+    assert!(
+        (value / expected - 1.0).abs() < band,
+        "{what}: {value} not {expected}"
+    );
 }
 
 /// The value over η, linear between states.
@@ -60,8 +63,19 @@ fn at_ratio(states: &[ElementState], eta: f64, value: impl Fn(&ElementState) -> 
 #[test]
 fn undrained_cam_clay_follows_the_closed_form() {
     let law = cam_clay(ShearStiffness::Constant(2e6), 1.0);
-    let states = driven(&law, StandardTest::TriaxialUndrained, 0.5, 4000, Kinematics::Finite);
-    let table = [(0.2, 0.969111), (0.4, 0.888042), (0.6, 0.781932), (0.8, 0.673170)];
+    let states = driven(
+        &law,
+        StandardTest::TriaxialUndrained,
+        0.5,
+        4000,
+        Kinematics::Finite,
+    );
+    let table = [
+        (0.2, 0.969111),
+        (0.4, 0.888042),
+        (0.6, 0.781932),
+        (0.8, 0.673170),
+    ];
     for (eta, expected) in table {
         let p = at_ratio(&states, eta, ElementState::p);
         close(p / P0, expected, 1e-3, "undrained p/p0");
@@ -77,7 +91,13 @@ fn undrained_cam_clay_follows_the_closed_form() {
 fn undrained_strength_grows_with_overconsolidation() {
     for (ratio, expected) in [(1.0, 0.28717), (1.5, 0.39721), (2.0, 0.5), (8.0, 1.51572)] {
         let law = cam_clay(ShearStiffness::Constant(2e6), ratio);
-        let states = driven(&law, StandardTest::TriaxialUndrained, 1.0, 1000, Kinematics::Finite);
+        let states = driven(
+            &law,
+            StandardTest::TriaxialUndrained,
+            1.0,
+            1000,
+            Kinematics::Finite,
+        );
         let last = states.last().unwrap();
         close(0.5 * last.q() / P0, expected, 1e-3, "s_u/p");
         let before = states.iter().take_while(|state| !state.regime.is_plastic());
@@ -93,7 +113,13 @@ fn undrained_strength_grows_with_overconsolidation() {
 #[test]
 fn drained_cam_clay_follows_the_table() {
     let law = cam_clay(ShearStiffness::Constant(2e6), 1.0);
-    let states = driven(&law, StandardTest::TriaxialDrained, 0.6, 30_000, Kinematics::Small);
+    let states = driven(
+        &law,
+        StandardTest::TriaxialDrained,
+        0.6,
+        30_000,
+        Kinematics::Small,
+    );
     let shear = |state: &ElementState| 2.0 / 3.0 * (state.strain[0] - state.strain[1]);
     let table = [
         (0.4, 115.3846, 0.026184, 0.019713),
@@ -102,17 +128,38 @@ fn drained_cam_clay_follows_the_table() {
         (0.9, 142.8571, 0.083134, 0.197599),
     ];
     for (eta, p, volume, deviatoric) in table {
-        close(at_ratio(&states, eta, ElementState::p) / 1e3, p, 1e-3, "drained p");
+        close(
+            at_ratio(&states, eta, ElementState::p) / 1e3,
+            p,
+            1e-3,
+            "drained p",
+        );
         let own = at_ratio(&states, eta, ElementState::volumetric_strain);
         close(own, volume, 1e-3, "drained eps_v");
-        close(at_ratio(&states, eta, shear), deviatoric, 1e-3, "drained eps_s");
+        close(
+            at_ratio(&states, eta, shear),
+            deviatoric,
+            1e-3,
+            "drained eps_s",
+        );
     }
     let own = at_ratio(&states, 0.95, shear);
     close(own, 0.278320, 1e-3, "drained eps_s at 0.95");
-    let more = driven(&law, StandardTest::TriaxialDrained, 3.0, 1500, Kinematics::Small);
+    let more = driven(
+        &law,
+        StandardTest::TriaxialDrained,
+        3.0,
+        1500,
+        Kinematics::Small,
+    );
     let last = more.last().unwrap();
     close(last.p() / 1e3, 150.0, 1e-3, "drained p at the end");
-    close(last.volumetric_strain(), 0.095998, 1e-3, "drained eps_v at the end");
+    close(
+        last.volumetric_strain(),
+        0.095998,
+        1e-3,
+        "drained eps_v at the end",
+    );
 }
 
 /// GOAL: with G that grows with p the undrained path has one more term. ORACLE: constant volume by hand,
@@ -121,7 +168,14 @@ fn drained_cam_clay_follows_the_table() {
 fn shear_of_clay_whose_stiffness_grows_with_pressure_presses_on_it() {
     let law = cam_clay(ShearStiffness::Poisson(0.2), 1.0);
     let g = 1.5 * 0.6 / 1.2 / 0.02;
-    for state in &driven(&law, StandardTest::TriaxialUndrained, 0.3, 50, Kinematics::Finite)[1..] {
+    for state in &driven(
+        &law,
+        StandardTest::TriaxialUndrained,
+        0.3,
+        50,
+        Kinematics::Finite,
+    )[1..]
+    {
         let square = (state.q() / state.p()).powi(2);
         let log = (square / (6.0 * g) - 0.08 * square.ln_1p()) / 0.1;
         close(state.p() / P0, log.exp(), 1e-9, "p/p0 with G = g p");
@@ -136,7 +190,12 @@ fn isotropic_compression_runs_along_its_lines() {
     let test = ElementTest {
         sigma: [-P0; 3],
         path: ElementPath {
-            controls: [Control::Stress, Control::Stress, Control::Stress, Control::Strain],
+            controls: [
+                Control::Stress,
+                Control::Stress,
+                Control::Stress,
+                Control::Strain,
+            ],
             legs: vec![level(4.0 * P0), level(P0)],
         },
         steps: 10,
@@ -145,8 +204,18 @@ fn isotropic_compression_runs_along_its_lines() {
     let run = test.run(&law).unwrap();
     assert_eq!(run.failure, None);
     let log = 4.0_f64.ln();
-    close(run.states[10].volumetric_strain(), 0.1 * log, 1e-9, "eps_v up");
-    close(run.states[20].volumetric_strain(), 0.08 * log, 1e-9, "eps_v down");
+    close(
+        run.states[10].volumetric_strain(),
+        0.1 * log,
+        1e-9,
+        "eps_v up",
+    );
+    close(
+        run.states[20].volumetric_strain(),
+        0.08 * log,
+        1e-9,
+        "eps_v down",
+    );
 }
 
 /// GOAL: one-dimensional compression comes to a constant K₀ and to the slope λ*. ORACLE: ε_s/ε_v = 2/3 along a ray of η₀, of elastic
@@ -161,7 +230,12 @@ fn one_dimensional_compression_comes_to_its_line() {
     // Along the ray dε_v = λ* d ln p, dε_vp = (λ* − κ*) d ln p, and elastic shear does not change: ε_s = η/(3 g).
     let eta = b.q() / b.p();
     let plastic = 0.08 * 2.0 * eta / (1.0 - eta * eta);
-    close(plastic, 2.0 / 3.0 * 0.1, 1e-3, "shear over volume of the K0 line");
+    close(
+        plastic,
+        2.0 / 3.0 * 0.1,
+        1e-3,
+        "shear over volume of the K0 line",
+    );
 }
 
 /// GOAL: what perfectly plastic soil bears in the laboratory. ORACLE: closed forms. BAND: 1e-6.
@@ -170,28 +244,48 @@ fn perfectly_plastic_laws_bear_what_they_should() {
     let elasticity = Elasticity::new(20e6, 0.3).unwrap();
     let phi = 30_f64.to_radians();
     let passive = (1.0 + phi.sin()) / (1.0 - phi.sin());
-    let sand: &dyn ConstitutiveModel = &MohrCoulomb::new(elasticity, 5e3, phi, 5_f64.to_radians()).unwrap();
+    let sand: &dyn ConstitutiveModel =
+        &MohrCoulomb::new(elasticity, 5e3, phi, 5_f64.to_radians()).unwrap();
     let clay: &dyn ConstitutiveModel = &Tresca::new(elasticity, 40e3).unwrap();
-    let round: &dyn ConstitutiveModel = &VonMises::from_undrained_strength(elasticity, 40e3).unwrap();
+    let round: &dyn ConstitutiveModel =
+        &VonMises::from_undrained_strength(elasticity, 40e3).unwrap();
     let failed = P0 * (passive - 1.0) + 2.0 * 5e3 * passive.sqrt();
     let strengths = [
         (sand, StandardTest::TriaxialDrained, failed),
         (clay, StandardTest::TriaxialUndrained, 80e3),
         (clay, StandardTest::TriaxialDrained, 80e3),
-        (round, StandardTest::TriaxialUndrained, 3.0_f64.sqrt() * 40e3),
+        (
+            round,
+            StandardTest::TriaxialUndrained,
+            3.0_f64.sqrt() * 40e3,
+        ),
     ];
     for (law, test, q) in strengths {
         let states = driven(law, test, 0.2, 50, Kinematics::Small);
         close(states[50].q(), q, 1e-6, law.name());
     }
-    let plane = driven(sand, StandardTest::PlaneStrainDrained, 0.2, 50, Kinematics::Small);
+    let plane = driven(
+        sand,
+        StandardTest::PlaneStrainDrained,
+        0.2,
+        50,
+        Kinematics::Small,
+    );
     let axial = plane[50].sigma[0][0] - plane[50].sigma[1][1];
     close(axial, failed, 1e-6, "plane strain");
     // ψ of plane flow: dε_v/dγ = sin ψ, from the last two steps.
     let (a, b) = (&plane[40].strain, &plane[50].strain);
     let (volume, shear) = (b[0] - a[0] + b[1] - a[1], b[0] - a[0] - b[1] + a[1]);
-    close(volume / shear, 5_f64.to_radians().sin(), 1e-6, "sin of dilation");
-    for test in [StandardTest::SimpleShearUndrained, StandardTest::SimpleShearDrained] {
+    close(
+        volume / shear,
+        5_f64.to_radians().sin(),
+        1e-6,
+        "sin of dilation",
+    );
+    for test in [
+        StandardTest::SimpleShearUndrained,
+        StandardTest::SimpleShearDrained,
+    ] {
         let states = driven(clay, test, 0.3, 60, Kinematics::Small);
         close(states[60].sigma[0][1], 40e3, 1e-6, "simple shear");
     }
@@ -204,7 +298,12 @@ fn what_cannot_be_is_refused() {
     let mut test = ElementTest {
         sigma: [-P0; 3],
         path: ElementPath {
-            controls: [Control::Stress, Control::Stress, Control::AsXx, Control::Strain],
+            controls: [
+                Control::Stress,
+                Control::Stress,
+                Control::AsXx,
+                Control::Strain,
+            ],
             legs: vec![[-P0, -P0 - 110e3, 0.0, 0.0]],
         },
         steps: 10,
@@ -213,10 +312,17 @@ fn what_cannot_be_is_refused() {
     let run = test.run(&law).unwrap();
     let lost = run.failure.unwrap();
     assert!((lost.share - 80.0 / 110.0).abs() < 1e-3, "{lost:?}");
-    assert!(lost.to_string().starts_with("leg 1 of the path ends at 72.7"), "{lost}");
+    assert!(
+        lost.to_string()
+            .starts_with("leg 1 of the path ends at 72.7"),
+        "{lost}"
+    );
     assert_eq!(run.states.len(), 8);
     test.sigma[1] = -4.0 * P0;
-    assert!(matches!(test.run(&law), Err(ElementError::InitialStress { .. })));
+    assert!(matches!(
+        test.run(&law),
+        Err(ElementError::InitialStress { .. })
+    ));
     test.sigma[1] = -P0;
     test.path.controls[0] = Control::AsXx;
     assert!(matches!(test.run(&law), Err(ElementError::Path(_))));

@@ -64,6 +64,8 @@ pub(super) struct PressureElasticity {
     pub(super) constant: f64,
     /// $`p_r`$ \[stress\].
     pub(super) reference_pressure: f64,
+    /// $`\ln p_r`$.
+    pub(super) log_reference: f64,
 }
 
 /// Stress by its invariants, and its derivatives.
@@ -112,7 +114,10 @@ impl PressureElasticity {
         Stress {
             p,
             q: 3.0 * self.shear(p) * shear,
-            stiffness: [[modulus, across], [across, 3.0 * self.shear(p) + bend * across]],
+            stiffness: [
+                [modulus, across],
+                [across, 3.0 * self.shear(p) + bend * across],
+            ],
         }
     }
 
@@ -128,7 +133,7 @@ impl PressureElasticity {
         let ratio = self.per_pressure + constant;
         let log_p_by = [1.0 / self.swelling, bend / self.swelling];
         Relative {
-            log_p: self.reference_pressure.ln() + exponent,
+            log_p: self.log_reference + exponent,
             eta: 3.0 * shear * ratio,
             shear: ratio,
             log_p_by,

@@ -62,11 +62,12 @@ impl Flow {
         trial: &Invariants,
         p_c: f64,
     ) -> Result<Returned, MaterialError> {
-        let at = |x: &Unknowns| self.system(elastic, trial, p_c, x);
+        let log_p_c = p_c.ln();
+        let at = |x: &Unknowns| self.system(elastic, trial, log_p_c, x);
         let first = [trial.volume, trial.shear, 0.0];
         let found = newton(trial, at, first).or_else(|| {
             // Far from the surface: the root is enclosed, and Newton's method begins beside it.
-            newton(trial, at, self.enclosed(elastic, trial, p_c)?)
+            newton(trial, at, self.enclosed(elastic, trial, log_p_c)?)
         });
         found
             .and_then(|(x, system)| self.returned(elastic, trial, p_c, &x, &system))
@@ -81,11 +82,11 @@ impl Flow {
         &self,
         elastic: &PressureElasticity,
         trial: &Invariants,
-        p_c: f64,
+        log_p_c: f64,
     ) -> Option<Unknowns> {
         let at = |log_share: f64| -> Option<(Unknowns, f64)> {
             let x = self.of_share(elastic, trial, log_share.exp())?;
-            let outside = self.system(elastic, trial, p_c, &x).residual[2];
+            let outside = self.system(elastic, trial, log_p_c, &x).residual[2];
             (!outside.is_nan()).then_some((x, outside))
         };
         let (mut low, mut high) = (-1e-3, 0.0);
@@ -164,22 +165,22 @@ impl Flow {
         &self,
         elastic: &PressureElasticity,
         trial: &Invariants,
-        p_c: f64,
+        log_p_c: f64,
         &[volume, shear, multiplier]: &Unknowns,
     ) -> System {
+        let own = elastic.relative(volume, shear);
         let Relative {
             eta,
             log_p_by,
             eta_by,
             ..
-        } = elastic.relative(volume, shear);
+        } = own;
         let square = self.critical_ratio * self.critical_ratio;
         let ([flow_v, flow_s], [v_eta, s_eta]) = self.direction(eta);
         let kappa = elastic.swelling;
         let bow = 2.0 * eta / (square + eta * eta);
-        let outside = self.log_equivalent(elastic, volume, shear)
-            - p_c.ln()
-            - self.hardening * (trial.volume - volume);
+        let outside =
+            self.log_equivalent(&own) - log_p_c - self.hardening * (trial.volume - volume);
         System {
             residual: [
                 volume + multiplier * flow_v - trial.volume,
@@ -207,13 +208,7 @@ impl Flow {
     }
 
     /// The logarithm of the pressure on the hydrostatic axis of the surface through a state.
-    pub(super) fn log_equivalent(
-        &self,
-        elastic: &PressureElasticity,
-        volume: f64,
-        shear: f64,
-    ) -> f64 {
-        let own = elastic.relative(volume, shear);
+    pub(super) fn log_equivalent(&self, own: &Relative) -> f64 {
         own.log_p + (own.eta / self.critical_ratio).powi(2).ln_1p()
     }
 

@@ -1,4 +1,4 @@
-//! Modified Cam-clay at finite strain: a yield surface that grows and shrinks with plastic volume (theory, eqs. 102 to 105).
+//! Modified Cam-clay at finite strain: a yield surface that grows and shrinks with plastic volume (theory, eqs. 102 and 103).
 
 mod elastic;
 mod flow;
@@ -105,7 +105,12 @@ impl ModifiedCamClay {
         } = parameters;
         positive("swelling", swelling)?;
         let is_larger = compression > swelling;
-        required("compression", compression, is_larger, "larger than `swelling`")?;
+        required(
+            "compression",
+            compression,
+            is_larger,
+            "larger than `swelling`",
+        )?;
         positive("critical_ratio", critical_ratio)?;
         positive("reference_pressure", reference_pressure)?;
         let is_one = overconsolidation >= 1.0;
@@ -127,6 +132,7 @@ impl ModifiedCamClay {
             per_pressure,
             constant,
             reference_pressure,
+            log_reference: reference_pressure.ln(),
         };
         let (bulk, shear) = (
             reference_pressure / swelling,
@@ -171,7 +177,9 @@ impl ConstitutiveModel for ModifiedCamClay {
 
     fn elastic_stress(&self, eps_e: &Principal, _history: &History) -> Principal {
         let strain = Invariants::of_strain(eps_e);
-        self.elastic.stress(strain.volume, strain.shear).principal(&strain)
+        self.elastic
+            .stress(strain.volume, strain.shear)
+            .principal(&strain)
     }
 
     fn elastic_strain(
@@ -199,7 +207,8 @@ impl ConstitutiveModel for ModifiedCamClay {
     ) -> Result<ReturnMap, MaterialError> {
         let trial = Invariants::of_strain(eps_e_trial);
         let [p_c, ..] = history.internal;
-        let log_equivalent = self.flow.log_equivalent(&self.elastic, trial.volume, trial.shear);
+        let own = self.elastic.relative(trial.volume, trial.shear);
+        let log_equivalent = self.flow.log_equivalent(&own);
         if !log_equivalent.is_finite() {
             return Err(MaterialError::NonFinite {
                 quantity: "trial stress",

@@ -10,7 +10,14 @@ use crate::returns::{dot, size};
 
 /// λ*, κ*, M, shear stiffness, ratio of overconsolidation, reference pressure.
 const CAM_CLAY: [(f64, f64, f64, ShearStiffness, f64, f64); 6] = [
-    (0.10, 0.02, 1.0, ShearStiffness::Constant(2000.0), 1.0, 100.0),
+    (
+        0.10,
+        0.02,
+        1.0,
+        ShearStiffness::Constant(2000.0),
+        1.0,
+        100.0,
+    ),
     (0.10, 0.02, 1.0, ShearStiffness::Poisson(0.2), 1.5, 100.0),
     (0.08, 0.01, 1.2, ShearStiffness::Poisson(0.3), 8.0, 1.0),
     (0.25, 0.05, 0.7, ShearStiffness::Poisson(0.0), 2.0, 5e4),
@@ -73,13 +80,23 @@ fn returns_are_admissible_and_dissipate() {
             let answer = law.return_map(&strain, &history).unwrap();
             let scale = law.stress_scale(&answer.tau);
             let excess = law.yield_function(&answer.tau, &answer.history);
-            assert!(excess <= 1e-12 * scale, "{law:?} {strain:?} {answer:?} {excess:e}");
+            assert!(
+                excess <= 1e-12 * scale,
+                "{law:?} {strain:?} {answer:?} {excess:e}"
+            );
             let numbers = answer.tangent.as_flattened().iter().chain(&answer.tau);
-            assert!(numbers.chain(&answer.history.internal).all(|n| n.is_finite()));
+            assert!(
+                numbers
+                    .chain(&answer.history.internal)
+                    .all(|n| n.is_finite())
+            );
             let carried = law.elastic_strain(&answer.tau, &answer.history).unwrap();
             for a in 0..3 {
                 let error = strain[a] - carried[a] - answer.delta_eps_p[a];
-                assert!(error.abs() < 1e-13, "{law:?} {strain:?} {answer:?} {error:e}");
+                assert!(
+                    error.abs() < 1e-13,
+                    "{law:?} {strain:?} {answer:?} {error:e}"
+                );
             }
             let work = dot(&answer.tau, &answer.delta_eps_p);
             assert!(work >= -1e-13 * size(&answer.tau) * size(&answer.delta_eps_p));
@@ -109,7 +126,10 @@ fn far_trial_states_are_answered_or_refused() {
                     let steep = law.utilisation(&answer.tau, &answer.history);
                     let reach = size(&answer.tau) / law.stiffness_bound().young();
                     let is_absurd = size(&strain) > 3.0 || !(1e-12..1e12).contains(&reach);
-                    assert!(is_absurd || excess <= 1e-12 * (1.0 + steep) * scale, "{answer:?}");
+                    assert!(
+                        is_absurd || excess <= 1e-12 * (1.0 + steep) * scale,
+                        "{answer:?}"
+                    );
                     assert!(answer.tangent.as_flattened().iter().all(|n| n.is_finite()));
                 }
                 Err(MaterialError::NonFinite { .. } | MaterialError::NotConverged { .. }) => {
@@ -138,7 +158,11 @@ fn tangents_are_derivatives() {
             if dot(&answer.tau, &[1.0; 3]) > -0.3 * law.parameters().reference_pressure {
                 continue;
             }
-            let largest = answer.tangent.as_flattened().iter().fold(0.0, |m: f64, d| m.max(d.abs()));
+            let largest = answer
+                .tangent
+                .as_flattened()
+                .iter()
+                .fold(0.0, |m: f64, d| m.max(d.abs()));
             for b in 0..3 {
                 let h = 5e-6 * law.parameters().swelling / 0.02;
                 let at = |k: f64| {

@@ -1,8 +1,8 @@
 //! One step of one piece of soil: Newton's method on the strains whose stresses are prescribed.
 
 use igimp_material::{
-    ConstitutiveModel, History, Lifted, MaterialError, Principal, Regime, Tensor, TrialStrain,
-    elastic_left_cauchy_green_of, TangentKind,
+    ConstitutiveModel, History, Lifted, MaterialError, Principal, Regime, TangentKind, Tensor,
+    TrialStrain, elastic_left_cauchy_green_of,
 };
 
 use super::{COMPONENTS, Control, ElementState, Kinematics};
@@ -99,7 +99,9 @@ impl Point {
             }
             let matrix: Vec<Vec<f64>> = (stressed.iter())
                 .map(|&row| {
-                    let by = |&column: &usize| trial.slope(&strain, self.kinematics, row, column, is_tied);
+                    let by = |&column: &usize| {
+                        trial.slope(&strain, self.kinematics, row, column, is_tied)
+                    };
                     stressed.iter().map(by).collect()
                 })
                 .collect();
@@ -271,9 +273,7 @@ fn rate(strain: &Driven, kinematics: Kinematics, component: usize) -> Tensor {
 }
 
 fn product(left: &Tensor, right: &Tensor) -> Tensor {
-    std::array::from_fn(|i| {
-        std::array::from_fn(|j| (0..3).map(|k| left[i][k] * right[k][j]).sum())
-    })
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| left[i][k] * right[k][j]).sum()))
 }
 
 fn transposed(tensor: &Tensor) -> Tensor {

@@ -50,12 +50,24 @@ impl StandardTest {
     pub fn path(self, strain: f64) -> ElementPath {
         use Control::{AsXx, Strain, Stress};
         let (controls, end) = match self {
-            Self::TriaxialDrained => ([Stress, Strain, AsXx, Strain], [f64::NAN, -strain, 0.0, 0.0]),
-            Self::TriaxialUndrained => ([Strain, Strain, AsXx, Strain], [0.5 * strain, -strain, 0.0, 0.0]),
+            Self::TriaxialDrained => (
+                [Stress, Strain, AsXx, Strain],
+                [f64::NAN, -strain, 0.0, 0.0],
+            ),
+            Self::TriaxialUndrained => (
+                [Strain, Strain, AsXx, Strain],
+                [0.5 * strain, -strain, 0.0, 0.0],
+            ),
             Self::Oedometer => ([Strain; 4], [0.0, -strain, 0.0, 0.0]),
-            Self::SimpleShearDrained => ([Strain, Stress, Strain, Strain], [0.0, f64::NAN, 0.0, strain]),
+            Self::SimpleShearDrained => (
+                [Strain, Stress, Strain, Strain],
+                [0.0, f64::NAN, 0.0, strain],
+            ),
             Self::SimpleShearUndrained => ([Strain; 4], [0.0, 0.0, 0.0, strain]),
-            Self::PlaneStrainDrained => ([Stress, Strain, Strain, Strain], [f64::NAN, -strain, 0.0, 0.0]),
+            Self::PlaneStrainDrained => (
+                [Stress, Strain, Strain, Strain],
+                [f64::NAN, -strain, 0.0, 0.0],
+            ),
             Self::PlaneStrainUndrained => ([Strain; 4], [strain, -strain, 0.0, 0.0]),
         };
         ElementPath {
