@@ -367,6 +367,28 @@ fn soft_clay_settles_along_its_compression_line() {
     }
 }
 
+/// GOAL: undrained, clay between stiff sides bears a wide fill by its water: the share of K_w/n over what both are stiff together.
+/// ORACLE: no more settlement than the fill over K_w/n, and excess pressure of the fill within 1 %.
+#[test]
+fn undrained_soft_clay_bears_a_wide_fill_by_its_water() {
+    let ran = ran(
+        "soft_clay_fill",
+        &[
+            "materials.clay.drainage=undrained",
+            "materials.clay.pore_water=1 GPa",
+            "stages.1.steps=2",
+            "checks=[]",
+        ],
+    );
+    assert_eq!(ran.outcomes(), [Completed, Completed]);
+    let particles = &ran.run.body.particles;
+    for p in (0..particles.len()).filter(|&p| particles.law[p] == 1) {
+        between(particles.excess[p] / 40e3, 0.99, 1.001);
+    }
+    let settlement = ran.end_of("settlement");
+    between(settlement, 0.0009, 0.001 + 8.0 * 40e3 / 1e9 * 1.05);
+}
+
 /// GOAL: what clay remembers is in checkpoints: a run that is taken up within a stage ends with the same files, and one on other
 /// threads with the same bits.
 #[test]

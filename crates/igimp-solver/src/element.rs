@@ -192,7 +192,7 @@ impl ElementTest {
                 let share = |k: usize| k as f64 / self.steps as f64;
                 let way = [share(step), share(step + 1)];
                 if let Err((share, law)) =
-                    follow(law, (&mut point, &self.path.controls), way, &follows)
+                    follow(law, (&mut point, self.path.controls), way, &follows)
                 {
                     let failure = Some(StepLost { leg, share, law });
                     return Ok(ElementRun { states, failure });
@@ -227,7 +227,7 @@ impl ElementTest {
 /// Takes a step in as many parts as it needs; else how far it came, and what the law said.
 fn follow(
     law: &dyn ConstitutiveModel,
-    (point, controls): (&mut Point, &[Control; COMPONENTS]),
+    (point, controls): (&mut Point, [Control; COMPONENTS]),
     [mut from, to]: [f64; 2],
     values: &dyn Fn(f64) -> [f64; COMPONENTS],
 ) -> Result<(), (f64, Option<MaterialError>)> {

@@ -71,17 +71,17 @@ fn undrained_cam_clay_follows_the_closed_form() {
         Kinematics::Finite,
     );
     let table = [
-        (0.2, 0.969111),
-        (0.4, 0.888042),
-        (0.6, 0.781932),
-        (0.8, 0.673170),
+        (0.2, 0.969_111),
+        (0.4, 0.888_042),
+        (0.6, 0.781_932),
+        (0.8, 0.673_170),
     ];
     for (eta, expected) in table {
         let p = at_ratio(&states, eta, ElementState::p);
         close(p / P0, expected, 1e-3, "undrained p/p0");
     }
     let last = states.last().unwrap();
-    close(last.p() / P0, 0.574349, 1e-3, "undrained p/p0 at the end");
+    close(last.p() / P0, 0.574_349, 1e-3, "undrained p/p0 at the end");
     close(last.q() / last.p(), 1.0, 1e-3, "undrained q/p at the end");
 }
 
@@ -122,10 +122,10 @@ fn drained_cam_clay_follows_the_table() {
     );
     let shear = |state: &ElementState| 2.0 / 3.0 * (state.strain[0] - state.strain[1]);
     let table = [
-        (0.4, 115.3846, 0.026184, 0.019713),
-        (0.6, 125.0, 0.046913, 0.050799),
-        (0.8, 136.3636, 0.070591, 0.120014),
-        (0.9, 142.8571, 0.083134, 0.197599),
+        (0.4, 115.384_6, 0.026_184, 0.019_713),
+        (0.6, 125.0, 0.046_913, 0.050_799),
+        (0.8, 136.3636, 0.070_591, 0.120_014),
+        (0.9, 142.8571, 0.083_134, 0.197_599),
     ];
     for (eta, p, volume, deviatoric) in table {
         close(
@@ -144,7 +144,7 @@ fn drained_cam_clay_follows_the_table() {
         );
     }
     let own = at_ratio(&states, 0.95, shear);
-    close(own, 0.278320, 1e-3, "drained eps_s at 0.95");
+    close(own, 0.278_320, 1e-3, "drained eps_s at 0.95");
     let more = driven(
         &law,
         StandardTest::TriaxialDrained,
@@ -156,7 +156,7 @@ fn drained_cam_clay_follows_the_table() {
     close(last.p() / 1e3, 150.0, 1e-3, "drained p at the end");
     close(
         last.volumetric_strain(),
-        0.095998,
+        0.095_998,
         1e-3,
         "drained eps_v at the end",
     );

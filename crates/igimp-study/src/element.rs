@@ -188,16 +188,16 @@ fn values(
         short(100.0 * end.volumetric_strain()),
         short(law.utilisation(&principal(end, request.kinematics), &end.history)),
     );
-    if let Drive::Standard(standard, _) = request.drive {
-        if let Some(own) = closed_form::strength(material, standard, request, end) {
-            let _ = writeln!(
-                text,
-                "  closed form at failure: {symbol} = {} kPa, {}; at the end {} % of it",
-                short(own.value / 1e3),
-                own.from,
-                short(100.0 * measure(end) / own.value),
-            );
-        }
+    if let Drive::Standard(standard, _) = request.drive
+        && let Some(own) = closed_form::strength(material, standard, request, end)
+    {
+        let _ = writeln!(
+            text,
+            "  closed form at failure: {symbol} = {} kPa, {}; at the end {} % of it",
+            short(own.value / 1e3),
+            own.from,
+            short(100.0 * measure(end) / own.value),
+        );
     }
     text
 }
@@ -216,6 +216,7 @@ fn principal(state: &ElementState, kinematics: Kinematics) -> [f64; 3] {
 mod tests {
     use super::*;
     use igimp_input::MaterialsFile;
+    use igimp_solver::element::Control::{AsXx, Strain, Stress};
 
     const SOILS: &str = "igimp = 1\n[materials.clay]\nmodel = \"modified-cam-clay\"\nunit_weight = \"16 kN/m3\"\n\
         lambda = 0.1\nkappa = 0.02\ncritical_ratio = 1.0\npoisson = 0.2\nocr = 2.0\n[materials.sand]\nmodel = \"mohr-coulomb\"\n\
@@ -273,7 +274,6 @@ mod tests {
             read_path(&path)
         };
         let own = read("stress_xx [kPa],strain_yy [%],strain_xy [-]\n50,2,0.1\n").unwrap();
-        use igimp_solver::element::Control::{AsXx, Strain, Stress};
         assert_eq!(own.controls, [Stress, Strain, AsXx, Strain]);
         assert_eq!(own.legs, [[-50e3, -0.02, 0.0, 0.1]]);
         let refused = |text: &str| read(text).unwrap_err().to_string();

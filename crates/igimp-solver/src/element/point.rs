@@ -69,7 +69,7 @@ impl Point {
     pub(super) fn advanced(
         &self,
         law: &dyn ConstitutiveModel,
-        controls: &[Control; COMPONENTS],
+        controls: [Control; COMPONENTS],
         values: &Driven,
         length: f64,
     ) -> Result<Self, Option<MaterialError>> {
