@@ -188,7 +188,8 @@ fn values(
         short(100.0 * end.volumetric_strain()),
         short(law.utilisation(&principal(end, request.kinematics), &end.history)),
     );
-    if let Drive::Standard(standard, _) = request.drive
+    if let Drive::Standard(standard, strain) = request.drive
+        && strain > 0.0
         && let Some(own) = closed_form::strength(material, standard, request, end)
     {
         let _ = writeln!(
