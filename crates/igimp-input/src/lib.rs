@@ -17,7 +17,9 @@ mod build;
 pub mod bytes;
 mod files;
 mod geometry;
+mod materials_file;
 mod read;
 pub mod shipped;
 
+pub use materials_file::MaterialsFile;
 pub use read::{CaseFile, InputError};

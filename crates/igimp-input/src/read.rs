@@ -248,6 +248,15 @@ impl CaseFile {
     }
 }
 
+/// The text of a file of materials; bytes that are no UTF-8 text are replaced, and found wrong where they stand.
+pub(super) fn text_of(path: &Path) -> Result<String, InputError> {
+    let bytes = bytes::of_file(path, LARGEST as u64).map_err(|source| InputError::File {
+        path: path.to_owned(),
+        source,
+    })?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
 fn too_large(name: &str) -> InputError {
     let mut problems = Problems::default();
     let message = format!("this file has more than {} MB", LARGEST >> 20);
@@ -255,7 +264,7 @@ fn too_large(name: &str) -> InputError {
     invalid(&problems, &[Source::new(name, "", false)])
 }
 
-fn invalid(problems: &Problems, sources: &[Source]) -> InputError {
+pub(super) fn invalid(problems: &Problems, sources: &[Source]) -> InputError {
     InputError::Invalid {
         text: problems.render(sources),
         errors: problems.errors(),

@@ -56,6 +56,7 @@ shipped! {
     "strip_load": "uniform strip pressure on undrained clay, held against Prandtl's solution",
     "embankment": "embankment in three lifts on layered ground that was at rest",
     "k0_ground": "level ground at rest, held against the exact stresses",
+    "soft_clay_fill": "wide fill on normally consolidated clay, held against one-dimensional compression",
     "cantilever": "elastic cantilever bent far, held against beam theory",
     "contact_footing": "strip footing that the soil can leave, pushed into undrained clay and pulled out",
     "eccentric_footing": "strip footing under an eccentric load, free to tilt and slide",

@@ -33,6 +33,14 @@ pub enum MaterialError {
         /// Name of the law.
         law: &'static str,
     },
+    /// A law whose strength is not reduced by a factor.
+    #[error("the strength of {law} is not reduced: {reason}")]
+    NoReduction {
+        /// Name of the law.
+        law: &'static str,
+        /// Why not.
+        reason: &'static str,
+    },
 }
 
 /// The error that names `field`, unless its value is finite and the requirement `holds`.

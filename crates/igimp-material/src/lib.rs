@@ -8,7 +8,7 @@
 //! |---|---|
 //! | linear Hencky elasticity | [`Elasticity`] |
 //! | the seam | [`ConstitutiveModel`], [`ReturnMap`], [`History`], [`Regime`] |
-//! | laws | [`HenckyElastic`], [`VonMises`], [`Tresca`], [`MohrCoulomb`] |
+//! | laws | [`HenckyElastic`], [`VonMises`], [`Tresca`], [`MohrCoulomb`], [`ModifiedCamClay`] |
 //! | soil whose strength and stiffness vary | [`Ratios`], [`ScaledLaw`] |
 //! | from principal space to tensors | [`lift_finite`], [`lift_small`], [`Lifted`], [`SpatialTangent`] |
 //! | what can go wrong | [`MaterialError`] |
@@ -53,6 +53,7 @@
 //! - W. T. Koiter (1953), *Stress–strain relations, uniqueness and variational theorems for
 //!   elastic-plastic materials with a singular yield surface*, Q. Appl. Math. 11, 350–354.
 
+mod cam_clay;
 mod elasticity;
 mod error;
 mod hencky;
@@ -66,6 +67,7 @@ mod surface;
 mod tresca;
 mod von_mises;
 
+pub use cam_clay::{CamClayParameters, ModifiedCamClay, ShearStiffness};
 pub use elasticity::Elasticity;
 pub use error::MaterialError;
 pub use hencky::HenckyElastic;

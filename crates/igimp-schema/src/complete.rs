@@ -9,7 +9,7 @@ use toml::de::DeValue;
 
 use super::diagnostic::Problems;
 use super::names::check_name;
-use super::schema::{MOST_THINGS, ROOT, SPACE, SYMBOLS};
+use super::schema::{MATERIALS_ALONE, MOST_THINGS, ROOT, SPACE, SYMBOLS};
 use super::source::{Place, Source};
 use super::spec::{Field, Kind, Presence, Struct, Variants};
 use super::text::{clip, row};
@@ -26,6 +26,16 @@ pub fn complete(tree: &Node, sources: &[Source], problems: &mut Problems) -> Nod
         in_space: analysis == Some(SPACE),
     };
     completer.table(tree, &ROOT, None)
+}
+
+/// The completed tree of a file of materials alone.
+pub fn complete_materials(tree: &Node, sources: &[Source], problems: &mut Problems) -> Node {
+    let mut completer = Completer {
+        sources,
+        problems,
+        in_space: false,
+    };
+    completer.table(tree, &MATERIALS_ALONE, None)
 }
 
 /// Carries the texts and collects the problems.

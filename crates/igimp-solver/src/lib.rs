@@ -3,11 +3,12 @@
 //!
 //! [`step`] finds the equilibrium of one load step, [`march`] drives a body through many. A state
 //! is written only when a step is accepted, so nothing is ever rolled back, and why a march
-//! stopped is data ([`Outcome`]).
+//! stopped is data ([`Outcome`]). [`element`] drives a law on its own.
 
 mod body;
 mod continuation;
 mod corrector;
+pub mod element;
 mod free_factor;
 mod load_path;
 mod march;

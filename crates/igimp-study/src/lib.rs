@@ -1,10 +1,12 @@
-//! Many runs, and what is said of one: parameter studies, and the texts of the program and of Python.
+//! Many runs, and what is said of one: parameter studies, tests of laws, and the texts of the program and of Python.
 //!
 //! | module | what to find |
 //! |---|---|
 //! | [`sweep`] | many cases that differ in a few values |
+//! | [`element`] | a law on its own: test, table, pictures |
 //! | [`narration`] | what is said of a case and of its run, as text |
 
+pub mod element;
 pub mod narration;
 pub mod sweep;
 

@@ -2,8 +2,11 @@
 
 use std::path::PathBuf;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use igimp_schema::quantity::{Dimension, Quantity};
+use igimp_study::element::{StandardTest, name_of};
 use igimp_text::{MemoryLimit, NoAmount};
 
 const EXIT_CODES: &str = "Exit codes: 0 done, references met; 1 a reference missed; 2 bad input; \
@@ -32,6 +35,8 @@ pub(crate) enum Command {
     Run(RunArguments),
     /// Make the report of a results folder again.
     Report(Report),
+    /// Test the law of a material on its own, as in the laboratory.
+    Element(ElementArguments),
     /// Look at a results folder in the browser.
     View(View),
     /// Make a film of the frames of a results folder.
@@ -150,6 +155,43 @@ pub(crate) struct Report {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct ElementArguments {
+    /// Case file, or a file with `igimp = 1` and materials alone.
+    pub(crate) file: PathBuf,
+    /// The material; needed where the file has several.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) material: Option<String>,
+    /// The test.
+    #[arg(long, value_name = "TEST", default_value = "triaxial-drained", value_parser = a_test())]
+    pub(crate) test: String,
+    /// A path of one's own in place of a test: a CSV file with columns such as strain_yy [%] and stress_xx [kPa],
+    /// compression positive, and a row for the end of every leg.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["test", "strain"])]
+    pub(crate) path: Option<PathBuf>,
+    /// Initial axial stress, effective, compression positive.
+    #[arg(long, value_name = "STRESS", default_value = "100 kPa", value_parser = a_stress)]
+    pub(crate) stress: f64,
+    /// Initial stress at the sides, effective; the axial one when not given.
+    #[arg(long, value_name = "STRESS", value_parser = a_stress)]
+    pub(crate) side_stress: Option<f64>,
+    /// Natural axial strain in percent at the end, compression positive, or shear strain of tests in shear.
+    #[arg(long, value_name = "PERCENT", default_value = "20", allow_negative_numbers = true, value_parser = a_percentage)]
+    pub(crate) strain: f64,
+    /// Steps of the test, or of a leg of a path.
+    #[arg(long, value_name = "N", default_value = "200", value_parser = at_least_one)]
+    pub(crate) steps: usize,
+    /// Linear strain and stress per initial area, in place of natural strain and Cauchy stress.
+    #[arg(long)]
+    pub(crate) small_strain: bool,
+    /// Replace a value of the file, as in materials.clay.cohesion="12 kPa" (may be repeated).
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Folder of the table and the pictures; results/element-MATERIAL-TEST when not given.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct View {
     /// Results folder; its run may still be going on.
     pub(crate) folder: PathBuf,
@@ -255,6 +297,22 @@ fn at_least_one(text: &str) -> Result<usize, String> {
         Ok(0) => Err("must be at least 1".to_owned()),
         Ok(number) => Ok(number),
         Err(_) => Err("expected a whole number".to_owned()),
+    }
+}
+
+fn a_test() -> PossibleValuesParser {
+    PossibleValuesParser::new(StandardTest::ALL.map(name_of))
+}
+
+fn a_stress(text: &str) -> Result<f64, String> {
+    Quantity::parse_as(text, Dimension::Stress)
+        .map_err(|error| format!("{error}; {}", error.help(Some(Dimension::Stress))))
+}
+
+fn a_percentage(text: &str) -> Result<f64, String> {
+    match text.trim().trim_end_matches('%').trim_end().parse() {
+        Ok(number) if (-1000.0..=1000.0).contains(&number) => Ok(number / 100.0),
+        _ => Err("expected a percentage such as 20".to_owned()),
     }
 }
 

@@ -50,6 +50,7 @@ fn dispatch(command: &Command) -> Result<Exit, ProgramError> {
         Command::Explain(arguments) => commands::cases::explain(arguments),
         Command::Run(arguments) => commands::run::run(arguments),
         Command::Report(arguments) => commands::report::report(arguments),
+        Command::Element(arguments) => commands::element::element(arguments),
         Command::View(arguments) => commands::view::view(arguments),
         Command::Film(arguments) => commands::film::film(arguments),
         Command::Sweep(arguments) => commands::sweep::sweep(arguments),

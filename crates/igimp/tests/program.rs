@@ -68,6 +68,7 @@ fn help_is_as_agreed() {
         "explain",
         "run",
         "report",
+        "element",
         "view",
         "film",
         "sweep",

@@ -2,10 +2,12 @@
 //! switch and kinematics, in two and three dimensions.
 //! ORACLE: central differences of the internal force.
 
+use std::sync::Arc;
+
 use crate::common::{Random, conditions, displacements, grid, laws, methods, particles};
 use igimp_assembly::{Kinematics, Method, Particles, SharedLaw, Stencils, System};
 use igimp_linear::TangentMatrix;
-use igimp_material::TangentKind;
+use igimp_material::{CamClayParameters, ModifiedCamClay, ShearStiffness, TangentKind};
 use igimp_shape::{Axis, Grid};
 
 /// Largest difference between tangent and differences, relative to the largest entry, and the
@@ -90,7 +92,9 @@ fn strained<const D: usize>(
     method: &Method,
     random: &mut Random,
 ) -> Particles<D> {
-    let mut body = particles(grid, 1.0, random);
+    let mut body = particles(grid, 1.0, random)
+        .with_initial_histories(std::slice::from_ref(law))
+        .unwrap();
     let conditions = conditions(grid, law);
     let stencils = Stencils::build(&body, method, &conditions).unwrap();
     let system = System::new(&body, &stencils, &conditions, method).unwrap();
@@ -124,6 +128,32 @@ fn tangent_is_the_derivative_of_the_internal_force() {
                 assert!(asymmetry > 1e-3, "{label}: asymmetry {asymmetry:e}");
             }
         }
+    }
+}
+
+/// GOAL: the same of a law that remembers and whose elasticity is not linear. Its stress is exponential in strain, so that differences
+/// have a digit less.
+#[test]
+fn tangent_of_clay_that_remembers() {
+    let grid = grid::<2>(6);
+    let mut random = Random(17);
+    let clay = ModifiedCamClay::new(CamClayParameters {
+        compression: 0.2,
+        swelling: 0.1,
+        critical_ratio: 1.0,
+        shear: ShearStiffness::Poisson(0.3),
+        overconsolidation: 1.2,
+        reference_pressure: 10.0,
+    });
+    let law: SharedLaw = Arc::new(clay.unwrap());
+    for method in methods() {
+        let body = strained(&grid, &law, &method, &mut random);
+        let yielded = body.regime.iter().filter(|regime| regime.is_plastic());
+        assert!(yielded.count() > body.len() / 5);
+        let (error, asymmetry) = tangent_error(&grid, &body, &law, &method, 40, &mut random);
+        let label = format!("{}, {:?}", method.label(), method.kinematics);
+        assert!(error < 1e-6, "{label}: {error:e}");
+        assert!(asymmetry > 1e-4, "{label}: asymmetry {asymmetry:e}");
     }
 }
 

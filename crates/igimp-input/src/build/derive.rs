@@ -73,20 +73,7 @@ pub(super) fn derive(tree: &mut Node, file: &Path) {
             }
         }
     }
-    if let Some(materials) = tree.get_mut("materials") {
-        for material in materials.entries_mut().into_iter().flatten() {
-            let node = &mut material.node;
-            if node.get("drainage").is_none()
-                && let Some(model) = node.text_at("model")
-            {
-                let drainage = match model {
-                    "tresca" | "von-mises" => "total",
-                    _ => "drained",
-                };
-                node.add_derived("drainage", Value::Text(drainage.to_owned()));
-            }
-        }
-    }
+    derive_drainage(tree);
     derive_output(tree, file);
     let analysis = tree.get("case").and_then(|case| case.text_at("analysis"));
     let dimensions = if analysis == Some(SPACE) { 3 } else { 2 };
@@ -101,6 +88,23 @@ pub(super) fn derive(tree: &mut Node, file: &Path) {
                     axis.add_derived("label", Value::Text(label));
                 }
             }
+        }
+    }
+}
+
+/// What materials do with the water in their pores.
+pub(super) fn derive_drainage(tree: &mut Node) {
+    let materials = tree.get_mut("materials").and_then(Node::entries_mut);
+    for material in materials.into_iter().flatten() {
+        let node = &mut material.node;
+        if node.get("drainage").is_none()
+            && let Some(model) = node.text_at("model")
+        {
+            let drainage = match model {
+                "tresca" | "von-mises" => "total",
+                _ => "drained",
+            };
+            node.add_derived("drainage", Value::Text(drainage.to_owned()));
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Materials and the limits of their parameters.
 
+mod cam_clay;
 mod plausible;
 pub(crate) mod profiles;
 
@@ -101,18 +102,11 @@ fn material<const D: usize>(
     let (name, own) = (&stated.name, stated.value.as_ref().ok()?);
     let common = own.common.as_ref().ok()?;
     let before = problems.errors();
-    if let Ok(poisson) = &common.poisson {
-        if **poisson >= 0.5 {
-            problems
-                .error(poisson.place, "Poisson's ratio must be below 0.5")
-                .help("nearly incompressible, as undrained soil is: poisson = 0.49");
-        } else if **poisson > 0.499 {
-            problems
-                .warning(poisson.place, "Poisson's ratio is very close to 0.5")
-                .help("the tangent is badly conditioned; 0.49 to 0.495 is close enough");
-        }
+    let linear = linear_stiffness(&own.form);
+    if let Some(Ok(poisson)) = linear.map(|own| &own.poisson) {
+        check_poisson(poisson, problems);
     }
-    let young = common.young.as_ref().ok();
+    let young = linear.and_then(|own| own.young.as_ref().ok());
     let young = young.and_then(|own| property(own, "young", extent, YOUNG, problems));
     let Resistance {
         strength,
@@ -130,8 +124,14 @@ fn material<const D: usize>(
         plausible::check(name, &constants(own, common), problems);
     }
     let saturated = saturated(name, common, unit_weight, problems);
-    let young_constant = young.as_ref().map(|own| own.constant);
-    let drainage = drainage((common, &own.form), young_constant, strength, problems);
+    let stiffness = match (linear, strength) {
+        (Some(own), _) => {
+            (young.as_ref()).and_then(|young| Some([young.constant, **own.poisson.as_ref().ok()?]))
+        }
+        (None, Some(Strength::ModifiedCamClay(own))) => cam_clay::stiffness(own),
+        (None, _) => None,
+    };
+    let drainage = drainage((common, &own.form), stiffness, strength, problems);
     let material = Material {
         saturated: saturated.ok()?,
         drainage: drainage?,
@@ -139,8 +139,8 @@ fn material<const D: usize>(
         given: None,
         name: name.clone(),
         unit_weight: unit_weight?.constant,
-        young: young.as_ref()?.constant,
-        poisson: **common.poisson.as_ref().ok()?,
+        young: stiffness?[0],
+        poisson: stiffness?[1],
         strength: strength?,
         k0: k0.ok()?,
         profiles: Profiles {
@@ -157,6 +157,30 @@ fn material<const D: usize>(
         problems.error(stated.place, message);
     }
     Some(material)
+}
+
+/// The keys of linear elasticity, if the model has them.
+pub(crate) fn linear_stiffness(model: &Model) -> Option<&keys::Stiffness> {
+    match model {
+        Model::Elastic(own) => own.as_ref().ok().map(|own| &own.stiffness),
+        Model::VonMises(own) => own.as_ref().ok().map(|own| &own.stiffness),
+        Model::Tresca(own) => own.as_ref().ok().map(|own| &own.stiffness),
+        Model::MohrCoulomb(own) => own.as_ref().ok().map(|own| &own.stiffness),
+        Model::CamClay(_) => None,
+    }
+}
+
+/// Refuses Poisson's ratios of 0.5 and more, and warns of those close to it.
+fn check_poisson(poisson: &At<f64>, problems: &mut Problems) {
+    if **poisson >= 0.5 {
+        problems
+            .error(poisson.place, "Poisson's ratio must be below 0.5")
+            .help("nearly incompressible, as undrained soil is: poisson = 0.49");
+    } else if **poisson > 0.499 {
+        problems
+            .warning(poisson.place, "Poisson's ratio is very close to 0.5")
+            .help("the tangent is badly conditioned; 0.49 to 0.495 is close enough");
+    }
 }
 
 /// The strength of a material, and the properties that it comes from.
@@ -192,6 +216,14 @@ fn resistance<const D: usize>(
             });
             (strength, cohesive, None)
         }
+        Model::CamClay(own) => {
+            let own = own.as_ref().ok();
+            (
+                own.and_then(|own| cam_clay::strength(own, problems)),
+                None,
+                None,
+            )
+        }
         Model::MohrCoulomb(Err(_)) => (None, None, None),
         Model::MohrCoulomb(Ok(own)) => {
             let cohesive = own.cohesion.as_ref().ok();
@@ -226,7 +258,10 @@ fn constants(own: &keys::Material, common: &MaterialCommon) -> Vec<(&'static str
     }
     let mut all = vec![
         ("unit_weight", constant(&common.unit_weight)),
-        ("young", constant(&common.young)),
+        (
+            "young",
+            linear_stiffness(&own.form).and_then(|own| constant(&own.young)),
+        ),
     ];
     match &*own.form {
         Model::VonMises(Ok(own)) => all.push(("cu", constant(&own.strength.cu))),
@@ -339,7 +374,7 @@ const UNDRAINED_POISSON: f64 = 0.495;
 /// What a material does with water.
 fn drainage(
     (common, model): (&MaterialCommon, &Model),
-    young: Option<f64>,
+    stiffness: Option<[f64; 2]>,
     strength: Option<Strength>,
     problems: &mut Problems,
 ) -> Option<Drainage> {
@@ -384,14 +419,14 @@ fn drainage(
             stiffness: **stiffness,
         });
     }
-    let (young, stated) = (young?, common.poisson.as_ref().ok()?);
-    let poisson = **stated;
+    let [young, poisson] = stiffness?;
+    let stated = linear_stiffness(model).and_then(|own| own.poisson.as_ref().ok());
     let with_water = undrained.as_ref().map_or(UNDRAINED_POISSON, |own| **own);
     if with_water >= 0.5 || with_water <= poisson {
-        let place = undrained.as_ref().map_or(stated.place, |own| own.place);
+        let stated = stated.map(|own| own.place);
         problems
             .error(
-                place,
+                undrained.as_ref().map(|own| own.place).or(stated),
                 format!(
                     "Poisson's ratio of undrained soil, {}, must lie between that of its skeleton, {}, and 0.5",
                     number(with_water),
@@ -553,6 +588,12 @@ fn k0(
         }
         (Either::Second(_), Some(Strength::MohrCoulomb { friction_angle, .. })) => {
             return Ok(Some(1.0 - friction_angle.sin()));
+        }
+        (Either::Second(_), Some(Strength::ModifiedCamClay(own))) => {
+            // sin φ of M in triaxial compression.
+            return Ok(Some(
+                1.0 - 3.0 * own.critical_ratio / (6.0 + own.critical_ratio),
+            ));
         }
         (Either::Second(_), Some(_)) => "k0 = \"jaky\" needs a friction angle",
     };

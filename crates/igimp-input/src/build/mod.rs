@@ -19,7 +19,7 @@ mod water;
 
 use std::path::Path;
 
-use igimp_model::{AnyCase, Case, TitleBlock};
+use igimp_model::{AnyCase, Case, Material, TitleBlock};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::names::Names;
 use igimp_schema::schema::stages::StageForm;
@@ -87,6 +87,13 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     } else {
         in_plane(tree, &names, file, problems).map(AnyCase::Plane)
     }
+}
+
+/// The materials of a completed tree that holds nothing else; none that a problem was reported of.
+pub(super) fn materials_alone(tree: &mut Node, problems: &mut Problems) -> Option<Vec<Material>> {
+    derive::derive_drainage(tree);
+    header(tree, problems);
+    all(materials::materials::<2>(tree, &[], problems))
 }
 
 /// The same for a case in plane strain.

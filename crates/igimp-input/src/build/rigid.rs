@@ -171,16 +171,16 @@ fn shear(
         }
         (None, Some(share)) => {
             for material in materials.iter().flatten() {
-                if material.strength == Strength::Elastic {
-                    problems.warning(
-                        share.place,
-                        format!(
-                            "the material `{}` is elastic and has no strength to take a share of: no \
-                             adhesion where it touches",
-                            clip(&material.name, 40)
-                        ),
-                    );
-                }
+                let what = match material.strength {
+                    Strength::Elastic => "is elastic and has no strength",
+                    Strength::ModifiedCamClay(_) => "is modified Cam-clay and has no cohesion",
+                    _ => continue,
+                };
+                let name = clip(&material.name, 40);
+                problems.warning(
+                    share.place,
+                    format!("the material `{name}` {what} to take a share of: no adhesion where it touches"),
+                );
             }
             Adhesion::Share(**share)
         }

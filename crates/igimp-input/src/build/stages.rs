@@ -1,5 +1,6 @@
 //! Stages: what each needs from loads, materials and the stages before it.
 
+mod at_rest;
 pub(crate) mod construction;
 pub(crate) mod dynamic;
 pub(crate) mod ground_motion;
@@ -63,6 +64,9 @@ fn stage<const D: usize>(
 }
 
 fn kind<const D: usize>(about: &About<'_, D>, problems: &mut Problems) -> Option<StageKind> {
+    if about.index == 0 {
+        at_rest::check(about, problems);
+    }
     match &*about.stage.form {
         StageForm::Gravity(own) => Some(gravity(own.as_ref().ok()?)),
         StageForm::K0(_) => {

@@ -12,6 +12,7 @@
 //! | `reduction` | strength reduction and limits between laws |
 //! | `scaled` | laws at ratios of strength and stiffness |
 //! | `hardening` | laws with memory |
+//! | `memory` | the same as `returns` and `tangents` ask, of laws with memory and with elasticity that is not linear |
 //! | `utilisation` | the share of the strength that a stress mobilises |
 //! | `refusals` | what is not accepted, and the words for it |
 //!
@@ -23,6 +24,7 @@ mod close_eigenvalues;
 mod flow_rule;
 mod hardening;
 mod lifts;
+mod memory;
 mod random;
 mod random_laws;
 mod reduction;

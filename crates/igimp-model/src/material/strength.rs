@@ -3,7 +3,10 @@
 use std::sync::Arc;
 
 use igimp_assembly::SharedLaw;
-use igimp_material::{Elasticity, HenckyElastic, MaterialError, MohrCoulomb, Tresca, VonMises};
+use igimp_material::{
+    CamClayParameters, Elasticity, HenckyElastic, MaterialError, ModifiedCamClay, MohrCoulomb,
+    ShearStiffness, Tresca, VonMises,
+};
 
 /// How plastic flow of frictional soil follows from its angle of dilation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -43,6 +46,8 @@ pub enum Strength {
         /// Largest tensile stress \[Pa\]; none: the apex of the cone.
         tension_cutoff: Option<f64>,
     },
+    /// Modified Cam-clay; its elasticity is of its own.
+    ModifiedCamClay(CamClayParameters),
 }
 
 /// A parameter of a strength as it is printed.
@@ -65,6 +70,8 @@ pub enum ParameterValue {
     Stress(f64),
     /// An angle \[rad\].
     Angle(f64),
+    /// A number \[-\].
+    Number(f64),
     /// None: the label says it all.
     Note,
 }
@@ -77,6 +84,7 @@ impl Strength {
             Self::VonMises { .. } => "von Mises",
             Self::Tresca { .. } => "Tresca",
             Self::MohrCoulomb { .. } => "Mohr–Coulomb",
+            Self::ModifiedCamClay(_) => "modified Cam-clay",
         }
     }
 
@@ -110,6 +118,33 @@ impl Strength {
                 parameters.extend(tension_cutoff.map(limit));
                 parameters
             }
+            Self::ModifiedCamClay(own) => {
+                let number = |label, value| parameter(label, ParameterValue::Number(value));
+                let shear = match own.shear {
+                    ShearStiffness::Poisson(poisson) => number("ν = ", poisson),
+                    ShearStiffness::Constant(shear) => {
+                        parameter("G = ", ParameterValue::Stress(shear))
+                    }
+                };
+                vec![
+                    number("λ* = ", own.compression),
+                    number("κ* = ", own.swelling),
+                    number("M = ", own.critical_ratio),
+                    shear,
+                    number("OCR = ", own.overconsolidation),
+                ]
+            }
+        }
+    }
+
+    /// Why no stage reduces it by a factor; none where one may.
+    pub fn not_reduced(&self) -> Option<&'static str> {
+        match self {
+            Self::Elastic => Some("is elastic: it has no strength to reduce"),
+            Self::ModifiedCamClay(_) => Some(
+                "is modified Cam-clay: its strength is a result of the path, and no parameter to reduce",
+            ),
+            Self::VonMises { .. } | Self::Tresca { .. } | Self::MohrCoulomb { .. } => None,
         }
     }
 
@@ -171,6 +206,7 @@ impl Strength {
                 }
                 Arc::new(law)
             }
+            Self::ModifiedCamClay(parameters) => Arc::new(ModifiedCamClay::new(parameters)?),
         })
     }
 }

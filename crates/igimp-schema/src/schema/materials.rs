@@ -4,11 +4,16 @@ use super::MANY;
 use super::declare::{choices, schema, table, variants};
 
 /// What books call a field, and its keys here: of these the one that the material has is meant.
-pub static SYMBOLS: [(&str, &[&str]); 22] = [
+pub static SYMBOLS: [(&str, &[&str]); 27] = [
     ("gamma", &["unit_weight"]),
     ("γ", &["unit_weight"]),
     ("weight", &["unit_weight"]),
-    ("e", &["young"]),
+    ("e", &["young", "void_ratio"]),
+    ("e0", &["void_ratio"]),
+    ("lambda*", &["lambda"]),
+    ("kappa*", &["kappa"]),
+    ("m", &["critical_ratio"]),
+    ("g", &["shear"]),
     ("modulus", &["young"]),
     ("youngs_modulus", &["young"]),
     ("nu", &["poisson"]),
@@ -35,21 +40,32 @@ variants! {
     "von-mises" => VonMises(VON_MISES: VonMises),
     "tresca" => Tresca(TRESCA: Tresca),
     "mohr-coulomb" => MohrCoulomb(MOHR_COULOMB: MohrCoulomb),
+    "modified-cam-clay" => CamClay(CAM_CLAY: CamClay),
     after MATERIAL_COMMON: MaterialCommon;
 }
 
 table! {
     ELASTIC: Elastic, "Hencky elasticity without a strength limit.";
+    stiffness: part(STIFFNESS: Stiffness);
+}
+
+table! {
+    STIFFNESS: Stiffness, "Linear elasticity.";
+    young: apart(either(quantity(Stress, Positive), table(STRESS_PROFILE: Profile))), required "\"20 MPa\"",
+        "Young's modulus";
+    poisson: apart(number(NotNegative)), required "0.3", "Poisson's ratio, below 0.5";
 }
 
 table! {
     VON_MISES: VonMises, "Elastic and perfectly plastic, von Mises.";
     strength: part(UNDRAINED: Undrained);
+    stiffness: part(STIFFNESS: Stiffness);
 }
 
 table! {
     TRESCA: Tresca, "Elastic and perfectly plastic, Tresca.";
     strength: part(UNDRAINED: Undrained);
+    stiffness: part(STIFFNESS: Stiffness);
 }
 
 table! {
@@ -68,6 +84,28 @@ table! {
     flow: apart(choice(Flow)), default "\"dilation\"", "how plastic flow follows from the angle of dilation";
     tension_cutoff: apart(quantity(Stress, NotNegative)), optional "the apex of the cone limits tension",
         "largest tensile stress; zero or missing where cohesion varies";
+    stiffness: part(STIFFNESS: Stiffness);
+}
+
+table! {
+    CAM_CLAY: CamClay,
+    "Modified Cam-clay: clay whose yield surface grows and shrinks with plastic volume, and whose stiffness grows with pressure. \
+     Begins with a stage of type k0.";
+    lambda: number(Positive), required "0.2", "slope of the compression line over ln p: of natural volumetric strain, or of void ratio \
+        with `void_ratio`";
+    kappa: number(Positive), required "0.04", "slope of the swelling lines, below `lambda`";
+    void_ratio: number(Positive), optional "`lambda` and `kappa` are of natural volumetric strain",
+        "void ratio by which `lambda` and `kappa` of void ratio are divided, as 1 + e";
+    friction: quantity(Angle, Positive), optional "`critical_ratio` says it",
+        "friction angle at the critical state, in triaxial compression";
+    critical_ratio: number(Positive), optional "`friction` says it", "M = q/p at the critical state";
+    poisson: number(NotNegative), optional "`shear` says it",
+        "Poisson's ratio, below 0.5, of a shear modulus that grows with pressure";
+    shear: quantity(Stress, Positive), optional "`poisson` says it", "shear modulus, if it is a constant";
+    ocr: number(Positive), default "1.0",
+        "preconsolidation pressure over p + q^2/(M^2 p) of the initial stress, 1 or more";
+    reference_pressure: quantity(Stress, Positive), default "\"100 kPa\"",
+        "pressure whose stiffness contact, ties of small cuts and estimates go by";
 }
 
 choices! {
@@ -82,9 +120,6 @@ table! {
     MATERIAL_COMMON: MaterialCommon, "Keys of every material.";
     unit_weight: apart(either(quantity(UnitWeight, NotNegative), table(UNIT_WEIGHT_PROFILE: Profile))),
         required "\"18 kN/m3\"", "unit weight";
-    young: apart(either(quantity(Stress, Positive), table(STRESS_PROFILE: Profile))), required "\"20 MPa\"",
-        "Young's modulus";
-    poisson: apart(number(NotNegative)), required "0.3", "Poisson's ratio, below 0.5";
     k0: apart(either(number(NotNegative), choice(Jaky))), optional "an elastic material takes poisson / (1 - poisson)",
         "coefficient of earth pressure at rest, for stages of type k0";
     saturated_unit_weight: apart(quantity(UnitWeight, Positive)), optional "as above the water table",

@@ -74,6 +74,13 @@ table! {
 }
 
 table! {
+    MATERIALS_ALONE: MaterialsAlone, "Materials without a case, for tests of their laws.";
+    igimp: whole(FORMAT, i64::MAX), required "1", "version of the input format";
+    materials: map("material", MATERIAL: Material), required "{ clay = { model = \"tresca\" } }",
+        "materials by name";
+}
+
+table! {
     CASE: CaseHead, "What the case is.";
     title: text, required "\"My slope\"", "for reports and figures";
     project: text, optional "not in the report", "project, for the head of the report";

@@ -4,6 +4,7 @@ mod beam;
 #[path = "../body_support/mod.rs"]
 mod body_support;
 mod drag;
+mod element;
 mod faults;
 mod guarded;
 mod linear_multigrid;

@@ -1,6 +1,7 @@
 //! The commands of the program.
 
 pub(crate) mod cases;
+pub(crate) mod element;
 pub(crate) mod film;
 pub(crate) mod pages;
 pub(crate) mod report;

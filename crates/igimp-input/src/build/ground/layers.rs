@@ -17,6 +17,7 @@ use crate::build::bodies::polygon_place;
 use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Site;
 use crate::build::grid::Frame;
+use crate::build::materials::linear_stiffness;
 use crate::geometry::{facing, largest_run};
 
 /// Error of the stress beside a boundary that is worth a warning \[-\].
@@ -346,9 +347,8 @@ pub(crate) fn check_stiffness(
         let weight = material.unit_weight_at(&middle, &ground);
         let young = material.young_at(&middle, &ground);
         let ratio = weight * (top - lowest) / young;
-        let common = stated.get(index).and_then(|own| own.value.as_ref().ok());
-        let common = common.and_then(|own| own.common.as_ref().ok());
-        let place = common
+        let own = stated.get(index).and_then(|own| own.value.as_ref().ok());
+        let place = (own.and_then(|own| linear_stiffness(&own.form)))
             .and_then(|own| own.young.as_ref().ok())
             .map(|own| own.place);
         let name = clip(&material.name, 40);

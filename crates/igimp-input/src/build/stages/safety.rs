@@ -48,13 +48,14 @@ pub(super) fn materials<const D: usize>(
             continue;
         };
         let shown = clip(&material.name, 40);
-        if material.strength == Strength::Elastic {
+        if let Some(reason) = material.strength.not_reduced() {
+            let message = format!("the material `{shown}` {reason}");
             problems
-                .error(
-                    value.place,
-                    format!("the material `{shown}` is elastic: it has no strength to reduce"),
-                )
-                .help("leave it out; it keeps its stiffness");
+                .error(value.place, message)
+                .help(match material.strength {
+                    Strength::Elastic => "leave it out; it keeps its stiffness",
+                    _ => "for a factor of safety, model = \"tresca\" with the undrained strength that it has",
+                });
         } else if !context.is_used(index) {
             problems.warning(value.place, format!("no body uses the material `{shown}`"));
         }

@@ -161,10 +161,37 @@ fn stronger(
         return Ok(None);
     }
     match parameter {
-        Parameter::Whole => law.reduced(srf / (1.0 + DIFFERENCE)).map(Some),
+        Parameter::Whole => match law.reduced(srf / (1.0 + DIFFERENCE)) {
+            Err(MaterialError::NoReduction { .. }) => Ok(None),
+            reduced => reduced.map(Some),
+        },
         Parameter::Friction => match law.at_friction(1.0 + DIFFERENCE)? {
             Some(law) => law.reduced(srf).map(Some),
             None => Ok(None),
         },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use igimp_material::{CamClayParameters, ModifiedCamClay, ShearStiffness};
+
+    use super::*;
+
+    /// GOAL: soil whose strength is not reduced has no share, and does not end the search beside it.
+    #[test]
+    fn clay_whose_strength_is_not_reduced_has_no_share() {
+        let clay = ModifiedCamClay::new(CamClayParameters {
+            compression: 0.1,
+            swelling: 0.02,
+            critical_ratio: 1.0,
+            shear: ShearStiffness::Poisson(0.2),
+            overconsolidation: 1.0,
+            reference_pressure: 1e5,
+        });
+        let clay = clay.unwrap();
+        for parameter in [Parameter::Whole, Parameter::Friction] {
+            assert!(stronger(&clay, 1.0, parameter).unwrap().is_none());
+        }
     }
 }

@@ -1,0 +1,297 @@
+//! A law on its own: the test, its table, its pictures, and what is said of it.
+
+mod closed_form;
+mod path_file;
+mod pictures;
+mod table;
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use igimp_material::{ConstitutiveModel, MaterialError};
+use igimp_model::{Drainage, Material};
+use igimp_report::ReportError;
+use igimp_results::tables::table::Table;
+use igimp_solver::element::{ElementError, ElementPath, ElementRun, ElementState, ElementTest};
+use igimp_text::short;
+use thiserror::Error;
+
+pub use igimp_solver::element::{Kinematics, StandardTest};
+pub use path_file::{PathFileError, read_path};
+pub use table::{name_of, of_name};
+
+/// What is driven.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Drive {
+    /// A test of the laboratory, up to a strain \[-\].
+    Standard(StandardTest, f64),
+    /// A path of one's own.
+    Path(ElementPath),
+}
+
+/// A test of a material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// What is driven.
+    pub drive: Drive,
+    /// The initial axial stress and that at the sides, effective \[Pa\], compression positive.
+    pub stress: [f64; 2],
+    /// Steps of a leg.
+    pub steps: usize,
+    /// How strain is measured.
+    pub kinematics: Kinematics,
+}
+
+/// A test that was made.
+#[derive(Clone, Debug)]
+pub struct Tested {
+    /// Its states, and why it ended early if it did.
+    pub run: ElementRun,
+    /// Its table, named `element`.
+    pub table: Table,
+    /// What is said of it, lines ready to print.
+    pub text: String,
+    drive: Drive,
+    title: String,
+}
+
+/// Why there is no test.
+#[derive(Debug, Error)]
+pub enum TestError {
+    /// The law cannot be made.
+    #[error("the material cannot be made")]
+    Material(#[from] MaterialError),
+    /// The test cannot begin.
+    #[error(transparent)]
+    Element(#[from] ElementError),
+}
+
+/// Drives a material; where its strength varies, the greatest counts.
+///
+/// # Errors
+/// [`TestError`]. A test that ends early is a result, and the text says where.
+pub fn test(material: &Material, request: &Request) -> Result<Tested, TestError> {
+    let law = material.law()?;
+    let [axial, side] = request.stress;
+    let path = match &request.drive {
+        Drive::Standard(standard, strain) => standard.path(*strain),
+        Drive::Path(path) => path.clone(),
+    };
+    let test = ElementTest {
+        sigma: [-side, -axial, -side],
+        path,
+        steps: request.steps,
+        kinematics: request.kinematics,
+    };
+    let run = test.run(&*law)?;
+    let what = match &request.drive {
+        Drive::Standard(standard, _) => name_of(*standard).replace('-', " "),
+        Drive::Path(_) => "path".to_owned(),
+    };
+    let title = format!("{}: {}, {what}", material.name, material.strength.name());
+    Ok(Tested {
+        table: table::table(&run.states, &request.drive, law.internal_variables()),
+        text: said(material, &*law, request, &run, &title),
+        run,
+        drive: request.drive.clone(),
+        title,
+    })
+}
+
+impl Tested {
+    /// Writes `element.csv` and the pictures into a folder that exists; their names.
+    ///
+    /// # Errors
+    /// [`ReportError`] of what cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<Vec<String>, ReportError> {
+        self.table.write_csv(folder)?;
+        let mut names = vec!["element.csv".to_owned()];
+        for (name, plot) in pictures::plots(&self.run.states, &self.drive, &self.title) {
+            let path = folder.join(name);
+            plot.write(&path)?;
+            names.extend(["svg", "png"].map(|kind| format!("{name}.{kind}")));
+        }
+        Ok(names)
+    }
+}
+
+/// The state with the largest of something.
+fn largest(states: &[ElementState], of: impl Fn(&ElementState) -> f64) -> &ElementState {
+    let first = &states[0];
+    states.iter().fold(
+        first,
+        |most, state| if of(state) > of(most) { state } else { most },
+    )
+}
+
+/// The lines of a test.
+fn said(
+    material: &Material,
+    law: &dyn ConstitutiveModel,
+    request: &Request,
+    run: &ElementRun,
+    title: &str,
+) -> String {
+    let [axial, side] = request.stress.map(|stress| short(stress / 1e3));
+    let steps = run.states.len() - 1;
+    let corrections: usize = run.states.iter().map(|state| state.corrections).sum();
+    let mut text = format!(
+        "{title}\n  from σ_y = {axial} kPa, σ_x = σ_z = {side} kPa, {steps} steps, {corrections} corrections\n"
+    );
+    if material.varies() {
+        text.push_str("  strength or stiffness vary in the case: the greatest count\n");
+    }
+    if matches!(material.drainage, Drainage::Undrained { .. }) {
+        text.push_str("  stresses are effective ones; an undrained test keeps the volume, whatever the water's stiffness\n");
+    }
+    text.push_str(&values(material, law, request, &run.states));
+    if let Some(lost) = &run.failure {
+        let _ = writeln!(text, "  ended early: {lost}");
+        if let Some(law) = &lost.law {
+            let _ = writeln!(text, "  because: {law}");
+        }
+    }
+    text
+}
+
+/// Peak and end of a test, and what a formula says of it.
+fn values(
+    material: &Material,
+    law: &dyn ConstitutiveModel,
+    request: &Request,
+    states: &[ElementState],
+) -> String {
+    let mut text = String::new();
+    let is_shear = matches!(request.drive, Drive::Standard(test, _) if test.is_shear());
+    let (symbol, measure): (&str, fn(&ElementState) -> f64) = if is_shear {
+        ("τ_xy", |state| state.sigma[0][1])
+    } else {
+        ("q", ElementState::q)
+    };
+    let peak = largest(states, measure);
+    let end = states.last().unwrap_or(peak);
+    let percent = |state: &ElementState| short(100.0 * table::driven_strain(state, &request.drive));
+    let _ = writeln!(
+        text,
+        "  largest {symbol} {} kPa at {} % of {}",
+        short(measure(peak) / 1e3),
+        percent(peak),
+        table::driven_name(&request.drive),
+    );
+    let _ = writeln!(
+        text,
+        "  at the end, {} %: p {} kPa, q {} kPa, q/p {}, volumetric strain {} %, mobilised {}",
+        percent(end),
+        short(end.p() / 1e3),
+        short(end.q() / 1e3),
+        short(end.q() / end.p()),
+        short(100.0 * end.volumetric_strain()),
+        short(law.utilisation(&principal(end, request.kinematics), &end.history)),
+    );
+    if let Drive::Standard(standard, strain) = request.drive
+        && strain > 0.0
+        && let Some(own) = closed_form::strength(material, standard, request, end)
+    {
+        let _ = writeln!(
+            text,
+            "  closed form at failure: {symbol} = {} kPa, {}; at the end {} % of it",
+            short(own.value / 1e3),
+            own.from,
+            short(100.0 * measure(end) / own.value),
+        );
+    }
+    text
+}
+
+/// Principal stresses, Kirchhoff \[Pa\].
+fn principal(state: &ElementState, kinematics: Kinematics) -> [f64; 3] {
+    let volume = match kinematics {
+        Kinematics::Finite => (-state.volumetric_strain()).exp(),
+        Kinematics::Small => 1.0,
+    };
+    let tau = state.sigma.map(|row| row.map(|stress| stress * volume));
+    igimp_material::principal_values::<3>(&tau)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use igimp_input::MaterialsFile;
+    use igimp_solver::element::Control::{AsXx, Strain, Stress};
+
+    const SOILS: &str = "igimp = 1\n[materials.clay]\nmodel = \"modified-cam-clay\"\nunit_weight = \"16 kN/m3\"\n\
+        lambda = 0.1\nkappa = 0.02\ncritical_ratio = 1.0\npoisson = 0.2\nocr = 2.0\n[materials.sand]\nmodel = \"mohr-coulomb\"\n\
+        unit_weight = \"18 kN/m3\"\nyoung = \"30 MPa\"\npoisson = 0.3\ncohesion = \"5 kPa\"\nfriction = \"30 deg\"\n\
+        [materials.stiff]\nmodel = \"tresca\"\nunit_weight = \"18 kN/m3\"\nyoung = \"30 MPa\"\npoisson = 0.3\ncu = \"50 kPa\"\n\
+        [materials.round]\nmodel = \"von-mises\"\nunit_weight = \"18 kN/m3\"\nyoung = \"30 MPa\"\npoisson = 0.3\ncu = \"50 kPa\"\n";
+
+    /// GOAL: where a formula is told, the test ends on it: 0.1 %, with natural and with linear strain. ORACLE: eq. 92 and the closed
+    /// forms of perfectly plastic soil.
+    #[test]
+    fn tests_end_on_the_formulas_that_are_told() {
+        let materials = MaterialsFile::parse("soils.toml", SOILS, &[])
+            .unwrap()
+            .materials;
+        let mut told = 0;
+        for material in &materials {
+            for standard in StandardTest::ALL {
+                for kinematics in [Kinematics::Finite, Kinematics::Small] {
+                    let strain = if material.name == "clay" { 1.5 } else { 0.1 };
+                    let request = Request {
+                        drive: Drive::Standard(standard, strain),
+                        stress: [100e3, 80e3],
+                        steps: 300,
+                        kinematics,
+                    };
+                    let tested = test(material, &request).unwrap();
+                    assert!(tested.run.failure.is_none(), "{}", tested.text);
+                    let end = tested.run.states.last().unwrap();
+                    let own = closed_form::strength(material, standard, &request, end);
+                    let Some(own) = own else { continue };
+                    let measured = if standard.is_shear() {
+                        end.sigma[0][1]
+                    } else {
+                        end.q()
+                    };
+                    assert!((measured / own.value - 1.0).abs() < 1e-3, "{}", tested.text);
+                    assert!(
+                        tested.text.contains("closed form at failure"),
+                        "{}",
+                        tested.text
+                    );
+                    told += 1;
+                }
+            }
+        }
+        assert_eq!(told, 24);
+    }
+
+    /// GOAL: a path from a file has compression positive; what is no path is refused with a remedy.
+    #[test]
+    fn paths_come_from_files() {
+        let path = std::env::temp_dir().join(format!("igimp-path-{}.csv", std::process::id()));
+        let read = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            read_path(&path)
+        };
+        let own = read("stress_xx [kPa],strain_yy [%],strain_xy [-]\n50,2,0.1\n").unwrap();
+        assert_eq!(own.controls, [Stress, Strain, AsXx, Strain]);
+        assert_eq!(own.legs, [[-50e3, -0.02, 0.0, 0.1]]);
+        let refused = |text: &str| read(text).unwrap_err().to_string();
+        assert_eq!(
+            refused("strain_xx [%]\n1\n"),
+            "`yy` has to be prescribed once, as a strain or as a stress"
+        );
+        assert_eq!(
+            refused("stress_xx [m]\n1\n"),
+            "`stress_xx [m]` is no column of a path"
+        );
+        assert_eq!(
+            refused("strain_xx [%],strain_yy [%]\n"),
+            "the path has no row"
+        );
+        let twice = refused("strain_xx [%],stress_xx [Pa],strain_yy [%]\n1,1,1\n");
+        assert!(twice.starts_with("`xx`"), "{twice}");
+        std::fs::remove_file(&path).unwrap();
+    }
+}

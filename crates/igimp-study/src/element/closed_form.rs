@@ -1,0 +1,103 @@
+//! What a law bears by a formula, where there is one.
+
+use igimp_material::{CamClayParameters, ShearStiffness};
+use igimp_model::{Flow, Material, Strength};
+use igimp_solver::element::{ElementState, Kinematics, StandardTest};
+
+use super::Request;
+
+/// A strength, and where it is from.
+pub(super) struct ClosedForm {
+    /// \[Pa\].
+    pub(super) value: f64,
+    pub(super) from: &'static str,
+}
+
+/// q, or τ_xy of tests in shear, at failure.
+///
+/// Laws speak of Kirchhoff stress: what is a stress in them is less by J in terms of the area that soil has then.
+pub(super) fn strength(
+    material: &Material,
+    test: StandardTest,
+    request: &Request,
+    end: &ElementState,
+) -> Option<ClosedForm> {
+    let volume = match request.kinematics {
+        Kinematics::Finite => (-end.volumetric_strain()).exp(),
+        Kinematics::Small => 1.0,
+    };
+    let form = |value: f64, from| Some(ClosedForm { value, from });
+    let is_triaxial = matches!(
+        test,
+        StandardTest::TriaxialDrained | StandardTest::TriaxialUndrained
+    );
+    match (material.strength, test) {
+        (_, StandardTest::Oedometer) => None,
+        (Strength::Tresca { undrained_strength }, _) if is_triaxial => {
+            form(2.0 * undrained_strength / volume, "2 c_u")
+        }
+        (Strength::VonMises { undrained_strength }, _) if is_triaxial => {
+            form(3.0_f64.sqrt() * undrained_strength / volume, "√3 c_u")
+        }
+        (
+            Strength::Tresca { undrained_strength } | Strength::VonMises { undrained_strength },
+            StandardTest::SimpleShearDrained | StandardTest::SimpleShearUndrained,
+        ) => form(undrained_strength / volume, "c_u"),
+        (
+            Strength::MohrCoulomb {
+                cohesion,
+                friction_angle,
+                flow: Flow::Dilation,
+                ..
+            },
+            StandardTest::TriaxialDrained,
+        ) => {
+            let passive = (0.25 * std::f64::consts::PI + 0.5 * friction_angle).tan();
+            let side = request.stress[1];
+            let value = side * (passive * passive - 1.0) + 2.0 * cohesion / volume * passive;
+            form(value, "σ_3 (K_p - 1) + 2 c √K_p")
+        }
+        (
+            Strength::MohrCoulomb {
+                cohesion,
+                friction_angle,
+                dilation_angle: 0.0,
+                flow: Flow::Dilation,
+                ..
+            },
+            StandardTest::TriaxialUndrained,
+        ) => {
+            let [axial, side] = request.stress;
+            let (sin, cos) = friction_angle.sin_cos();
+            let p = (axial + 2.0 * side) / 3.0;
+            form(
+                6.0 * (p * sin + cohesion * cos) / (3.0 - sin),
+                "constant p, ψ = 0",
+            )
+        }
+        (Strength::ModifiedCamClay(own), StandardTest::TriaxialDrained) => form(
+            3.0 * own.critical_ratio * request.stress[1] / (3.0 - own.critical_ratio),
+            "M p with p = 3 σ_3/(3 - M)",
+        ),
+        (Strength::ModifiedCamClay(own), StandardTest::TriaxialUndrained) => form(
+            own.critical_ratio * undrained_pressure(&own, request.stress),
+            "M p at constant volume",
+        ),
+        _ => None,
+    }
+}
+
+/// p at the critical state of soil that keeps its volume (theory, eq. 92) \[Pa\].
+fn undrained_pressure(own: &CamClayParameters, [axial, side]: [f64; 2]) -> f64 {
+    let (p, q) = ((axial + 2.0 * side) / 3.0, (axial - side).abs());
+    let (m, plastic) = (own.critical_ratio, own.compression - own.swelling);
+    let tip = own.overconsolidation * p * (1.0 + (q / (m * p)).powi(2));
+    let shear = match own.shear {
+        ShearStiffness::Constant(_) => 0.0,
+        ShearStiffness::Poisson(poisson) => {
+            let per_pressure = 1.5 * (1.0 - 2.0 * poisson) / (1.0 + poisson) / own.swelling;
+            (m * m - (q / p).powi(2)) / (6.0 * per_pressure)
+        }
+    };
+    ((own.swelling * p.ln() + shear + plastic * (0.5 * tip).ln()) / own.compression).exp()
+}
