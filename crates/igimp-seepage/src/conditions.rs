@@ -13,6 +13,10 @@ pub struct Soil {
     pub angle: f64,
     /// What it keeps where it is not saturated.
     pub curve: Curve,
+    /// Share of its volume that it gives back as water where it drains \[-\]; flows in time need it.
+    pub drainable: f64,
+    /// Water by volume that it gives back where the head falls and its pores stay full, m_v γ_w \[1/m\].
+    pub specific_storage: f64,
 }
 
 impl Soil {
@@ -23,6 +27,8 @@ impl Soil {
             across: permeability,
             angle: 0.0,
             curve: Curve::Ramp,
+            drainable: 0.0,
+            specific_storage: 0.0,
         }
     }
 

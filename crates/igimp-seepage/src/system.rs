@@ -56,7 +56,7 @@ pub(crate) struct System<'a, const D: usize> {
     pub(crate) held: Vec<Held<D>>,
     pairs: Vec<Pair>,
     /// Unknowns of the corners of each cell.
-    corners: Vec<[usize; CORNERS]>,
+    pub(crate) corners: Vec<[usize; CORNERS]>,
     /// Node by unknown.
     pub(crate) nodes: Vec<usize>,
     pub(crate) pattern: Arc<Pattern>,
