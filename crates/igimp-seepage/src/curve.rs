@@ -1,4 +1,4 @@
-//! How much of its permeability soil keeps where its pores are not full, and how much water (theory, eqs. 79 to 81 and 86).
+//! How much of its permeability soil keeps where its pores are not full, and how much water (theory, eqs. 79 to 81 and 85a).
 
 use crate::conditions::Soil;
 
@@ -66,7 +66,7 @@ impl Relative {
     }
 
     /// Water that a volume of soil holds beyond that of full pores at ψ = 0, by volume \[-\], and its slope \[1/m\]: pores that
-    /// are full yield by compression, others by drainage, and none by both (eq. 86).
+    /// are full yield by compression, others by drainage, and none by both (eq. 85a).
     pub(crate) fn content(&self, soil: &Soil, psi: f64) -> [f64; 2] {
         let full = match soil.curve {
             _ if self.confined => f64::NEG_INFINITY,

@@ -2,7 +2,8 @@
 //!
 //! One unknown head per node of the cells that hold soil, linear along each axis. Faces of the ground need not lie on lines of
 //! the grid: heads on them are set weakly, and cells that soil fills in part are tied to their neighbours by a penalty that
-//! lets no water through (theory, eqs. 78 to 84). In time the ground stores water (theory, eqs. 86 to 89). Nothing here knows of files, stress or stages.
+//! lets no water through (theory, eqs. 78 to 84). In time the ground stores water (theory, eqs. 85a to 85d).
+//! Nothing here knows of files, stress or stages.
 
 mod basis;
 mod boundary;

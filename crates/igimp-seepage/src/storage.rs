@@ -1,4 +1,4 @@
-//! Water that the ground stores, lumped at nodes (theory, eqs. 86 and 87).
+//! Water that the ground stores, lumped at nodes (theory, eqs. 85a and 85b).
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! Flow in time: steps of two stages, as long as their error allows, that land on the times asked for (theory, eqs. 86 to 89).
+//! Flow in time: steps of two stages, as long as their error allows, that land on the times asked for (theory, eqs. 85a to 85d).
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -229,7 +229,7 @@ impl<const D: usize> March<'_, '_, D> {
         }
     }
 
-    /// A step of two stages, each by the method of Euler (eq. 88); the heads are those of its end.
+    /// A step of two stages, each by the method of Euler (eq. 85c); the heads are those of its end.
     fn step(&mut self, duration: f64) -> Result<Step, SeepageError> {
         let start = self.search.heads.clone();
         let first = self.stage(
