@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 use igimp_cases::run::{Nobody, Run, Start, Target, in_memory, run};
 use igimp_input::CaseFile;
 use igimp_model::PoreSource;
-use resuming::{assert_done, assert_equal, everything, run_into};
+use resuming::{assert_done, assert_equal, everything, folder, run_into};
 
 const SLOPE: &str = r#"
 igimp = 1
@@ -380,12 +380,8 @@ fn parsed(text: &str) -> CaseFile {
 /// run that is stopped and taken up change no byte. ORACLE: the run of the steady flow in the end; the run left alone.
 #[test]
 fn a_slope_is_safer_as_it_drains() {
-    let folder = |name: &str| {
-        let root = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("seepage_in_time");
-        root.join(name)
-    };
     let file = parsed(&in_time(&[]));
-    let whole = folder("whole");
+    let whole = folder("seepage_in_time_whole");
     let found = run_into((&file, file.case()), &whole, Start::Afresh, None);
     assert_done(&found.summary);
     let names: Vec<&str> = found
@@ -442,7 +438,7 @@ fn a_slope_is_safer_as_it_drains() {
         assert!(whole.join(name).is_file(), "{name}");
     }
     let expected = everything(&whole);
-    let stopped = folder("stopped");
+    let stopped = folder("seepage_in_time_stopped");
     let part = run_into((&file, file.case()), &stopped, Start::Afresh, Some(3));
     assert!(part.summary.interrupted);
     let pool = rayon::ThreadPoolBuilder::new()
@@ -461,15 +457,15 @@ fn a_slope_is_safer_as_it_drains() {
 /// GOAL: levels from a file are those that stand in the case, and what cannot be followed is refused where it stands.
 #[test]
 fn what_changes_in_time_is_read() {
-    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("seepage_histories");
-    std::fs::create_dir_all(&folder).unwrap();
+    let place = folder("seepage_histories");
+    std::fs::create_dir_all(&place).unwrap();
     std::fs::write(
-        folder.join("pool.csv"),
+        place.join("pool.csv"),
         "time [d], value [cm]\n0, 900\n1, 500\n",
     )
     .unwrap();
     let inline = "{ time = [\"0 d\", \"1 d\"], values = [\"9 m\", \"5 m\"] }";
-    let name = folder.join("case.toml");
+    let name = place.join("case.toml");
     let read = |text: &str| CaseFile::parse(name.to_str().unwrap(), text, &[]);
     let filed = read(&in_time(&[(inline, "{ file = \"pool.csv\" }")]));
     let filed = filed.unwrap_or_else(|error| panic!("{error}"));
@@ -516,4 +512,40 @@ fn what_changes_in_time_is_read() {
             .to_string();
         assert!(found.contains(message), "{message}: {found}");
     }
+}
+
+#[test]
+fn tmp_tune() {
+    let path = std::path::PathBuf::from(std::env::var("RD").unwrap());
+    let sets: Vec<String> = std::env::var("SETS")
+        .unwrap_or_default()
+        .split(';')
+        .filter(|s| !s.is_empty())
+        .map(str::to_owned)
+        .collect();
+    let file = CaseFile::read(&path, &sets).unwrap_or_else(|error| panic!("{error}"));
+    let out = folder("tmp_tune");
+    let run = run_into((&file, file.case()), &out, Start::Afresh, None);
+    for table in &run.summary.setup {
+        if table.title.starts_with("Seepage") {
+            println!("{}", table.title);
+            for row in &table.rows {
+                println!("  {row:?}");
+            }
+        }
+    }
+    for s in &run.summary.stages {
+        println!(
+            "{} {:?} {} {:.1}s {:?}",
+            s.name,
+            s.outcome,
+            s.reason,
+            s.seconds,
+            s.safety.as_ref().map(|s| (s.stable, s.failed))
+        );
+    }
+    for w in &run.summary.warnings {
+        println!("W {w}");
+    }
+    println!("{:?} {}", run.failure, run.summary.seconds);
 }

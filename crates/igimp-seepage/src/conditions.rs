@@ -1,6 +1,6 @@
 //! What a flow is given: soils, heads, flows, and what is asked of it.
 
-use crate::curve::Curve;
+use crate::curve::{Curve, Pores};
 
 /// Permeability of a soil.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +29,15 @@ impl Soil {
             curve: Curve::Ramp,
             drainable: 0.0,
             specific_storage: 0.0,
+        }
+    }
+
+    /// How its pores give water back.
+    pub(crate) fn pores(&self) -> Pores {
+        Pores {
+            curve: self.curve,
+            drainable: self.drainable,
+            specific_storage: self.specific_storage,
         }
     }
 

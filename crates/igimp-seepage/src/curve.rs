@@ -1,7 +1,5 @@
 //! How much of its permeability soil keeps where its pores are not full, and how much water (theory, eqs. 79 to 81 and 85a).
 
-use crate::conditions::Soil;
-
 /// Relative permeability k_r by the pressure head ψ = u / γ_w \[m\], negative above the free surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Curve {
@@ -20,6 +18,16 @@ pub enum Curve {
         /// n \[-\], above 1.
         n: f64,
     },
+}
+
+/// How pores give water back.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pores {
+    pub(crate) curve: Curve,
+    /// Share of the volume of soil that drains \[-\].
+    pub(crate) drainable: f64,
+    /// Water by volume and head of pores that stay full \[1/m\].
+    pub(crate) specific_storage: f64,
 }
 
 /// What the curves of a solution share.
@@ -67,7 +75,7 @@ impl Relative {
 
     /// Water that a volume of soil holds beyond that of full pores at ψ = 0, by volume \[-\], and its slope \[1/m\]: pores that
     /// are full yield by compression, others by drainage, and none by both (eq. 85a).
-    pub(crate) fn content(&self, soil: &Soil, psi: f64) -> [f64; 2] {
+    pub(crate) fn content(&self, soil: &Pores, psi: f64) -> [f64; 2] {
         let full = match soil.curve {
             _ if self.confined => f64::NEG_INFINITY,
             Curve::Ramp => 0.5 * self.width,
@@ -195,11 +203,10 @@ mod tests {
             (Curve::Gardner { alpha: 2.0 }, 0.0),
             (Curve::VanGenuchten { alpha: 1.5, n: 2.2 }, 0.0),
         ] {
-            let soil = Soil {
+            let soil = Pores {
                 curve,
                 drainable: 0.2,
                 specific_storage: 1e-3,
-                ..Soil::isotropic(1.0)
             };
             for psi in [-3.0, -0.4, -0.1, 0.1, 2.0] {
                 let [above, below] = [1e-6, -1e-6].map(|d| relative.content(&soil, psi + d)[0]);

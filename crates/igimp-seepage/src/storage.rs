@@ -85,7 +85,7 @@ impl Storage {
         let mut found = [vec![0.0; heads.len()], vec![0.0; heads.len()]];
         for &(unknown, soil, volume) in &self.shares {
             let psi = heads[unknown] - self.levels[unknown];
-            let [own, slope] = relative.content(&system.conditions.soils[soil], psi);
+            let [own, slope] = relative.content(&system.conditions.soils[soil].pores(), psi);
             found[0][unknown] += volume * own;
             found[1][unknown] += volume * slope;
         }

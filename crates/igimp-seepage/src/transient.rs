@@ -17,6 +17,8 @@ use crate::storage::{Storage, Storing};
 const STAGE: f64 = 1.0 - FRAC_1_SQRT_2;
 /// Error of a step of first order that is allowed, in the mean of the ground over the span of the heads \[-\].
 const ACCURACY: f64 = 2e-3;
+/// Water that a node may lack, over all that drains from it \[-\]: round-off.
+const EMPTY: f64 = 1e-9;
 /// Share of the first stretch of time that is tried first \[-\].
 const FIRST: f64 = 1e-3;
 /// Share of a stretch of time below which a step is not cut for its error: what is faster counts as sudden \[-\].
@@ -157,7 +159,8 @@ struct Step {
     /// Heads at its end.
     heads: Vec<f64>,
     water: Vec<f64>,
-    stages: [Balanced; 2],
+    /// Durations for which flows count \[s\], and the flows.
+    stages: Vec<(f64, Balanced)>,
     /// Error of the step of first order over the span of the heads \[-\].
     error: f64,
 }
@@ -211,8 +214,8 @@ impl<const D: usize> March<'_, '_, D> {
                 Ok(step) if step.error <= ACCURACY || own <= SUDDEN * length => {
                     *duration = if is_last { next.max(*duration) } else { next };
                     let time = if is_last { stop } else { self.time + own };
-                    let last = self.accept(step, own, time);
-                    if is_last {
+                    let last = self.accept(step, time);
+                    if let Some(last) = last.filter(|_| is_last) {
                         return Ok(last);
                     }
                 }
@@ -229,20 +232,33 @@ impl<const D: usize> March<'_, '_, D> {
         }
     }
 
-    /// A step of two stages, each by the method of Euler (eq. 85c); the heads are those of its end.
+    /// A step of two stages, each by the method of Euler (eq. 85c). Where the second would begin with less water than none at a
+    /// node and finds no balance, the step is by that method as a whole. The heads are those of its end.
     fn step(&mut self, duration: f64) -> Result<Step, SeepageError> {
-        let start = self.search.heads.clone();
-        let first = self.stage(
-            (self.time + STAGE * duration, &self.water.clone()),
-            duration,
-        )?;
+        let (start, water) = (self.search.heads.clone(), self.water.clone());
+        let first = self.stage((self.time + STAGE * duration, &water), STAGE * duration)?;
         let middle = self.search.heads.clone();
-        let [water, _] = (self.storage).water(&self.search.system, &middle, &self.relative);
+        let [half, _] = (self.storage).water(&self.search.system, &middle, &self.relative);
         let beyond = (1.0 - STAGE) / STAGE;
-        let before: Vec<f64> = std::iter::zip(&self.water, &water)
+        let before: Vec<f64> = std::iter::zip(&water, &half)
             .map(|(start, middle)| start + beyond * (middle - start))
             .collect();
-        let second = self.stage((self.time + duration, &before), duration)?;
+        let is_empty = |(own, all): (&f64, &f64)| *own < -*all * (1.0 + EMPTY);
+        let end = self.time + duration;
+        let lacks_water =
+            !self.relative.confined && std::iter::zip(&before, &self.drainable).any(is_empty);
+        let second = self.stage((end, &before), STAGE * duration);
+        let stages = match second {
+            Ok(second) => vec![
+                ((1.0 - STAGE) * duration, first),
+                (STAGE * duration, second),
+            ],
+            Err(SeepageError::NotFound { .. }) if lacks_water => {
+                self.search.heads.clone_from(&middle);
+                vec![(duration, self.stage((end, &water), duration)?)]
+            }
+            Err(error) => return Err(error),
+        };
         let [after, _] =
             (self.storage).water(&self.search.system, &self.search.heads, &self.relative);
         let mut error: f64 = 0.0;
@@ -251,8 +267,8 @@ impl<const D: usize> March<'_, '_, D> {
             let own = if self.relative.confined || self.storage.pressure_head(k, head) >= 0.0 {
                 head - start[k] - (middle[k] - start[k]) / STAGE
             } else {
-                let water = after[k] - self.water[k] - (water[k] - self.water[k]) / STAGE;
-                water / self.drainable[k].max(f64::MIN_POSITIVE) * self.relative.width
+                let level = after[k] - water[k] - (half[k] - water[k]) / STAGE;
+                level / self.drainable[k].max(f64::MIN_POSITIVE) * self.relative.width
             };
             error += self.volumes[k] * (own / self.span).powi(2);
         }
@@ -260,7 +276,7 @@ impl<const D: usize> March<'_, '_, D> {
         Ok(Step {
             heads: self.search.heads.clone(),
             water: after,
-            stages: [first, second],
+            stages,
             error: (error / volume).sqrt(),
         })
     }
@@ -274,22 +290,24 @@ impl<const D: usize> March<'_, '_, D> {
         let now = at_time(self.search.system.conditions, self.course, time);
         let system = &mut self.search.system;
         system.held = held(&system.cells, &now, self.free, system.grid);
+        if !self.relative.confined {
+            system.driven = system.driven_out(&self.search.heads, &self.relative);
+        }
         let storing = Storing {
             storage: &self.storage,
             before,
-            duration: STAGE * duration,
+            duration,
         };
         (self.search).balance(&self.relative, TOLERANCE, Some(&storing))
     }
 
     /// Takes a step, and writes down its balance.
-    fn accept(&mut self, step: Step, duration: f64, time: f64) -> Balanced {
+    fn accept(&mut self, step: Step, time: f64) -> Option<Balanced> {
         let mut own = (self.found.balance.last().copied()).unwrap_or_default();
-        let [first, second] = step.stages;
-        for (share, stage) in [(1.0 - STAGE, &first), (STAGE, &second)] {
-            own.entered += share * duration * stage.flows.inwards.iter().sum::<f64>();
-            own.left += share * duration * stage.flows.outwards.iter().sum::<f64>();
-            self.moved += share * duration * stage.scale;
+        for (duration, stage) in &step.stages {
+            own.entered += duration * stage.flows.inwards.iter().sum::<f64>();
+            own.left += duration * stage.flows.outwards.iter().sum::<f64>();
+            self.moved += duration * stage.scale;
         }
         let pairs = std::iter::zip(&step.water, &self.water);
         own.stored += pairs.map(|(after, before)| after - before).sum::<f64>();
@@ -298,7 +316,7 @@ impl<const D: usize> March<'_, '_, D> {
         self.found.balance.push(own);
         (self.time, self.water) = (time, step.water);
         self.search.heads = step.heads;
-        second
+        step.stages.into_iter().next_back().map(|(_, last)| last)
     }
 
     /// Keeps the state that was come to.
@@ -366,7 +384,8 @@ fn check_soil<const D: usize>(
             wanted: "positive",
         });
     }
-    if !conditions.confined && !(soil.drainable > 0.0 && soil.drainable < 1.0) {
+    let drains = soil.drainable > 0.0 && soil.drainable < 1.0;
+    if !conditions.confined && !drains {
         return Err(SeepageError::Value {
             what: format!("the drainable share of soil {index}"),
             value: soil.drainable,

@@ -117,9 +117,12 @@ fn in_time<const D: usize>(
     }))
 }
 
+/// Numbers in a list, if there is one.
+type Samples<'a> = Option<&'a At<Vec<At<f64>>>>;
+
 /// Values in time.
 fn history(
-    (time, values): (Option<&At<Vec<At<f64>>>>, Option<&At<Vec<At<f64>>>>),
+    (time, values): (Samples<'_>, Samples<'_>),
     (place, what): (Place, &str),
     problems: &mut Problems,
 ) -> Result<History, Wrong> {
