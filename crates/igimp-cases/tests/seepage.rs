@@ -513,39 +513,3 @@ fn what_changes_in_time_is_read() {
         assert!(found.contains(message), "{message}: {found}");
     }
 }
-
-#[test]
-fn tmp_tune() {
-    let path = std::path::PathBuf::from(std::env::var("RD").unwrap());
-    let sets: Vec<String> = std::env::var("SETS")
-        .unwrap_or_default()
-        .split(';')
-        .filter(|s| !s.is_empty())
-        .map(str::to_owned)
-        .collect();
-    let file = CaseFile::read(&path, &sets).unwrap_or_else(|error| panic!("{error}"));
-    let out = folder("tmp_tune");
-    let run = run_into((&file, file.case()), &out, Start::Afresh, None);
-    for table in &run.summary.setup {
-        if table.title.starts_with("Seepage") {
-            println!("{}", table.title);
-            for row in &table.rows {
-                println!("  {row:?}");
-            }
-        }
-    }
-    for s in &run.summary.stages {
-        println!(
-            "{} {:?} {} {:.1}s {:?}",
-            s.name,
-            s.outcome,
-            s.reason,
-            s.seconds,
-            s.safety.as_ref().map(|s| (s.stable, s.failed))
-        );
-    }
-    for w in &run.summary.warnings {
-        println!("W {w}");
-    }
-    println!("{:?} {}", run.failure, run.summary.seconds);
-}
