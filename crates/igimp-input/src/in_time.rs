@@ -3,6 +3,8 @@
 
 use igimp_schema::tree::{Entry, Node, Value};
 
+/// Most conditions or stages that are made.
+const MOST: usize = 1000;
 /// Steps of the stage that brings the water of a time.
 const STEPS: i64 = 4;
 
@@ -12,25 +14,35 @@ pub(super) fn expand(tree: &mut Node) {
         .filter_map(|own| Some((own.text_at("name")?.to_owned(), times(own)?.to_vec())))
         .collect();
     if let Some(Value::List(water)) = tree.get_mut("water").map(|own| &mut own.value) {
-        let each = |own: Node| match times(&own).map(<[Node]>::to_vec) {
-            Some(times) => times.iter().map(|time| condition_at(&own, time)).collect(),
-            None => vec![own],
-        };
-        *water = std::mem::take(water).into_iter().flat_map(each).collect();
+        replace(water, |own| {
+            let times = times(own)?;
+            Some(times.iter().map(|time| condition_at(own, time)).collect())
+        });
     }
     if let Some(Value::List(stages)) = tree.get_mut("stages").map(|own| &mut own.value) {
-        let each = |own: Node| match in_time(&own, &courses) {
-            Some(times) => searches(&own, times),
-            None => vec![own],
-        };
-        *stages = std::mem::take(stages).into_iter().flat_map(each).collect();
+        replace(stages, |own| Some(searches(own, in_time(own, &courses)?)));
+    }
+}
+
+/// Puts those that are made in the place of those that they are made of, as long as they are not too many.
+fn replace(list: &mut Vec<Node>, made_of: impl Fn(&Node) -> Option<Vec<Node>>) {
+    let mut made = 0;
+    for own in std::mem::take(list) {
+        match made_of(&own).filter(|own| made + own.len() <= MOST) {
+            Some(several) => {
+                made += several.len();
+                list.extend(several);
+            }
+            None => list.push(own),
+        }
     }
 }
 
 /// The times of a condition that is stated for several.
 fn times(condition: &Node) -> Option<&[Node]> {
     let times = condition.get("seepage")?.items_at("times");
-    let is_right = !times.is_empty() && times.iter().all(|time| time.text().is_some());
+    let is_right =
+        (1..=MOST).contains(&times.len()) && times.iter().all(|time| time.text().is_some());
     (is_right && condition.text_at("name").is_some()).then_some(times)
 }
 
