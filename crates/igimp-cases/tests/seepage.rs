@@ -1,11 +1,14 @@
 //! Computed seepage as a source of pore pressure: the same as water that is given where nothing flows, factors of safety, files,
 //! and what is refused and why.
 
+mod resuming;
+
 use std::sync::atomic::AtomicBool;
 
 use igimp_cases::run::{Nobody, Run, Start, Target, in_memory, run};
 use igimp_input::CaseFile;
 use igimp_model::PoreSource;
+use resuming::{assert_done, assert_equal, everything, folder, run_into};
 
 const SLOPE: &str = r#"
 igimp = 1
@@ -332,4 +335,181 @@ fn what_makes_no_flow_is_refused() {
         cause.starts_with("`left` holds no face of the ground"),
         "{cause}"
     );
+}
+
+const LATER: &str = r#"
+[[water]]
+name = "later"
+
+[water.seepage]
+start_from = "steady"
+times = ["0.5 d", "20 d"]
+faces = [{ name = "left", from = ["0 m", "0 m"], to = ["0 m", "10 m"], head = { time = ["0 d", "1 d"], values = ["9 m", "5 m"] } }]
+
+[[stages]]
+name = "weight"
+"#;
+
+const IN_TIME: &str = r#"
+[[stages]]
+name = "safety"
+type = "strength-reduction"
+in_time = "later"
+tolerance = 0.05
+bracket = [1.0, 1.5]
+"#;
+
+/// The slope whose water falls in time, with texts replaced.
+fn in_time(edits: &[(&str, &str)]) -> String {
+    let text = edited(&[
+        ("[[stages]]\nname = \"weight\"\n", LATER.trim_start()),
+        ("vertical = \"5e-6 m/s\"", "drainable = 0.1"),
+    ]);
+    let text = text + "drained = true\n" + IN_TIME;
+    edits.iter().fold(text, |text, (from, to)| {
+        assert!(text.contains(from), "{from}");
+        text.replace(from, to)
+    })
+}
+
+fn parsed(text: &str) -> CaseFile {
+    CaseFile::parse("in_time.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// GOAL: one run has the factor of safety at each time; it rises as the slope drains, up to that of the flow in the end. Threads and a
+/// run that is stopped and taken up change no byte. ORACLE: the run of the steady flow in the end; the run left alone.
+#[test]
+fn a_slope_is_safer_as_it_drains() {
+    let file = parsed(&in_time(&[]));
+    let whole = folder("seepage_in_time_whole");
+    let found = run_into((&file, file.case()), &whole, Start::Afresh, None);
+    assert_done(&found.summary);
+    let names: Vec<&str> = found
+        .summary
+        .stages
+        .iter()
+        .map(|own| own.name.as_str())
+        .collect();
+    let water = ["safety at 0_5 d (water)", "safety at 20 d (water)"];
+    assert_eq!(
+        names,
+        [
+            "weight",
+            water[0],
+            "safety at 0_5 d",
+            water[1],
+            "safety at 20 d"
+        ]
+    );
+    let factor = |run: &Run<2>, stage: usize| {
+        let own = run.summary.stages[stage].safety.as_ref().unwrap();
+        0.5 * (own.stable.unwrap() + own.failed.unwrap())
+    };
+    let [early, late] = [2, 4].map(|stage| factor(&found, stage));
+    // The end without time, on the way from the same start.
+    let end = "seepage = { faces = [{ name = \"left\", from = [\"0 m\", \"0 m\"], to = [\"0 m\", \"10 m\"], head = \"5 m\" }] }";
+    let steady = in_time(&[
+        (
+            "[[stages]]\nname = \"weight\"",
+            &format!("[[water]]\nname = \"end\"\n{end}\n\n[[stages]]\nname = \"weight\""),
+        ),
+        (
+            IN_TIME.trim_start(),
+            "[[stages]]\nname = \"water\"\ntype = \"construction\"\nwater = \"end\"\ngeometry = \"given\"\ndrained = true\nsteps = 4\n\n[[stages]]\nname = \"safety\"\ntype = \"strength-reduction\"\ntolerance = 0.05\nbracket = [1.0, 1.5]\n",
+        ),
+    ]);
+    let end = factor(&in_memory(parsed(&steady).case()).unwrap(), 2);
+    println!("after half a day {early:.3}, after 20 days {late:.3}, in the end {end:.3}");
+    assert!(
+        early < late - 0.02 && late < end + 0.02,
+        "{early} {late} {end}"
+    );
+    let table = std::fs::read_to_string(whole.join("curves/safety-in-time.csv")).unwrap();
+    let times: Vec<f64> = (table.lines().skip(1))
+        .map(|line| line.split(',').next().unwrap().parse().unwrap())
+        .collect();
+    assert_eq!(times, [43_200.0, 1_728_000.0]);
+    for name in [
+        "figures/curve-safety-in-time.svg",
+        "figures/seepage-later-at-0_5-d.svg",
+        "sections/seepage-balance-later-at-20-d.csv",
+        "paraview/seepage-later-at-20-d.vtu",
+    ] {
+        assert!(whole.join(name).is_file(), "{name}");
+    }
+    let expected = everything(&whole);
+    let stopped = folder("seepage_in_time_stopped");
+    let part = run_into((&file, file.case()), &stopped, Start::Afresh, Some(3));
+    assert!(part.summary.interrupted);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(3)
+        .build()
+        .unwrap();
+    let end = pool.install(|| run_into((&file, file.case()), &stopped, Start::Resume, None));
+    assert_done(&end.summary);
+    assert_equal(
+        &expected,
+        &everything(&stopped),
+        "taken up on three threads",
+    );
+}
+
+/// GOAL: levels from a file are those that stand in the case, and what cannot be followed is refused where it stands.
+#[test]
+fn what_changes_in_time_is_read() {
+    let place = folder("seepage_histories");
+    std::fs::create_dir_all(&place).unwrap();
+    std::fs::write(
+        place.join("pool.csv"),
+        "time [d], value [cm]\n0, 900\n1, 500\n",
+    )
+    .unwrap();
+    let inline = "{ time = [\"0 d\", \"1 d\"], values = [\"9 m\", \"5 m\"] }";
+    let name = place.join("case.toml");
+    let read = |text: &str| CaseFile::parse(name.to_str().unwrap(), text, &[]);
+    let filed = read(&in_time(&[(inline, "{ file = \"pool.csv\" }")]));
+    let filed = filed.unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(filed.case().water, parsed(&in_time(&[])).case().water);
+    for (from, to, message) in [
+        ("drainable = 0.1", "drainable = 1.5", "drainable"),
+        (
+            ", drainable = 0.1",
+            "",
+            "nothing says how much water drains from `sand`",
+        ),
+        ("start_from = \"steady\"\n", "", "but its flow is steady"),
+        (
+            "times = [\"0.5 d\", \"20 d\"]\n",
+            "",
+            "has a start and no times",
+        ),
+        (
+            "start_from = \"steady\"",
+            "start_from = \"later at 20 d\"",
+            "no steady seepage",
+        ),
+        (
+            "in_time = \"later\"",
+            "in_time = \"steady\"",
+            "has no times to search at",
+        ),
+        (
+            "values = [\"9 m\", \"5 m\"]",
+            "values = [\"9 m\"]",
+            "2 times and 1 values",
+        ),
+        (
+            "\"0 d\", \"1 d\"",
+            "\"2 d\", \"1 d\"",
+            "not after the one before",
+        ),
+        (inline, "{ time = [\"0 d\"] }", "has no values in time"),
+        (inline, "{ file = \"none.csv\" }", "none.csv"),
+    ] {
+        let found = read(&in_time(&[(from, to)]))
+            .map(|_| ())
+            .unwrap_err()
+            .to_string();
+        assert!(found.contains(message), "{message}: {found}");
+    }
 }

@@ -599,6 +599,37 @@ fn water_seeps_through_a_dam() {
 }
 
 #[test]
+fn a_dam_recovers_from_a_rapid_drawdown() {
+    let ran = ran(
+        "rapid_drawdown",
+        &[
+            "grid.cell=4 m",
+            "water.1.seepage.times=['5 d', '60 d']",
+            "output.figures=[]",
+        ],
+    );
+    assert_eq!(ran.outcomes(), [Completed; 10]);
+    let factor = |name: &str| {
+        let mut stages = ran.run.summary.stages.iter();
+        let own = stages.find(|own| own.name == name).unwrap();
+        let own = own.safety.as_ref().unwrap();
+        0.5 * (own.stable.unwrap() + own.failed.unwrap())
+    };
+    let names = [
+        "full pool",
+        "without drainage",
+        "safety at 5 d",
+        "safety at 60 d",
+        "drained in the end",
+    ];
+    let [full, sudden, early, late, end] = names.map(factor);
+    println!(
+        "{full:.3} full, {sudden:.3} without drainage, {early:.3}, {late:.3}, {end:.3} drained"
+    );
+    assert!(sudden < early && early < late && late < end && early < full);
+}
+
+#[test]
 fn what_is_left_below_a_pit_is_its_buoyant_weight() {
     let ran = ran(
         "excavation",

@@ -17,6 +17,7 @@ mod build;
 pub mod bytes;
 mod files;
 mod geometry;
+mod in_time;
 mod materials_file;
 mod read;
 pub mod shipped;

@@ -15,7 +15,7 @@ use igimp_schema::tree::{Node, Value};
 use thiserror::Error;
 
 use super::build::build;
-use super::{bytes, files};
+use super::{bytes, files, in_time};
 
 /// Most bytes of a case file.
 const LARGEST: usize = 8 << 20;
@@ -138,6 +138,7 @@ impl CaseFile {
         for index in 1..sources.len() {
             apply(&mut tree, &sources, index, &mut problems);
         }
+        in_time::expand(&mut tree);
         let mut completed = complete(&tree, &sources, &mut problems);
         files::read(&mut completed, Path::new(name), &mut problems);
         let case = build(&mut completed, Path::new(name), &mut problems);

@@ -66,6 +66,7 @@ shipped! {
     "wedge": "smooth wedge pushed into undrained clay",
     "dam_drawdown": "dam of earth: factors of safety dry, with a full pool and after drawdown",
     "dam_seepage": "dam of earth with the steady seepage through it: free surface, discharge, factor of safety",
+    "rapid_drawdown": "dam of earth whose pool is drawn down: the factor of safety against time, beside its limits",
     "excavation": "pit dug in two slices after the water was lowered",
     "embankment_lifts": "embankment filled in lifts on clay that grows stronger with depth, held against limit analysis",
     "footing_3d": "rough square footing on undrained clay in space, held against limit analysis",

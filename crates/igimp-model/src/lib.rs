@@ -51,7 +51,7 @@ pub use stage::{
     Dynamic, Reduction, ReductionPath, RunOut, SearchMethod, Stage, StageKind, StageWalls,
     StopWhen, StrengthReduction,
 };
-pub use water::seepage::SeepageCase;
+pub use water::seepage::{InTime, SeepageCase};
 pub use water::{Construction, Drainage, Drained, PoreSource, WaterCondition, table_level};
 
 use igimp_geometry::region::Region;

@@ -55,12 +55,16 @@ impl PartialEq for GivenLaw {
 const LEAST_COHESION: f64 = 1.0 / 400.0;
 
 impl Material {
+    /// Constrained modulus, 1/m_v \[Pa\].
+    pub fn constrained_modulus(&self) -> f64 {
+        let (young, poisson) = (self.young, self.poisson);
+        young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
+    }
+
     /// Speed of a compression wave under a gravity \[m/s²\] \[m/s\]; none where there is no weight.
     pub fn wave_speed(&self, gravity: f64) -> f64 {
-        let (young, poisson) = (self.young, self.poisson);
-        let modulus = young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
         if self.unit_weight > 0.0 {
-            (modulus * gravity / self.unit_weight).sqrt()
+            (self.constrained_modulus() * gravity / self.unit_weight).sqrt()
         } else {
             0.0
         }

@@ -78,7 +78,7 @@ pub enum PoreSource {
     /// Pressures by points in the plane \[Pa\], as a seepage analysis gives them; negative values count as zero. On the ground it is that
     /// of the free water there.
     Points(Raster),
-    /// Steady seepage that is computed.
+    /// Seepage that is computed, steady or at a moment.
     Seepage(Arc<SeepageCase>),
     /// r_u: the pressure as a share of the weight of the ground above, as the bodies present from the start are
     /// drawn \[-\].

@@ -90,6 +90,7 @@ pub(crate) fn gauss<const D: usize>(
                 x,
                 volume,
                 soil,
+                body_soil: soil,
                 region: None,
             }
         })

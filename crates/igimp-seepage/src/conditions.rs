@@ -1,6 +1,6 @@
 //! What a flow is given: soils, heads, flows, and what is asked of it.
 
-use crate::curve::Curve;
+use crate::curve::{Curve, Pores};
 
 /// Permeability of a soil.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,6 +13,10 @@ pub struct Soil {
     pub angle: f64,
     /// What it keeps where it is not saturated.
     pub curve: Curve,
+    /// Share of its volume that it gives back as water where it drains \[-\]; flows in time need it.
+    pub drainable: f64,
+    /// Water by volume that it gives back where the head falls and its pores stay full, m_v γ_w \[1/m\].
+    pub specific_storage: f64,
 }
 
 impl Soil {
@@ -23,6 +27,17 @@ impl Soil {
             across: permeability,
             angle: 0.0,
             curve: Curve::Ramp,
+            drainable: 0.0,
+            specific_storage: 0.0,
+        }
+    }
+
+    /// How its pores give water back.
+    pub(crate) fn pores(&self) -> Pores {
+        Pores {
+            curve: self.curve,
+            drainable: self.drainable,
+            specific_storage: self.specific_storage,
         }
     }
 

@@ -41,6 +41,18 @@ pub enum SeepageError {
         /// Largest imbalance of a node over the largest flow \[-\].
         residual: f64,
     },
+    /// A flow in time that finds no balance.
+    #[error(
+        "the flow in time does not go on after {time} s: no step was found that balances or is accurate, however short; \
+         let the permeability fall over more height, or take smaller cells"
+    )]
+    Stuck {
+        /// Time of the last balance \[s\].
+        time: f64,
+    },
+    /// A flow in time whose start is that of other ground.
+    #[error("the flow that it starts from is that of other ground")]
+    OtherGround,
     /// A linear system that could not be solved.
     #[error("a part of the ground has no head to go by, or the flow has no one solution: {source}")]
     Linear {

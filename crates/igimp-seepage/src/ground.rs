@@ -23,6 +23,8 @@ pub(crate) struct Point<const D: usize> {
     pub(crate) x: [f64; D],
     pub(crate) volume: f64,
     pub(crate) soil: usize,
+    /// The soil of its body, whose pores store water whatever a region does to the permeability.
+    pub(crate) body_soil: usize,
     /// The region that acts there.
     pub(crate) region: Option<usize>,
 }
@@ -274,6 +276,7 @@ fn subdivide<const D: usize>(
                         x: part.centroid,
                         volume: part.volume,
                         soil,
+                        body_soil: body.soil,
                         region,
                     });
                 }

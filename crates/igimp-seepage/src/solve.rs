@@ -9,10 +9,13 @@ use crate::curve::{Curve, Relative};
 use crate::error::SeepageError;
 use crate::field::Seepage;
 use crate::ground::{Bodies, SeepageBody, cells};
+use crate::storage::{Moved, Storing};
 use crate::system::{Flows, System};
 
 /// Imbalance of a node over the largest flow at which heads are found \[-\].
-const TOLERANCE: f64 = 1e-12;
+pub(crate) const TOLERANCE: f64 = 1e-12;
+/// The same of the imbalance of all nodes together, in time: a tenth of it counts \[-\].
+const ALL_OVER_ONE: f64 = 0.1;
 /// Share of what heads could drive through a cell that counts as flow \[-\]: below it round-off would decide.
 const AT_REST: f64 = 0.1;
 /// The same for flows on the way to the one that is asked for \[-\].
@@ -23,6 +26,8 @@ const FACTOR: f64 = 3.0;
 const INSERTED: usize = 12;
 /// Corrections for one fall of permeability.
 const CORRECTIONS: usize = 30;
+/// Corrections in time that are taken whole.
+const FREE: usize = 15;
 /// Halvings of a correction.
 const HALVINGS: usize = 8;
 
@@ -38,30 +43,14 @@ pub fn solve<const D: usize>(
     conditions: &Conditions<D>,
     free: FreeWater<'_, D>,
 ) -> Result<Seepage<D>, SeepageError> {
-    check(conditions)?;
-    let cells = cells(grid, &Bodies::new(bodies), conditions);
-    let system = System::new(grid, cells, conditions, free)?;
-    check_places(&system)?;
+    let mut search = Search::of(grid, bodies, conditions, free)?;
+    let start = start_of(&search.system).ok_or(SeepageError::NoHead)?;
+    search.heads = vec![start; search.system.nodes.len()];
     let heights = &grid.axes[D - 1];
-    let tallest = (0..heights.cell_count()).map(|cell| heights.spacing(cell));
-    let width = conditions.width.unwrap_or(tallest.fold(0.0, f64::max));
-    let relative = Relative {
-        width,
-        floor: conditions.floor,
-        exponent: 1.0,
-        confined: conditions.confined,
-    };
-    let start = start_of(&system).ok_or(SeepageError::NoHead)?;
-    let mut search = Search {
-        system: &system,
-        matrix: TangentMatrix::zeros(system.pattern.clone(), conditions.confined),
-        solver: SolverKind::Auto.build(),
-        heads: vec![start; system.nodes.len()],
-        corrections: 0,
-    };
+    let relative = relative_of(grid, conditions);
     let path = path(&relative, heights.end() - heights.start(), conditions);
     search.follow(&path)?;
-    let (residual, flows) = system.assemble(&search.heads, &relative, None);
+    let (residual, flows) = search.system.assemble(&search.heads, &relative, None);
     let dry = if conditions.confined {
         None
     } else {
@@ -70,12 +59,12 @@ pub fn solve<const D: usize>(
             ..relative
         };
         let kept = search.heads.clone();
-        search.balance(&lower, ON_THE_WAY * ON_THE_WAY)?;
+        search.balance(&lower, ON_THE_WAY * ON_THE_WAY, None)?;
         let heads = std::mem::replace(&mut search.heads, kept);
-        Some(system.assemble(&heads, &lower, None).1)
+        Some(search.system.assemble(&heads, &lower, None).1)
     };
     Ok(Seepage::of(
-        &system,
+        &search.system,
         &search.heads,
         relative,
         (&residual, &flows, dry.as_ref()),
@@ -111,15 +100,57 @@ fn path<const D: usize>(
         .collect()
 }
 
-struct Search<'a, const D: usize> {
-    system: &'a System<'a, D>,
-    matrix: TangentMatrix,
-    solver: Box<dyn igimp_linear::LinearSolver>,
-    heads: Vec<f64>,
-    corrections: usize,
+/// How permeability falls in the end.
+pub(crate) fn relative_of<const D: usize>(grid: &Grid<D>, conditions: &Conditions<D>) -> Relative {
+    let heights = &grid.axes[D - 1];
+    let tallest = (0..heights.cell_count()).map(|cell| heights.spacing(cell));
+    Relative {
+        width: conditions.width.unwrap_or(tallest.fold(0.0, f64::max)),
+        floor: conditions.floor,
+        exponent: 1.0,
+        confined: conditions.confined,
+    }
 }
 
-impl<const D: usize> Search<'_, D> {
+/// Heads on their way to balance.
+pub(crate) struct Search<'a, const D: usize> {
+    pub(crate) system: System<'a, D>,
+    matrix: TangentMatrix,
+    solver: Box<dyn igimp_linear::LinearSolver>,
+    pub(crate) heads: Vec<f64>,
+    pub(crate) corrections: usize,
+}
+
+/// Heads that balance, in numbers.
+pub(crate) struct Balanced {
+    pub(crate) residual: Vec<f64>,
+    pub(crate) flows: Flows,
+    /// The flow that an imbalance is held against \[m^D/s\].
+    pub(crate) scale: f64,
+    moved: Moved,
+}
+
+impl<'a, const D: usize> Search<'a, D> {
+    /// The search in the ground that bodies make, without heads to begin with.
+    pub(crate) fn of(
+        grid: &'a Grid<D>,
+        bodies: &[SeepageBody<'_, D>],
+        conditions: &'a Conditions<D>,
+        free: FreeWater<'_, D>,
+    ) -> Result<Self, SeepageError> {
+        check(conditions)?;
+        let cells = cells(grid, &Bodies::new(bodies), conditions);
+        let system = System::new(grid, cells, conditions, free)?;
+        check_places(&system)?;
+        Ok(Self {
+            matrix: TangentMatrix::zeros(system.pattern.clone(), conditions.confined),
+            solver: SolverKind::Auto.build(),
+            heads: Vec::new(),
+            corrections: 0,
+            system,
+        })
+    }
+
     /// Goes from flow to flow; where one is not found, with one more between it and the one before.
     fn follow(&mut self, path: &[Relative]) -> Result<(), SeepageError> {
         let Some(asked) = path.last() else {
@@ -132,10 +163,10 @@ impl<const D: usize> Search<'_, D> {
             let kept = self.heads.clone();
             let is_last = left.len() == 1;
             match (
-                self.balance(&next, if is_last { TOLERANCE } else { ON_THE_WAY }),
+                self.balance(&next, if is_last { TOLERANCE } else { ON_THE_WAY }, None),
                 found,
             ) {
-                (Ok(()), _) => {
+                (Ok(_), _) => {
                     left.pop();
                     found = Some(next);
                 }
@@ -154,11 +185,11 @@ impl<const D: usize> Search<'_, D> {
         Ok(())
     }
 
-    /// The flow that an imbalance is held against \[m^D/s\]: that through the ground, or where hardly any water flows what
-    /// its heads would drive through a cell.
-    fn scale(&self, flows: &Flows) -> f64 {
+    /// The flow that an imbalance is held against \[m^D/s\]: that through the ground or into storage, or where hardly any
+    /// water flows what its heads would drive through a cell.
+    fn scale(&self, flows: &Flows, moved: f64) -> f64 {
         let sum = |own: &[f64]| own.iter().sum::<f64>();
-        let through = sum(&flows.inwards).max(sum(&flows.outwards));
+        let through = sum(&flows.inwards).max(sum(&flows.outwards)).max(moved);
         let soils = self.system.conditions.soils.iter();
         let permeability = soils.map(|soil| soil.along.max(soil.across));
         let size = self.system.grid.cell_size([0; D]);
@@ -169,39 +200,84 @@ impl<const D: usize> Search<'_, D> {
         through.max(AT_REST * driven)
     }
 
-    /// Corrects the heads until water balances.
-    fn balance(&mut self, relative: &Relative, tolerance: f64) -> Result<(), SeepageError> {
+    /// Residual with what goes into storage, and flows.
+    fn residual(
+        &self,
+        heads: &[f64],
+        relative: &Relative,
+        storing: Option<&Storing<'_>>,
+    ) -> Vec<f64> {
+        let (mut residual, _) = self.system.assemble(heads, relative, None);
+        if let Some(storing) = storing {
+            storing.add(&self.system, (heads, relative), &mut residual, None);
+        }
+        residual
+    }
+
+    /// Residual, tangent and flows at the heads.
+    fn linearised(&mut self, relative: &Relative, storing: Option<&Storing<'_>>) -> Balanced {
+        let matrix = &mut self.matrix;
         let (mut residual, flows) =
-            (self.system).assemble(&self.heads, relative, Some(&mut self.matrix));
-        let mut off = largest(&residual) / self.scale(&flows);
-        for _ in 0..CORRECTIONS {
-            if off <= tolerance {
-                return Ok(());
+            (self.system).assemble(&self.heads, relative, Some(&mut *matrix));
+        let moved = storing.map_or_else(Moved::default, |storing| {
+            let at = (&self.heads[..], relative);
+            storing.add(&self.system, at, &mut residual, Some(matrix))
+        });
+        Balanced {
+            scale: self.scale(&flows, moved.rate),
+            moved,
+            residual,
+            flows,
+        }
+    }
+
+    /// Corrects the heads until water balances.
+    pub(crate) fn balance(
+        &mut self,
+        relative: &Relative,
+        tolerance: f64,
+        storing: Option<&Storing<'_>>,
+    ) -> Result<Balanced, SeepageError> {
+        // In time small imbalances of one sign would add up.
+        let off = |own: &Balanced| {
+            let sum = own.residual.iter().sum::<f64>().abs();
+            let sum = storing.map_or(0.0, |_| ALL_OVER_ONE * (sum - own.moved.all_round_off));
+            (largest(&own.residual) - own.moved.round_off).max(sum) / own.scale
+        };
+        let mut found = self.linearised(relative, storing);
+        for correction in 0..CORRECTIONS {
+            if off(&found) <= tolerance {
+                return Ok(found);
             }
             self.solver.factor(&self.matrix)?;
-            let mut step = vec![0.0; residual.len()];
-            self.solver.solve(&self.matrix, &residual, &mut step)?;
+            let mut step = vec![0.0; found.residual.len()];
+            self.solver
+                .solve(&self.matrix, &found.residual, &mut step)?;
             self.corrections += 1;
-            let before = norm(&residual);
+            let before = norm(&found.residual);
             let mut share = 1.0;
             for halving in 0..=HALVINGS {
                 let pairs = std::iter::zip(&self.heads, &step);
-                let heads: Vec<f64> = pairs.map(|(head, own)| head - share * own).collect();
-                let (own, _) = self.system.assemble(&heads, relative, None);
-                if norm(&own) < (1.0 - 1e-2 * share) * before || halving == HALVINGS {
+                let mut heads: Vec<f64> = pairs.map(|(head, own)| head - share * own).collect();
+                if let Some(storing) = storing.filter(|_| !relative.confined) {
+                    storing
+                        .storage
+                        .stop_at_surface(&self.heads, &mut heads, relative.width);
+                }
+                let own = self.residual(&heads, relative, storing);
+                // Between full pores and empty ones a correction may have to go uphill.
+                let is_free = storing.is_some() && correction < FREE;
+                if norm(&own) < (1.0 - 1e-2 * share) * before || halving == HALVINGS || is_free {
                     self.heads = heads;
                     break;
                 }
                 share *= 0.5;
             }
-            let (own, flows) =
-                (self.system).assemble(&self.heads, relative, Some(&mut self.matrix));
-            residual = own;
-            off = largest(&residual) / self.scale(&flows);
+            found = self.linearised(relative, storing);
         }
         Err(SeepageError::NotFound {
             corrections: self.corrections,
-            residual: off,
+            residual: off(&found),
         })
     }
 }

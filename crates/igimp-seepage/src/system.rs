@@ -54,9 +54,11 @@ pub(crate) struct System<'a, const D: usize> {
     /// By cell: the tensor of the soils that share it.
     shared: Vec<Option<usize>>,
     pub(crate) held: Vec<Held<D>>,
+    /// In time, by facet: the flow that its gradient drives out as a step begins \[m/s\]; none: that of the heads sought.
+    pub(crate) driven: Vec<f64>,
     pairs: Vec<Pair>,
     /// Unknowns of the corners of each cell.
-    corners: Vec<[usize; CORNERS]>,
+    pub(crate) corners: Vec<[usize; CORNERS]>,
     /// Node by unknown.
     pub(crate) nodes: Vec<usize>,
     pub(crate) pattern: Arc<Pattern>,
@@ -150,6 +152,7 @@ impl<'a, const D: usize> System<'a, D> {
             tensors,
             shared,
             held,
+            driven: Vec::new(),
             pairs,
             corners,
             nodes,
@@ -216,13 +219,14 @@ impl<'a, const D: usize> System<'a, D> {
         if let Some(matrix) = matrix.as_deref_mut() {
             matrix.values.fill(0.0);
         }
-        let mut facets = self.held.iter().peekable();
+        let mut facets = self.held.iter().enumerate().peekable();
         for cell in 0..self.cells.len() {
             let own = self.heads(cell, heads);
             let mut local = Local::of(&self.corners[cell][..1 << D]);
             self.volume(cell, &own, relative, (&mut local, &mut flows));
-            while let Some(held) = facets.next_if(|held| held.cell == cell) {
-                self.face(held, &own, relative, (&mut local, &mut flows));
+            while let Some((number, held)) = facets.next_if(|(_, held)| held.cell == cell) {
+                let driven = self.driven.get(number).copied();
+                self.face((held, driven), &own, relative, (&mut local, &mut flows));
             }
             add(&local, &mut residual, matrix.as_deref_mut());
         }
@@ -288,7 +292,7 @@ impl<'a, const D: usize> System<'a, D> {
     /// Flow through a facet (eqs. 82 and 83).
     fn face(
         &self,
-        held: &Held<D>,
+        (held, driven): (&Held<D>, Option<f64>),
         heads: &[f64; CORNERS],
         relative: &Relative,
         (local, flows): (&mut Local<'_>, &mut Flows),
@@ -319,6 +323,18 @@ impl<'a, const D: usize> System<'a, D> {
             }
             At::Head(wanted) => {
                 let [share, _] = self.share(relative, soil, wanted - x[D - 1]);
+                if let Some(driven) = driven {
+                    let outflow = share * penalty * (head - wanted) + driven;
+                    flows.add(held.owner, -outflow * area);
+                    for i in 0..corners {
+                        local.residual[i] += area * outflow * basis.value[i];
+                        for j in 0..corners {
+                            local.tangent[i][j] +=
+                                area * share * penalty * basis.value[i] * basis.value[j];
+                        }
+                    }
+                    return;
+                }
                 let outflow = share * (penalty * (head - wanted) - towards);
                 flows.add(held.owner, -outflow * area);
                 for i in 0..corners {
@@ -335,8 +351,12 @@ impl<'a, const D: usize> System<'a, D> {
                 }
             }
             At::Open(rain) => {
-                let [share, fall] = self.share(relative, soil, head - x[D - 1]);
-                let pressed = rain - share * towards + penalty * (head - x[D - 1]);
+                let [share, fall] = match driven {
+                    Some(_) => [0.0, 0.0],
+                    None => self.share(relative, soil, head - x[D - 1]),
+                };
+                let driven = driven.unwrap_or(-share * towards);
+                let pressed = rain + driven + penalty * (head - x[D - 1]);
                 let outflow = pressed.max(0.0) - rain;
                 flows.add(held.owner, -outflow * area);
                 for i in 0..corners {
@@ -350,6 +370,25 @@ impl<'a, const D: usize> System<'a, D> {
                 }
             }
         }
+    }
+
+    /// By facet: the flow that the gradient of heads drives out \[m/s\].
+    pub(crate) fn driven_out(&self, heads: &[f64], relative: &Relative) -> Vec<f64> {
+        let out = |held: &Held<D>| {
+            let Facet {
+                x, normal, soil, ..
+            } = held.facet;
+            let own = self.heads(held.cell, heads);
+            let basis = Basis::at(ends_of(self.grid, self.cells[held.cell].place), &x);
+            let head = match held.at {
+                At::Head(wanted) => wanted,
+                _ => basis.head(&own),
+            };
+            let [share, _] = self.share(relative, soil, head - x[D - 1]);
+            let pull = apply(self.tensor(held.cell, soil), &normal);
+            -share * dot(&pull, &basis.slope(&own))
+        };
+        self.held.iter().map(out).collect()
     }
 
     /// Jumps of the gradient from cell to cell where one is cut: no flow follows from them.

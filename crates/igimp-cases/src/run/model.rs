@@ -17,6 +17,7 @@ use igimp_solver::{Body, MarchSettings, NewtonSettings};
 
 use super::footing::{self, Footing};
 use super::state::{Controls, State};
+use super::water::seepage::{Flows, Followed};
 use super::water::{GroundWater, Seeded};
 use crate::error::CaseError;
 use crate::estimate::factor_memory::FactorMemory;
@@ -40,6 +41,8 @@ pub struct Model<'c, const D: usize> {
     pub(crate) gaps: Vec<f64>,
     /// By condition of the case.
     water: Vec<Arc<GroundWater<D>>>,
+    /// Flows that were followed in time.
+    pub(crate) courses: Vec<Followed>,
     /// What the particles were seeded in.
     pub(crate) seeded: Arc<Seeded<D>>,
     /// The particles of bodies that stages place.
@@ -69,6 +72,7 @@ impl<'c, const D: usize> Model<'c, D> {
             followed: footing::followed(case)?,
             gaps: Vec::new(),
             water: Vec::new(),
+            courses: Vec::new(),
             seeded: Arc::default(),
             later: None,
             factors: FactorMemory::of(case)?,
@@ -108,12 +112,16 @@ impl<'c, const D: usize> Model<'c, D> {
                 .collect();
         }
         let seeded = Arc::new(seeded);
-        model.water = match water {
-            Some(known) => known.to_vec(),
-            None => (0..case.water.len())
-                .map(|index| Ok(Arc::new(GroundWater::of(case, index, &seeded)?)))
-                .collect::<Result<_, CaseError>>()?,
-        };
+        if let Some(known) = water {
+            model.water = known.to_vec();
+        } else {
+            let flows = Flows::of(case)?;
+            model.water = std::iter::zip(0.., &flows.by_condition)
+                .map(|(index, own)| GroundWater::of(case, index, own.as_ref(), &seeded))
+                .map(Arc::new)
+                .collect();
+            model.courses = flows.courses;
+        }
         let mut particles = Particles::new(&seeds)?
             .with_ratios(ratios)?
             .with_initial_histories(&model.laws)?;

@@ -32,6 +32,7 @@ mod difference;
 mod drawn;
 pub(crate) mod entry;
 pub(crate) mod export;
+mod in_time;
 mod motion;
 pub(crate) mod outlines;
 pub(crate) mod place;
@@ -458,6 +459,8 @@ impl<const D: usize> Output<D> {
             figures.splice(at..at, histories?.into_iter().chain(energy));
             figures.extend(convergence?);
         }
+        let in_time = self.safety_in_time(case, summary)?;
+        figures.splice(at.min(figures.len())..at.min(figures.len()), in_time);
         summary.figures = figures;
         self.seconds += clock.elapsed().as_secs_f64();
         summary.seconds = begun.elapsed().as_secs_f64();

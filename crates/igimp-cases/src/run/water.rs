@@ -1,7 +1,7 @@
 //! Water in the ground as particles find it: the conditions of a case, averaged over domains (theory, eqs. 51 and 52).
 
 pub(crate) mod pores;
-mod seepage;
+pub(crate) mod seepage;
 
 use std::sync::Arc;
 
@@ -9,7 +9,6 @@ use igimp_assembly::{PoreSite, PoreState, PoreWater};
 use igimp_model::{Case, Drainage, Ground, Material, PoreSource, Raster};
 use igimp_seepage::Seepage;
 
-use crate::error::CaseError;
 use crate::run::state::gravity_of_weights;
 
 /// Points and weights of Gauss, three on −1 to 1.
@@ -108,24 +107,27 @@ struct Over<const D: usize> {
 }
 
 impl<const D: usize> Source<D> {
-    /// The source of the condition of that index, or of a body in it.
-    fn of(case: &Case<D>, condition: usize, source: &PoreSource) -> Result<Self, CaseError> {
-        Ok(match source {
+    /// The source of a condition, whose flow was computed where it is one of seepage, or of a body in it.
+    fn of(case: &Case<D>, flow: Option<&Arc<Seepage<D>>>, source: &PoreSource) -> Self {
+        match source {
             PoreSource::Dry => Self::Dry,
             PoreSource::Table(_) | PoreSource::Surface(_) | PoreSource::Drained(_) => Self::Table {
                 table: source.clone(),
                 unit_weight: case.water_unit_weight,
             },
             PoreSource::Points(raster) => Self::Points(raster.clone()),
-            PoreSource::Seepage(own) => Self::Seepage {
-                flow: Arc::new(seepage::solved(case, condition, own)?),
-                unit_weight: case.water_unit_weight,
+            PoreSource::Seepage(_) => match flow {
+                Some(flow) => Self::Seepage {
+                    flow: Arc::clone(flow),
+                    unit_weight: case.water_unit_weight,
+                },
+                None => Self::Dry,
             },
             PoreSource::Ratio(ratio) => Self::Ratio {
                 ratio: *ratio,
                 ground: case.ground(),
             },
-        })
+        }
     }
 
     /// The level above which there is no pressure \[m\].
@@ -238,32 +240,30 @@ impl<const D: usize> Source<D> {
 }
 
 impl<const D: usize> GroundWater<D> {
-    /// The condition of a case of that index.
-    ///
-    /// # Errors
-    /// [`CaseError::Seepage`] and [`CaseError::NoPermeability`] where seepage is to be computed.
+    /// The condition of a case of that index, with its flow where seepage was computed.
     pub(crate) fn of(
         case: &Case<D>,
         index: usize,
+        flow: Option<&Arc<Seepage<D>>>,
         seeded: &Arc<Seeded<D>>,
-    ) -> Result<Self, CaseError> {
+    ) -> Self {
         let condition = &case.water[index];
         let mut own: Vec<Option<Source<D>>> = case.bodies.iter().map(|_| None).collect();
         for (body, source) in &condition.bodies {
-            own[*body] = Some(Source::of(case, index, source)?);
+            own[*body] = Some(Source::of(case, None, source));
         }
         let gravity = gravity_of_weights(case.gravity);
         let added = |material: &Material| material.added_by_water() / gravity;
         let is_total = |material: &Material| material.drainage == Drainage::Total;
-        Ok(Self {
-            reference: Source::of(case, index, &condition.source)?,
+        Self {
+            reference: Source::of(case, flow, &condition.source),
             own,
             added_density: case.materials.iter().map(added).collect(),
             is_total: case.materials.iter().map(is_total).collect(),
             density: case.water_unit_weight / gravity,
             carried: condition.carried,
             seeded: Arc::clone(seeded),
-        })
+        }
     }
 
     /// The flow that was computed, if one was.

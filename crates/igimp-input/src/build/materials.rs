@@ -338,6 +338,9 @@ fn permeability(common: &MaterialCommon, problems: &mut Problems) -> Result<Opti
         across: own.vertical.as_ref().map_or(*own.horizontal, |own| **own),
         angle: *own.angle,
         curve,
+        drainable: own.drainable.as_ref().map_or(0.0, |own| **own),
+        // It follows from the stiffness, with the weight of the water.
+        specific_storage: 0.0,
     }))
 }
 

@@ -7,6 +7,7 @@
 mod columns;
 mod dxf;
 mod elevation;
+mod history;
 mod outline;
 mod raster;
 mod record;
@@ -37,6 +38,7 @@ pub(super) fn read(tree: &mut Node, case: &Path, problems: &mut Problems) {
     if let Some(conditions) = tree.get_mut("water") {
         for condition in conditions.items_mut() {
             pressures(condition, folder, problems);
+            history::of_faces(condition, folder, problems);
             let own = condition.get_mut("bodies").map(Node::items_mut);
             for body in own.into_iter().flatten() {
                 pressures(body, folder, problems);

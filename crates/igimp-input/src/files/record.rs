@@ -86,7 +86,7 @@ fn samples(file: &Named, table: &Node) -> Result<Vec<Entry>, Trouble> {
 }
 
 /// Refuses a time that is not after the one before.
-fn ascending(found: &Columns) -> Result<(), Trouble> {
+pub(super) fn ascending(found: &Columns) -> Result<(), Trouble> {
     let pairs = found.rows.windows(2).zip(found.lines.windows(2));
     for (rows, lines) in pairs {
         if rows[1][0] <= rows[0][0] {
@@ -111,7 +111,7 @@ fn ascending(found: &Columns) -> Result<(), Trouble> {
     if found.rows[0][0] < 0.0 {
         return Err(Trouble::new(
             format_args!("line {}: its time is negative", found.lines[0]),
-            "times count from the beginning of the stage",
+            "times count from the beginning",
         ));
     }
     Ok(())

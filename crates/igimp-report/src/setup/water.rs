@@ -64,6 +64,10 @@ fn source<const D: usize>(own: &PoreSource) -> String {
             )
         }
         PoreSource::Seepage(own) => {
+            let when = match &own.in_time {
+                Some(own) => format!("after {} s", short(own.time)),
+                None => "steady".to_owned(),
+            };
             let own = &own.conditions;
             let kind = if own.confined {
                 "confined flow"
@@ -71,7 +75,7 @@ fn source<const D: usize>(own: &PoreSource) -> String {
                 "flow with a free surface"
             };
             format!(
-                "computed: steady {kind}, {} conditions on faces, {} regions",
+                "computed: {kind}, {when}, {} conditions on faces, {} regions",
                 own.faces.len(),
                 own.regions.len()
             )

@@ -143,6 +143,8 @@ table! {
         "height 1/alpha over which permeability falls to 37 % above the free surface, by Gardner's curve";
     van_genuchten: table(VAN_GENUCHTEN: VanGenuchten), optional "it falls over one cell at the free surface",
         "curve of van Genuchten and Mualem above the free surface";
+    drainable: number(Share), optional "seepage in time needs it",
+        "share of its volume that soil gives back as water where it drains";
 }
 
 table! {

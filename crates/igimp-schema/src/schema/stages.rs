@@ -96,6 +96,8 @@ table! {
         "how the factor is looked for";
     geometry: choice(Geometry), default "\"given\"", "the geometry that its steps are computed on";
     failure: table(FAILURE: Failure), default "{}", "what counts as failure";
+    in_time: reference("water condition"), optional "one search is made",
+        "water with `times`: a search at each of them, called by the name and the time, after a stage of type construction that brings its water";
 }
 
 table! {

@@ -39,7 +39,7 @@ table! {
 
 table! {
     SEEPAGE: Seepage,
-    "Steady seepage: the free surface and the pressures are computed, in the ground as it is drawn when the condition first holds. \
+    "Seepage, steady or in time: the free surface and the pressures are computed, in the ground as it is drawn when the condition first holds. \
      What nothing is said of is closed where it is upright, hangs over or is the base, and a seepage face where it rises.";
     free_water: list(pair(length), 1, MANY), optional "`of_water` or boxes of `faces` say it",
         "levels of free water from left to right, x and height; where they stand above the ground they are ponds. Level beyond the ends";
@@ -55,6 +55,27 @@ table! {
     fall: quantity(Length, Positive), optional "the height of the tallest cell",
         "height about the free surface over which permeability falls";
     floor: number(Share), default "1e-3", "share of the permeability that dry soil keeps";
+    start_from: reference("water condition"), optional "the flow is steady",
+        "condition whose computed, steady flow is that at the time 0; the flow is followed in time from there";
+    times: list(quantity(Time, Positive), 1, MOST_THINGS), optional "`time` says it, or the flow is steady",
+        "times after the start; each makes a condition of its own, called by the name and the time, as in `drawdown at 5 d`";
+    time: quantity(Time, Positive), optional "`times` says it, or the flow is steady", "time after the start, of this one condition";
+}
+
+table! {
+    HEADS: Heads, "A head in time, linear between its samples and constant beyond.";
+    file: text, optional "`time` and `values` say it",
+        "a CSV file with the columns time and value, such as `time [d], value [m]`; its path from the case file";
+    time: list(quantity(Time, NotNegative), 1, MANY), optional "`file` says it", "times of the samples, ascending";
+    values: list(length, 1, MANY), optional "`file` says it", "heads at these times";
+}
+
+table! {
+    RAINS: Rains, "Rain in time, linear between its samples and constant beyond.";
+    file: text, optional "`time` and `values` say it",
+        "a CSV file with the columns time and value, such as `time [d], value [mm/h]`; its path from the case file";
+    time: list(quantity(Time, NotNegative), 1, MANY), optional "`file` says it", "times of the samples, ascending";
+    values: list(quantity(Velocity, NotNegative), 1, MANY), optional "`file` says it", "rain at these times, by area in plan";
 }
 
 table! {
@@ -63,10 +84,11 @@ table! {
     name: name, required "\"upstream\"", "name";
     from: list(length, 2, 3), required "[\"0 m\", \"0 m\"]", "one corner of the box";
     to: list(length, 2, 3), required "[\"0 m\", \"8 m\"]", "the opposite corner";
-    head: length, optional "another key says it", "level of the water before them; above it they are as if nothing were said";
+    head: either(length, table(HEADS: Heads)), optional "another key says it",
+        "level of the water before them, or levels in time; above it they are as if nothing were said";
     inflow: quantity(Velocity, Any), optional "another key says it", "water that enters by area; negative leaves";
-    recharge: quantity(Velocity, NotNegative), optional "another key says it",
-        "rain by area in plan; what cannot enter runs off, and water may come out";
+    recharge: either(quantity(Velocity, NotNegative), table(RAINS: Rains)), optional "another key says it",
+        "rain by area in plan, or in time; what cannot enter runs off, and water may come out";
     open: flag, optional "another key says it", "water comes out and none enters: a seepage face, a filter";
     closed: flag, optional "another key says it", "no water passes";
 }
@@ -103,7 +125,7 @@ table! {
         "level of the table within the ground, with `outside`: drawdown; where the ground lies lower, the table follows it";
     outside: length, optional "another key says it", "level of the free water outside, with `inside`";
     pressures: part(PRESSURES: WaterPressures);
-    seepage: table(SEEPAGE: Seepage), optional "another key says it", "steady seepage that is computed";
+    seepage: table(SEEPAGE: Seepage), optional "another key says it", "seepage that is computed";
     pond: flag, derived "true with `level` and `outside`, false otherwise",
         "whether water above the ground is meant: a pond that presses on it";
     carried: flag, default "false", "whether soil carries the pressure of the place where it started along";

@@ -13,6 +13,7 @@ use igimp_text::short;
 use super::Output;
 use crate::error::CaseError;
 use crate::run::model::Model;
+use crate::run::water::seepage::Followed;
 
 impl<const D: usize> Output<D> {
     /// Flows that were computed: a file for ParaView, the free surface as a table, and in the plane a picture.
@@ -40,9 +41,37 @@ impl<const D: usize> Output<D> {
                 self.figures.push(picture);
             }
         }
+        for own in &model.courses {
+            self.balance_of(case, own)?;
+        }
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
+
+    /// The balance of a flow in time as a table, under the name of its last moment.
+    fn balance_of(&mut self, case: &Case<D>, own: &Followed) -> Result<(), CaseError> {
+        let unit = if D == 2 { "m3/m" } else { "m3" };
+        let header = ["entered", "left", "stored"].map(|own| format!("{own} [{unit}]"));
+        let [entered, left, stored] = &header;
+        let columns = [
+            "time [s]",
+            entered,
+            left,
+            stored,
+            "error over all that moved [-]",
+        ];
+        let name = format!("seepage-balance-{}", name_of_course(case, own));
+        let mut table = Table::new(pictures::file_name(&name), &columns);
+        for row in &own.balance {
+            table.push(vec![row.time, row.entered, row.left, row.stored, row.error]);
+        }
+        Ok(table.write_csv(&self.folder.sections())?)
+    }
+}
+
+/// A flow in time is called by its last moment.
+fn name_of_course<'c, const D: usize>(case: &'c Case<D>, own: &Followed) -> &'c str {
+    (own.conditions.last()).map_or("", |&last| case.water[last].name.as_str())
 }
 
 /// The flows of a model, with the names of their conditions.
@@ -79,7 +108,25 @@ pub(crate) fn tables<const D: usize>(model: &Model<'_, D>) -> Vec<SetupTable> {
         return Vec::new();
     }
     let header = |own: &[&str]| own.iter().map(|&own| own.to_owned()).collect();
-    vec![
+    let in_time = SetupTable {
+        title: "Seepage: balance in time".to_owned(),
+        header: header(&[
+            "Water",
+            "Time [s]",
+            "Steps",
+            "Taken back",
+            &format!("Entered since the start [{}]", unit.replace("/s", "")),
+            "Left",
+            "Stored",
+            "Error over all that moved",
+        ]),
+        rows: model
+            .courses
+            .iter()
+            .filter_map(|own| balance(model.case, own))
+            .collect(),
+    };
+    let mut tables = vec![
         SetupTable {
             title: "Seepage: discharges".to_owned(),
             header: header(&[
@@ -102,7 +149,27 @@ pub(crate) fn tables<const D: usize>(model: &Model<'_, D>) -> Vec<SetupTable> {
             ]),
             rows: found,
         },
-    ]
+    ];
+    if !in_time.rows.is_empty() {
+        tables.push(in_time);
+    }
+    tables
+}
+
+/// The balance of a flow in time at its end.
+fn balance<const D: usize>(case: &Case<D>, own: &Followed) -> Option<Vec<String>> {
+    let end = own.balance.last()?;
+    let number = |value: f64| format!("{value:.4e}");
+    Some(vec![
+        name_of_course(case, own).to_owned(),
+        short(end.time),
+        (own.balance.len() - 1).to_string(),
+        own.cuts.to_string(),
+        number(end.entered),
+        number(end.left),
+        number(end.stored),
+        format!("{:.1e}", end.error),
+    ])
 }
 
 fn discharges<const D: usize>(name: &str, flow: &Seepage<D>) -> Vec<Vec<String>> {

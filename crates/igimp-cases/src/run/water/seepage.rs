@@ -1,37 +1,153 @@
-//! Steady seepage of a case: what is solved.
+//! Seepage of a case: what is solved, and what is followed in time.
 
-use igimp_model::{Case, SeepageCase};
-use igimp_seepage::{Seepage, SeepageBody, solve};
+use std::sync::Arc;
+
+use igimp_model::{Case, InTime, PoreSource, SeepageCase};
+use igimp_seepage::{Conditions, Course, Seepage, SeepageBody, WaterBalance, march, solve};
 
 use crate::error::CaseError;
 
-/// Solves for the flow of the condition of that index, in the ground as the case draws it.
-pub(super) fn solved<const D: usize>(
+/// The flows of a case.
+#[derive(Debug)]
+pub(crate) struct Flows<const D: usize> {
+    /// By condition of the water; none where nothing is computed.
+    pub(crate) by_condition: Vec<Option<Arc<Seepage<D>>>>,
+    pub(crate) courses: Vec<Followed>,
+}
+
+/// A flow that was followed in time.
+#[derive(Clone, Debug)]
+pub(crate) struct Followed {
+    /// The conditions that are moments of it, by time.
+    pub(crate) conditions: Vec<usize>,
+    /// The balance of water after each step.
+    pub(crate) balance: Vec<WaterBalance>,
+    /// Steps that were taken back.
+    pub(crate) cuts: usize,
+}
+
+impl<const D: usize> Flows<D> {
+    /// Solves for all of them, the steady ones first.
+    ///
+    /// # Errors
+    /// [`CaseError::Seepage`] and [`CaseError::NoPermeability`].
+    pub(crate) fn of(case: &Case<D>) -> Result<Self, CaseError> {
+        let mut found = Self {
+            by_condition: vec![None; case.water.len()],
+            courses: Vec::new(),
+        };
+        let stated = |index: usize| match &case.water[index].source {
+            PoreSource::Seepage(own) => Some(&**own),
+            _ => None,
+        };
+        let mut left: Vec<(usize, &SeepageCase, &InTime)> = Vec::new();
+        for index in 0..case.water.len() {
+            let Some(own) = stated(index) else { continue };
+            match &own.in_time {
+                Some(in_time) => left.push((index, own, in_time)),
+                None => found.by_condition[index] = Some(Arc::new(solved(case, index, own)?)),
+            }
+        }
+        left.sort_by(|a, b| a.2.time.total_cmp(&b.2.time));
+        while let Some(&(_, first, at)) = left.first() {
+            let is_of_it = |other: &(usize, &SeepageCase, &InTime)| {
+                (&other.1.conditions, &other.1.free_water) == (&first.conditions, &first.free_water)
+                    && (other.2.start, &other.2.histories) == (at.start, &at.histories)
+            };
+            let (own, others): (Vec<_>, Vec<_>) = left.into_iter().partition(is_of_it);
+            left = others;
+            found.follow(case, &own)?;
+        }
+        Ok(found)
+    }
+
+    /// Follows a flow through its moments, the earliest first.
+    fn follow(
+        &mut self,
+        case: &Case<D>,
+        moments: &[(usize, &SeepageCase, &InTime)],
+    ) -> Result<(), CaseError> {
+        let [.., (last, own, in_time)] = moments else {
+            return Ok(());
+        };
+        let mut times: Vec<f64> = moments.iter().map(|(.., own)| own.time).collect();
+        times.dedup();
+        let course = Course {
+            histories: in_time.histories.clone(),
+            times,
+        };
+        let Some(start) = self.by_condition[in_time.start].clone() else {
+            return Ok(());
+        };
+        // The ground is that of the start.
+        let bodies = bodies(case, (*last, in_time.start))?;
+        let (conditions, free) = given(case, own);
+        let grid = case.grid.grid()?;
+        let found = march(&grid, &bodies, (&start, &conditions), &free, &course);
+        let found = found.map_err(|source| CaseError::Seepage {
+            water: case.water[*last].name.clone(),
+            source,
+        })?;
+        let states: Vec<Arc<Seepage<D>>> = found.states.into_iter().map(Arc::new).collect();
+        for (index, _, own) in moments {
+            let state = course.times.iter().position(|time| *time >= own.time);
+            self.by_condition[*index] = state.map(|state| Arc::clone(&states[state]));
+        }
+        self.courses.push(Followed {
+            conditions: moments.iter().map(|(index, ..)| *index).collect(),
+            balance: found.balance,
+            cuts: found.cuts,
+        });
+        Ok(())
+    }
+}
+
+/// Solves for the steady flow of the condition of that index, in the ground as the case draws it.
+fn solved<const D: usize>(
     case: &Case<D>,
     condition: usize,
     own: &SeepageCase,
 ) -> Result<Seepage<D>, CaseError> {
-    let water = || case.water[condition].name.clone();
-    let bodies = case.bodies_of_water(condition);
+    let bodies = bodies(case, (condition, condition))?;
+    let (conditions, free) = given(case, own);
+    solve(&case.grid.grid()?, &bodies, &conditions, &free).map_err(|source| CaseError::Seepage {
+        water: case.water[condition].name.clone(),
+        source,
+    })
+}
+
+/// The bodies that are there for a condition, through the ground of another.
+fn bodies<const D: usize>(
+    case: &Case<D>,
+    (condition, ground): (usize, usize),
+) -> Result<Vec<SeepageBody<'_, D>>, CaseError> {
+    let bodies = case.bodies_of_water(ground);
     for (_, material) in &bodies {
         let material = &case.materials[*material];
         if material.permeability.is_none() {
             return Err(CaseError::NoPermeability {
-                water: water(),
+                water: case.water[condition].name.clone(),
                 material: material.name.clone(),
             });
         }
     }
-    let bodies: Vec<SeepageBody<'_, D>> = (bodies.into_iter())
+    Ok((bodies.into_iter())
         .map(|(region, soil)| SeepageBody { region, soil })
-        .collect();
+        .collect())
+}
+
+/// What a flow is given: its conditions, and the level of free water by place.
+fn given<'a, const D: usize>(
+    case: &Case<D>,
+    own: &'a SeepageCase,
+) -> (
+    Conditions<D>,
+    impl Fn(&[f64; D]) -> Option<f64> + Sync + use<'a, D>,
+) {
     let free = |place: &[f64; D]| {
         let level = own.free_water.as_ref()?.table(place)?;
         level.is_finite().then_some(level)
     };
-    let conditions = own.with_soils(&case.materials);
-    solve(&case.grid.grid()?, &bodies, &conditions, &free).map_err(|source| CaseError::Seepage {
-        water: water(),
-        source,
-    })
+    let conditions = own.with_soils(&case.materials, case.water_unit_weight);
+    (conditions, free)
 }

@@ -70,6 +70,14 @@ pub(crate) fn strength_reduction<const D: usize>(
     problems: &mut Problems,
 ) -> Option<StrengthReduction> {
     let context = about.context;
+    // Searches at several times were put in its place where these are known.
+    if let Some(water) = &own.in_time {
+        let message = format!("the water `{}` has no times to search at", clip(water, 40));
+        problems.error(water.place, message).help(
+            "name a condition of computed seepage with start_from and times = [\"1 d\", \"10 d\"]",
+        );
+        return None;
+    }
     let materials = materials(about, &own.materials, problems);
     let path = match *own.path {
         keys::ReductionPath::Gravity => ReductionPath::Gravity,

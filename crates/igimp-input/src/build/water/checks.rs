@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use igimp_model::{BodyPart, Drainage, PoreSource, Raster, Strength, WaterCondition};
+use igimp_model::{BodyPart, Drainage, PoreSource, Raster, SeepageCase, Strength, WaterCondition};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::materials::MaterialCommon;
@@ -102,7 +102,9 @@ impl<const D: usize> Checker<'_, D> {
         let (place, when) = when(stage.map(|stage| &around.stages[stage]), own);
         match &condition.source {
             PoreSource::Dry => {}
-            PoreSource::Seepage(_) => self.permeable(scene, (place, &who, &when), problems),
+            PoreSource::Seepage(flow) => {
+                self.permeable((scene, flow), (place, &who, &when), problems);
+            }
             PoreSource::Points(raster) => points(
                 raster,
                 (around, scene, &**surface),
@@ -170,10 +172,10 @@ impl<const D: usize> Checker<'_, D> {
         }
     }
 
-    /// Refuses bodies without a permeability where seepage is computed.
+    /// Refuses bodies without a permeability where seepage is computed, and without storage where it is followed in time.
     fn permeable(
         &self,
-        scene: &Scene,
+        (scene, flow): (&Scene, &SeepageCase),
         (place, who, when): (Place, &str, &str),
         problems: &mut Problems,
     ) {
@@ -193,6 +195,19 @@ impl<const D: usize> Checker<'_, D> {
                         ),
                     )
                     .help("write permeability = \"1e-6 m/s\" in the material; clay 1e-9, silt 1e-7, sand 1e-4");
+            }
+            let yields = |own: &Material| own.permeability.is_none_or(|own| own.drainable > 0.0);
+            let drains = flow.in_time.is_some() && !flow.conditions.confined;
+            if let Some(material) = material.filter(|own| drains && !yields(own)) {
+                problems
+                    .error(
+                        place,
+                        format!(
+                            "{who} changes in time, and nothing says how much water drains from `{}`{when}",
+                            clip(&material.name, 40)
+                        ),
+                    )
+                    .help("write permeability = { horizontal = \"1e-6 m/s\", drainable = 0.1 }; clay 0.03, silt 0.1, sand 0.25");
             }
         }
     }

@@ -1,15 +1,15 @@
-//! Steady seepage as it is stated.
+//! Seepage as it is stated, steady or in time.
 
 use std::sync::Arc;
 
-use igimp_model::{PoreSource, SeepageCase};
+use igimp_model::{InTime, PoreSource, SeepageCase};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::water::{Seepage, SeepageFace, SeepageRegion, SeepageSection, Water};
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::Wrong;
-use igimp_schema::tree::read::At;
-use igimp_seepage::{Conditions, Extent, InGround, Named, OnFaces, Soil};
+use igimp_schema::tree::read::{At, Either};
+use igimp_seepage::{Conditions, Extent, History, InGround, Named, OnFaces, Soil};
 
 use super::{Around, Form, source_of};
 
@@ -36,9 +36,10 @@ pub(super) fn source<const D: usize>(
     }
     let free_water = free_water(around, index, own, who, problems);
     let mut soils = Vec::new();
-    let faces = (own.faces.iter().flatten())
+    let (faces, histories) = (own.faces.iter().flatten())
         .filter_map(|own| face::<D>(own, problems).ok())
-        .collect();
+        .unzip();
+    let in_time = in_time(around, index, own, (who, histories), problems);
     let regions = (own.regions.iter().flatten())
         .filter_map(|own| region::<D>(own, &mut soils, problems).ok())
         .collect();
@@ -62,7 +63,92 @@ pub(super) fn source<const D: usize>(
             floor: *own.floor,
         },
         free_water,
+        in_time: in_time.ok()?,
     })))
+}
+
+/// The moment that is stated; none of a steady flow.
+fn in_time<const D: usize>(
+    around: &Around<'_, D>,
+    index: usize,
+    own: &At<Seepage>,
+    (who, histories): (&str, Vec<Option<History>>),
+    problems: &mut Problems,
+) -> Result<Option<InTime>, Wrong> {
+    let Some(start) = &own.start_from else {
+        let stated = [
+            own.times.as_ref().map(|own| ("times", own.place)),
+            own.time.as_ref().map(|own| ("time", own.place)),
+            (histories.iter().any(Option::is_some)).then_some(("a value in time", own.place)),
+        ];
+        if let Some((key, place)) = stated.into_iter().flatten().next() {
+            problems
+                .error(place, format!("{who} has {key}, but its flow is steady"))
+                .help("write start_from = \"NAME\", a condition whose computed, steady flow is that at the time 0");
+            return Err(Wrong);
+        }
+        return Ok(None);
+    };
+    let Some(time) = &own.time else {
+        problems
+            .error(start.place, format!("{who} has a start and no times"))
+            .help("write times = [\"1 d\", \"10 d\"]");
+        return Err(Wrong);
+    };
+    let asks = format!("{who} starts from");
+    let waters = &around.names.water;
+    let other = waters.find(start, &asks, problems).ok_or(Wrong)?;
+    let stated = around.own[other].as_ref().ok_or(Wrong)?;
+    let is_steady = |own: &At<Seepage>| own.start_from.is_none();
+    if other == index || !stated.seepage.as_ref().is_some_and(is_steady) {
+        let name = clip(start, 40);
+        problems
+            .error(
+                start.place,
+                format!("the water `{name}` is no steady seepage that a flow could start from"),
+            )
+            .help("name a condition with seepage = { ... } and without start_from");
+        return Err(Wrong);
+    }
+    Ok(Some(InTime {
+        start: other,
+        histories,
+        time: **time,
+    }))
+}
+
+/// Numbers in a list, if there is one.
+type Samples<'a> = Option<&'a At<Vec<At<f64>>>>;
+
+/// Values in time.
+fn history(
+    (time, values): (Samples<'_>, Samples<'_>),
+    (place, what): (Place, &str),
+    problems: &mut Problems,
+) -> Result<History, Wrong> {
+    let (Some(time), Some(values)) = (time, values) else {
+        problems
+            .error(place, format!("{what} has no values in time"))
+            .help("write file = \"pool.csv\", or time and values");
+        return Err(Wrong);
+    };
+    if time.len() != values.len() {
+        let message = format!("{} times and {} values", time.len(), values.len());
+        problems
+            .error(values.place, message)
+            .help("every time has one value");
+        return Err(Wrong);
+    }
+    if let Some(pair) = time.windows(2).find(|pair| *pair[1] <= *pair[0]) {
+        problems
+            .error(pair[1].place, "this time is not after the one before")
+            .help("times ascend, each once");
+        return Err(Wrong);
+    }
+    Ok(History {
+        times: time.iter().map(|own| **own).collect(),
+        values: values.iter().map(|own| **own).collect(),
+    })
 }
 
 /// The table of the free water.
@@ -173,28 +259,50 @@ fn is_set<'a>(key: &'a str, own: Option<&At<bool>>) -> Option<(&'a str, Place)> 
 fn face<const D: usize>(
     own: &At<SeepageFace>,
     problems: &mut Problems,
-) -> Result<Named<3, OnFaces>, Wrong> {
+) -> Result<(Named<3, OnFaces>, Option<History>), Wrong> {
     let what = format!("the face `{}`", clip(&own.name, 40));
-    let value = |key: &'static str, own: &Option<At<f64>>, of: fn(f64) -> OnFaces| {
-        own.as_ref().map(|own| (key, own.place, of(**own)))
+    let mut in_time = None;
+    let [head, recharge] = [
+        (own.head.as_ref()).map(|stated| match &**stated {
+            Either::First(one) => Ok((stated.place, *one)),
+            Either::Second(own) => Err((stated.place, own.time.as_ref(), own.values.as_ref())),
+        }),
+        (own.recharge.as_ref()).map(|stated| match &**stated {
+            Either::First(one) => Ok((stated.place, *one)),
+            Either::Second(own) => Err((stated.place, own.time.as_ref(), own.values.as_ref())),
+        }),
+    ]
+    .map(|stated| match stated? {
+        Ok(one) => Some(one),
+        Err((place, time, values)) => {
+            let own = history((time, values), (place, &what), problems).ok()?;
+            let first = own.values[0];
+            in_time = Some(own);
+            Some((place, first))
+        }
+    });
+    let value = |key: &'static str, own: Option<(Place, f64)>, of: fn(f64) -> OnFaces| {
+        own.map(|(place, own)| (key, place, of(own)))
     };
+    let inflow = own.inflow.as_ref().map(|own| (own.place, **own));
     let flag = |key, own: &Option<At<bool>>, of: OnFaces| {
         is_set(key, own.as_ref()).map(|(key, place)| (key, place, of))
     };
     let stated = [
-        value("head", &own.head, OnFaces::Head),
-        value("inflow", &own.inflow, OnFaces::Inflow),
-        value("recharge", &own.recharge, OnFaces::Recharge),
+        value("head", head, OnFaces::Head),
+        value("inflow", inflow, OnFaces::Inflow),
+        value("recharge", recharge, OnFaces::Recharge),
         flag("open", &own.open, OnFaces::Open),
         flag("closed", &own.closed, OnFaces::Closed),
     ];
     let stated = stated.into_iter().flatten().collect();
     let held = only(stated, (own.place, &what, FACES), problems);
-    Ok(Named {
+    let named = Named {
         name: own.name.value.clone(),
         within: extent::<D>(&own.from, &own.to, problems)?,
         what: held?,
-    })
+    };
+    Ok((named, in_time))
 }
 
 fn region<const D: usize>(

@@ -1,0 +1,82 @@
+//! Heads and rain in time, from CSV: time and value.
+
+use std::path::Path;
+
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::quantity::Dimension;
+use igimp_schema::tree::{Entry, Node, Value};
+
+use super::columns::columns;
+use super::record::ascending;
+use super::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
+
+/// What the file has.
+const COLUMNS: [&str; 2] = ["time", "value"];
+
+/// Puts the samples of heads and rain on the faces of a condition in place of the files that have them.
+pub(super) fn of_faces(condition: &mut Node, folder: &Path, problems: &mut Problems) {
+    let faces = condition
+        .get_mut("seepage")
+        .and_then(|own| own.get_mut("faces"));
+    for face in faces.map(Node::items_mut).into_iter().flatten() {
+        for (key, dimension) in [
+            ("head", Dimension::Length),
+            ("recharge", Dimension::Velocity),
+        ] {
+            if let Some(own) = face.get_mut(key) {
+                resolve(own, dimension, folder, problems);
+            }
+        }
+    }
+}
+
+fn resolve(own: &mut Node, dimension: Dimension, folder: &Path, problems: &mut Problems) {
+    let Some(value) = own.get("file") else {
+        return;
+    };
+    let Some(file) = Named::new(value, folder) else {
+        own.value = Value::Invalid;
+        return;
+    };
+    own.value = match samples(&file, own, dimension) {
+        Ok(entries) => Value::Table(entries),
+        Err(trouble) => {
+            file.report(value, trouble, problems);
+            Value::Invalid
+        }
+    };
+}
+
+/// The table with its samples in place of the file.
+fn samples(file: &Named, table: &Node, dimension: Dimension) -> Result<Vec<Entry>, Trouble> {
+    for other in ["time", "values"] {
+        if table.get(other).is_some() {
+            return Err(Trouble::new(
+                format_args!("the values are stated by `file` and by `{other}`"),
+                "keep one of them",
+            ));
+        }
+    }
+    let text = text_of(&file.path, LARGEST)
+        .map_err(|error| Trouble::new(error, "its path starts from the case file"))?;
+    let found = columns(&text, &COLUMNS)?;
+    ascending(&found)?;
+    let column = |k: usize, dimension: Dimension| {
+        let header = (COLUMNS[k], found.units[k].as_deref());
+        let unit = unit_of((COLUMNS[k], None), header, dimension)?;
+        let values = found
+            .rows
+            .iter()
+            .map(|own| quantity(own[k], &unit, dimension, table));
+        Ok(Value::List(values.collect::<Result<Vec<_>, _>>()?))
+    };
+    let entry = |key: &str, value| Entry {
+        key: key.to_owned(),
+        key_place: table.place,
+        node: Node::written(value, table.place),
+    };
+    Ok(vec![
+        entry("time", column(0, Dimension::Time)?),
+        entry("values", column(1, dimension)?),
+    ])
+}

@@ -1,0 +1,158 @@
+//! Water that the ground stores, lumped at nodes (theory, eqs. 85a and 85b).
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use igimp_linear::TangentMatrix;
+
+use crate::basis::Basis;
+use crate::curve::Relative;
+use crate::ground::ends_of;
+use crate::system::System;
+
+/// Volumes of soil at nodes.
+#[derive(Debug)]
+pub(crate) struct Storage {
+    /// By unknown and soil, in their order: the volume of the soil \[m^D\].
+    shares: Vec<(usize, usize, f64)>,
+    /// Elevation by unknown \[m\].
+    levels: Vec<f64>,
+}
+
+/// Digits that heads and volumes of water do not have \[-\].
+const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
+/// Pressure head at which a node is taken to be at the free surface, over the height in which permeability falls \[-\].
+const NEAR: f64 = 1e-6;
+
+/// What goes into or out of storage \[m^D/s\].
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Moved {
+    /// At all nodes together.
+    pub(crate) rate: f64,
+    /// Largest round-off of it at a node.
+    pub(crate) round_off: f64,
+    /// Round-off at all nodes.
+    pub(crate) all_round_off: f64,
+}
+
+/// A step by the method of Euler, from a volume of water at each node.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Storing<'a> {
+    pub(crate) storage: &'a Storage,
+    /// Volume of water by unknown as it begins \[m^D\].
+    pub(crate) before: &'a [f64],
+    /// Its duration \[s\].
+    pub(crate) duration: f64,
+}
+
+impl Storage {
+    pub(crate) fn of<const D: usize>(system: &System<'_, D>) -> Self {
+        let mut volumes = BTreeMap::new();
+        for (cell, own) in system.cells.iter().enumerate() {
+            let ends = ends_of(system.grid, own.place);
+            let corners = &system.corners[cell][..1 << D];
+            if let Some(soil) = own.whole {
+                let volume: f64 = system.grid.cell_size(own.place).iter().product();
+                for &unknown in corners {
+                    *volumes.entry((unknown, soil)).or_insert(0.0) += volume / corners.len() as f64;
+                }
+                continue;
+            }
+            for point in &own.points {
+                let basis = Basis::at(ends, &point.x);
+                for (k, &unknown) in corners.iter().enumerate() {
+                    *volumes.entry((unknown, point.body_soil)).or_insert(0.0) +=
+                        point.volume * basis.value[k];
+                }
+            }
+        }
+        let level = |&node: &usize| system.grid.node_position(node)[D - 1];
+        Self {
+            shares: (volumes.into_iter())
+                .map(|((unknown, soil), volume)| (unknown, soil, volume))
+                .collect(),
+            levels: system.nodes.iter().map(level).collect(),
+        }
+    }
+
+    /// Volume of water by unknown \[m^D\] and its slope \[m^(D−1)\].
+    pub(crate) fn water<const D: usize>(
+        &self,
+        system: &System<'_, D>,
+        heads: &[f64],
+        relative: &Relative,
+    ) -> [Vec<f64>; 2] {
+        let mut found = [vec![0.0; heads.len()], vec![0.0; heads.len()]];
+        for &(unknown, soil, volume) in &self.shares {
+            let psi = heads[unknown] - self.levels[unknown];
+            let [own, slope] = relative.content(&system.conditions.soils[soil].pores(), psi);
+            found[0][unknown] += volume * own;
+            found[1][unknown] += volume * slope;
+        }
+        found
+    }
+
+    /// The soils that store water, by index.
+    pub(crate) fn soils(&self) -> BTreeSet<usize> {
+        self.shares.iter().map(|(_, soil, _)| *soil).collect()
+    }
+
+    /// The pressure head of an unknown \[m\].
+    pub(crate) fn pressure_head(&self, unknown: usize, head: f64) -> f64 {
+        head - self.levels[unknown]
+    }
+
+    /// Stops a correction at nodes that the free surface would pass, where water drains most by head: on either side of it
+    /// hardly any does, and corrections would go to and fro.
+    pub(crate) fn stop_at_surface(&self, before: &[f64], after: &mut [f64], width: f64) {
+        let near = NEAR * width;
+        for (k, head) in after.iter_mut().enumerate() {
+            let [from, to] = [before[k], *head].map(|head| self.pressure_head(k, head));
+            if (from > near && to < -near) || (from < -near && to > near) {
+                *head = self.levels[k] - near;
+            }
+        }
+    }
+
+    /// Volume of soil by unknown, each soil times a share \[m^D\].
+    pub(crate) fn volumes(&self, share: impl Fn(usize) -> f64) -> Vec<f64> {
+        let mut found = vec![0.0; self.levels.len()];
+        for &(unknown, soil, volume) in &self.shares {
+            found[unknown] += volume * share(soil);
+        }
+        found
+    }
+}
+
+impl Storing<'_> {
+    /// Adds to a residual what goes into storage \[m^D/s\], to the tangent its slope.
+    pub(crate) fn add<const D: usize>(
+        &self,
+        system: &System<'_, D>,
+        (heads, relative): (&[f64], &Relative),
+        residual: &mut [f64],
+        matrix: Option<&mut TangentMatrix>,
+    ) -> Moved {
+        let [water, slopes] = self.storage.water(system, heads, relative);
+        let mut moved = Moved::default();
+        for (unknown, own) in water.iter().enumerate() {
+            let rate = (own - self.before[unknown]) / self.duration;
+            residual[unknown] += rate;
+            moved.rate += rate.abs();
+            let size = own.abs() + slopes[unknown] * heads[unknown].abs();
+            let round_off = ROUND_OFF * size / self.duration;
+            moved.round_off = moved.round_off.max(round_off);
+            moved.all_round_off += round_off;
+        }
+        let Some(matrix) = matrix else { return moved };
+        let TangentMatrix {
+            pattern, values, ..
+        } = matrix;
+        for (unknown, slope) in slopes.iter().enumerate() {
+            let rows = pattern.coupled_to(unknown);
+            let place = rows.partition_point(|own| (*own as usize) < unknown);
+            values[pattern.first_value[unknown] + place] += slope / self.duration;
+        }
+        moved
+    }
+}
