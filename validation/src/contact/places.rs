@@ -131,7 +131,7 @@ fn questions() -> Vec<Question> {
             "anchor that breaks away",
             breaks_away,
             [3.56, 3.68],
-            Claim::Bounds,
+            Claim::End,
             Level::Full,
         ),
         question(
@@ -196,7 +196,7 @@ fn pipes() -> [Question; 8] {
             "adhesive pipe, w/D = 1",
             pipe(1.0, ADHESIVE),
             [6.111, 6.218],
-            Claim::Both,
+            Claim::Bounds,
             Level::Full,
         ),
         // Between the smooth pipe and the rough one.
