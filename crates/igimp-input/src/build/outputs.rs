@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use igimp_linear::SolverKind;
 use igimp_model::{
-    Average, Cut, Every, Field, Flow, Material, Monitor, Output, Section, SectionReference,
+    Average, Cut, Every, Field, Material, Monitor, Output, Section, SectionReference,
     SolverSettings, Stage, StageKind, Strength,
 };
 use igimp_results::fields::length;
@@ -57,11 +57,9 @@ pub(super) fn solver(
         SolverKind::MultifrontalCholesky | SolverKind::FaerCholesky | SolverKind::NalgebraCholesky
     );
     let unsymmetric = materials.iter().flatten().find(|material| {
-        matches!(
-            material.strength,
-            Strength::MohrCoulomb { friction_angle, dilation_angle, flow: Flow::Dilation, .. }
-                if dilation_angle < friction_angle
-        )
+        let strength = &material.strength;
+        let angles = strength.flows_by().zip(strength.friction_angle());
+        angles.is_some_and(|(dilation, friction)| dilation < friction)
     });
     if needs_symmetry && let Some(material) = unsymmetric {
         problems
@@ -70,8 +68,12 @@ pub(super) fn solver(
                 "Cholesky needs a symmetric matrix, but flow is not associated",
             )
             .help(format!(
-                "`{}` has dilation below friction: linear = \"auto\" or \"lu\", or flow = \"davis\" in the material",
-                clip(&material.name, 40)
+                "`{}` has dilation below friction: linear = \"auto\" or \"lu\"{}",
+                clip(&material.name, 40),
+                match material.strength {
+                    Strength::MohrCoulomb { .. } => ", or flow = \"davis\" in the material",
+                    _ => "",
+                }
             ));
     }
     SolverSettings {
