@@ -71,13 +71,13 @@ pub enum Scaling {
 pub enum Regime {
     /// Inside the yield surface, or on it to within round-off: nothing was returned.
     Elastic,
-    /// The smooth part: the von Mises cylinder, or the main plane of Tresca and Mohr–Coulomb.
+    /// The smooth part: the von Mises cylinder, the Drucker–Prager cone, or the main plane of Tresca and Mohr–Coulomb.
     Smooth,
     /// The edge where the two larger principal stresses are equal.
     RightEdge,
     /// The edge where the two smaller principal stresses are equal.
     LeftEdge,
-    /// The apex of the Mohr–Coulomb pyramid.
+    /// The apex of the Mohr–Coulomb pyramid or the Drucker–Prager cone.
     Apex,
     /// The plane of the tension cut-off, largest principal stress = $`\sigma_t`$.
     Tension,

@@ -8,7 +8,7 @@
 //! |---|---|
 //! | linear Hencky elasticity | [`Elasticity`] |
 //! | the seam | [`ConstitutiveModel`], [`ReturnMap`], [`History`], [`Regime`] |
-//! | laws | [`HenckyElastic`], [`VonMises`], [`Tresca`], [`MohrCoulomb`], [`ModifiedCamClay`] |
+//! | laws | [`HenckyElastic`], [`VonMises`], [`Tresca`], [`MohrCoulomb`], [`DruckerPrager`], [`ModifiedCamClay`] |
 //! | soil whose strength and stiffness vary | [`Ratios`], [`ScaledLaw`] |
 //! | from principal space to tensors | [`lift_finite`], [`lift_small`], [`Lifted`], [`SpatialTangent`] |
 //! | what can go wrong | [`MaterialError`] |
@@ -54,6 +54,7 @@
 //!   elastic-plastic materials with a singular yield surface*, Q. Appl. Math. 11, 350–354.
 
 mod cam_clay;
+mod drucker_prager;
 mod elasticity;
 mod error;
 mod hencky;
@@ -68,6 +69,7 @@ mod tresca;
 mod von_mises;
 
 pub use cam_clay::{CamClayParameters, ModifiedCamClay, ShearStiffness};
+pub use drucker_prager::{Cone, DruckerPrager};
 pub use elasticity::Elasticity;
 pub use error::MaterialError;
 pub use hencky::HenckyElastic;

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use igimp_material::{
-    ConstitutiveModel, Elasticity, HenckyElastic, History, MohrCoulomb, Ratios, ScaledLaw, Tresca,
-    VonMises,
+    Cone, ConstitutiveModel, DruckerPrager, Elasticity, HenckyElastic, History, MohrCoulomb,
+    Ratios, ScaledLaw, Tresca, VonMises,
 };
 
 /// Trial strains to a side, an edge and in between, far beyond yield and under pressure, far from an apex \[-\].
@@ -34,6 +34,7 @@ fn laws() -> Vec<Arc<dyn ConstitutiveModel>> {
         Arc::new(von_mises),
         Arc::new(Tresca::new(elasticity(), 10.0).unwrap()),
         Arc::new(MohrCoulomb::new(elasticity(), 10.0, angle, angle).unwrap()),
+        Arc::new(DruckerPrager::new(elasticity(), 10.0, angle, angle, Cone::PlaneStrain).unwrap()),
         Arc::new(ScaledLaw::new(inner, ratios).unwrap()),
     ]
 }

@@ -223,6 +223,8 @@ mod tests {
         lambda = 0.1\nkappa = 0.02\ncritical_ratio = 1.0\npoisson = 0.2\nocr = 2.0\n[materials.sand]\nmodel = \"mohr-coulomb\"\n\
         unit_weight = \"18 kN/m3\"\nyoung = \"30 MPa\"\npoisson = 0.3\ncohesion = \"5 kPa\"\nfriction = \"30 deg\"\n\
         [materials.stiff]\nmodel = \"tresca\"\nunit_weight = \"18 kN/m3\"\nyoung = \"30 MPa\"\npoisson = 0.3\ncu = \"50 kPa\"\n\
+        [materials.cone]\nmodel = \"drucker-prager\"\nunit_weight = \"18 kN/m3\"\nyoung = \"30 MPa\"\npoisson = 0.3\n\
+        cohesion = \"5 kPa\"\nfriction = \"30 deg\"\ncone = \"compression\"\n\
         [materials.round]\nmodel = \"von-mises\"\nunit_weight = \"18 kN/m3\"\nyoung = \"30 MPa\"\npoisson = 0.3\ncu = \"50 kPa\"\n";
 
     /// GOAL: where a formula is told, the test ends on it: 0.1 %, with natural and with linear strain. ORACLE: eq. 92 and the closed
@@ -263,7 +265,7 @@ mod tests {
                 }
             }
         }
-        assert_eq!(told, 24);
+        assert_eq!(told, 28);
     }
 
     /// GOAL: a path from a file has compression positive; what is no path is refused with a remedy.

@@ -1,23 +1,24 @@
 //! Materials and the limits of their parameters.
 
 mod cam_clay;
+mod frictional;
 mod plausible;
 pub(crate) mod profiles;
 
 use std::sync::Arc;
 
-use igimp_model::{BodyPart, Drainage, Flow, Ground, Layer, Material, Profile, Profiles, Strength};
+use igimp_model::{BodyPart, Drainage, Ground, Layer, Material, Profile, Profiles, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
-use igimp_schema::schema::materials::{self as keys, MaterialCommon, Model, MohrCoulomb};
+use igimp_schema::schema::materials::{self as keys, MaterialCommon, Model};
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::read::{At, Either, Found, Named};
 use igimp_schema::tree::{Node, Wrong};
 use igimp_seepage::{Curve, Soil};
 
-use profiles::{Extent, Property, TABLES, Terms, property};
+use profiles::{Extent, Property, Terms, property};
 
-/// What may be said of a strength, of Young's modulus, of a unit weight and of friction that vary.
+/// What may be said of a strength, of Young's modulus and of a unit weight that vary.
 const STRENGTH: Terms = Terms {
     may_vanish: true,
     may_be_nothing: false,
@@ -37,13 +38,6 @@ const UNIT_WEIGHT: Terms = Terms {
     may_be_nothing: true,
     printed: |value| format!("{} kN/m3", number(value / 1e3)),
     ..STRENGTH
-};
-const FRICTION: Terms = Terms {
-    may_vanish: true,
-    may_be_nothing: true,
-    kept: f64::tan,
-    printed: |value| format!("{} deg", number(value.atan().to_degrees())),
-    forms: TABLES,
 };
 
 /// The materials in the order of the file.
@@ -166,6 +160,7 @@ pub(crate) fn linear_stiffness(model: &Model) -> Option<&keys::Stiffness> {
         Model::VonMises(own) => own.as_ref().ok().map(|own| &own.stiffness),
         Model::Tresca(own) => own.as_ref().ok().map(|own| &own.stiffness),
         Model::MohrCoulomb(own) => own.as_ref().ok().map(|own| &own.stiffness),
+        Model::DruckerPrager(own) => own.as_ref().ok().map(|own| &own.stiffness),
         Model::CamClay(_) => None,
     }
 }
@@ -224,14 +219,23 @@ fn resistance<const D: usize>(
                 None,
             )
         }
-        Model::MohrCoulomb(Err(_)) => (None, None, None),
+        Model::MohrCoulomb(Err(_)) | Model::DruckerPrager(Err(_)) => (None, None, None),
         Model::MohrCoulomb(Ok(own)) => {
-            let cohesive = own.cohesion.as_ref().ok();
-            let cohesive =
-                cohesive.and_then(|own| property(own, "cohesion", extent, STRENGTH, problems));
-            let friction = friction(own, extent, problems);
-            let both = [cohesive.as_ref(), friction.as_ref()];
-            let strength = mohr_coulomb(name, own, both, problems);
+            let both = frictional::properties(&own.strength, extent, problems);
+            let strength =
+                frictional::mohr_coulomb(name, own, both.each_ref().map(Option::as_ref), problems);
+            let [cohesive, friction] = both;
+            (strength, cohesive, friction)
+        }
+        Model::DruckerPrager(Ok(own)) => {
+            let both = frictional::properties(&own.strength, extent, problems);
+            let strength = frictional::drucker_prager(
+                name,
+                own,
+                both.each_ref().map(Option::as_ref),
+                problems,
+            );
+            let [cohesive, friction] = both;
             (strength, cohesive, friction)
         }
     };
@@ -266,37 +270,14 @@ fn constants(own: &keys::Material, common: &MaterialCommon) -> Vec<(&'static str
     match &*own.form {
         Model::VonMises(Ok(own)) => all.push(("cu", constant(&own.strength.cu))),
         Model::Tresca(Ok(own)) => all.push(("cu", constant(&own.strength.cu))),
-        Model::MohrCoulomb(Ok(own)) => {
-            all.push(("cohesion", constant(&own.cohesion)));
-            all.push(("friction", constant(&own.friction)));
-        }
         _ => {}
+    }
+    if let Some(own) = frictional::keys_of(&own.form) {
+        all.push(("cohesion", constant(&own.cohesion)));
+        all.push(("friction", constant(&own.friction)));
     }
     let stated = all.into_iter().filter_map(|(key, own)| Some((key, own?)));
     stated.collect()
-}
-
-/// tan φ, where the angle is one.
-fn friction<const D: usize>(
-    own: &MohrCoulomb,
-    extent: Extent<'_, D>,
-    problems: &mut Problems,
-) -> Option<Property> {
-    let stated = own.friction.as_ref().ok()?;
-    let is_steep = |angle: f64| angle.to_degrees() > 89.999_999;
-    let steep = match &**stated {
-        Either::First(angle) => is_steep(*angle).then_some(stated.place),
-        Either::Second(table) => (table.values.iter().flat_map(|values| values.iter()))
-            .find(|angle| is_steep(***angle))
-            .map(|angle| angle.place),
-    };
-    if let Some(place) = steep {
-        problems
-            .error(place, "the friction angle must be below 90 deg")
-            .help("soils have 15 deg to 45 deg");
-        return None;
-    }
-    property(stated, "friction", extent, FRICTION, problems)
 }
 
 /// The permeability, if the material states one.
@@ -414,8 +395,8 @@ fn drainage(
             .help("keep one of them");
         return None;
     }
-    if let (Model::MohrCoulomb(Ok(own)), Some(Strength::MohrCoulomb { .. })) = (model, strength) {
-        never_fails(own, problems)?;
+    if strength.is_some() {
+        frictional::never_fails(model, problems)?;
     }
     if let Some(stiffness) = pore_water {
         return Some(Drainage::Undrained {
@@ -446,133 +427,6 @@ fn drainage(
     })
 }
 
-/// Refuses undrained soil that dilates as associated flow does; warns of one that dilates.
-fn never_fails(own: &MohrCoulomb, problems: &mut Problems) -> Option<()> {
-    let (flow, dilation) = (own.flow.as_ref().ok()?, own.dilation.as_ref().ok()?);
-    if **flow == keys::Flow::Davis {
-        problems
-            .error(
-                flow.place,
-                "flow = \"davis\" dilates as associated flow does, and undrained soil that dilates never fails",
-            )
-            .help("leave `flow` out, or model = \"tresca\" with the undrained strength");
-        return None;
-    }
-    if **dilation > 0.0 {
-        problems
-            .warning(
-                dilation.place,
-                "undrained soil that dilates never fails: suction grows without limit",
-            )
-            .help("dilation = \"0 deg\" for undrained soil");
-    }
-    Some(())
-}
-
-fn mohr_coulomb(
-    name: &str,
-    own: &MohrCoulomb,
-    [cohesive, friction]: [Option<&Property>; 2],
-    problems: &mut Problems,
-) -> Option<Strength> {
-    let cohesion = cohesive.map(|own| own.constant);
-    let friction_varies = friction.is_some_and(|own| own.profile.is_some());
-    // An angle that is stated is kept to the last bit.
-    let stated = own.friction.as_ref().ok().map(|own| &own.value);
-    let friction = friction.and_then(|own| match (&own.profile, stated) {
-        (None, Some(Either::First(angle))) => Some(*angle),
-        (None, _) => None,
-        (Some(_), _) => Some(own.constant.atan()),
-    });
-    let dilation = own.dilation.as_ref().ok();
-    if let (Some(friction), Some(dilation)) = (friction, dilation)
-        && **dilation > friction * (1.0 + if friction_varies { 1e-12 } else { 0.0 })
-    {
-        problems
-            .error(
-                dilation.place,
-                "dilation angle is larger than the friction angle",
-            )
-            .help("dilation <= friction");
-    }
-    if let (Some(cohesion), Some(friction)) = (cohesion, friction)
-        && cohesion == 0.0
-    {
-        no_cohesion(name, own, friction, problems)?;
-    }
-    let cutoff = own.tension_cutoff.as_ref().ok()?.as_ref();
-    let cohesion_varies = cohesive.is_some_and(|own| own.profile.is_some());
-    if let Some(cutoff) = cutoff.filter(|cutoff| cohesion_varies && ***cutoff > 0.0) {
-        problems
-            .error(
-                cutoff.place,
-                "a constant tension cut-off does not go with a cohesion that varies",
-            )
-            .help("tension_cutoff = \"0 kPa\", or leave it out: cohesion / tan(friction) limits tension");
-        return None;
-    }
-    if let (Some(cohesion), Some(friction), Some(cutoff)) = (cohesion, friction, cutoff) {
-        let apex = cohesion / friction.tan();
-        if friction > 0.0 && **cutoff > apex * (1.0 + 1e-12) {
-            problems
-                .warning(
-                    cutoff.place,
-                    "this tension cut-off never acts: it lies above the apex of the cone",
-                )
-                .help(format!(
-                    "apex: cohesion / tan(friction) = {} kPa",
-                    number(apex / 1e3)
-                ));
-        }
-    }
-    Some(Strength::MohrCoulomb {
-        cohesion: cohesion?,
-        friction_angle: friction?,
-        dilation_angle: (**dilation?).min(friction?),
-        flow: match **own.flow.as_ref().ok()? {
-            keys::Flow::Davis => Flow::Davis,
-            keys::Flow::Dilation => Flow::Dilation,
-        },
-        tension_cutoff: cutoff.map(|cutoff| **cutoff),
-    })
-}
-
-/// Refuses soil without cohesion and friction, somewhere or everywhere; warns of soil without cohesion.
-fn no_cohesion(
-    name: &str,
-    own: &MohrCoulomb,
-    friction: f64,
-    problems: &mut Problems,
-) -> Option<()> {
-    let name = clip(name, 40);
-    let stated = own.friction.as_ref().ok()?;
-    if let Either::Second(table) = &**stated
-        && (table.values.iter().flat_map(|values| values.iter())).any(|angle| **angle == 0.0)
-    {
-        problems
-            .error(
-                stated.place,
-                format!("`{name}` has no strength where friction is zero"),
-            )
-            .help("a small cohesion, like cohesion = \"0.1 kPa\"");
-        return None;
-    }
-    let place = own.cohesion.as_ref().ok()?.place;
-    if friction == 0.0 {
-        problems
-            .error(place, format!("`{name}` has neither cohesion nor friction"))
-            .help("give it one of them, or model = \"elastic\"");
-    } else {
-        problems
-            .warning(
-                place,
-                format!("`{name}` has no cohesion: without confinement it has no strength"),
-            )
-            .help("it counts with a cohesion of unit_weight × cell / 400, which the cells at its face need");
-    }
-    Some(())
-}
-
 /// K₀ of a material, if it states one.
 fn k0(
     common: &MaterialCommon,
@@ -586,10 +440,17 @@ fn k0(
     let refused = match (&**stated, strength) {
         (Either::First(value), _) => return Ok(Some(*value)),
         (Either::Second(_), None) => return Err(Wrong),
-        (Either::Second(_), Some(Strength::MohrCoulomb { .. })) if friction_varies => {
-            "k0 = \"jaky\" needs one friction angle, and friction varies here"
-        }
-        (Either::Second(_), Some(Strength::MohrCoulomb { friction_angle, .. })) => {
+        (
+            Either::Second(_),
+            Some(Strength::MohrCoulomb { .. } | Strength::DruckerPrager { .. }),
+        ) if friction_varies => "k0 = \"jaky\" needs one friction angle, and friction varies here",
+        (
+            Either::Second(_),
+            Some(
+                Strength::MohrCoulomb { friction_angle, .. }
+                | Strength::DruckerPrager { friction_angle, .. },
+            ),
+        ) => {
             return Ok(Some(1.0 - friction_angle.sin()));
         }
         (Either::Second(_), Some(Strength::ModifiedCamClay(own))) => {

@@ -247,7 +247,9 @@ fn k0<const D: usize>(about: &About<'_, D>, problems: &mut Problems) {
                     ),
                 )
                 .help(match material.strength {
-                    Strength::MohrCoulomb { .. } => "add k0 = \"jaky\", or a number",
+                    Strength::MohrCoulomb { .. } | Strength::DruckerPrager { .. } => {
+                        "add k0 = \"jaky\", or a number"
+                    }
                     _ => "add k0 = 0.5, or what it is",
                 });
         }

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use igimp_material::{
-    ConstitutiveModel, Elasticity, HenckyElastic, History, MohrCoulomb, Principal, Regime, Tresca,
-    VonMises,
+    Cone, ConstitutiveModel, DruckerPrager, Elasticity, HenckyElastic, History, MohrCoulomb,
+    Principal, Regime, Tresca, VonMises,
 };
 
 use crate::random::Random;
@@ -49,6 +49,18 @@ const MOHR_COULOMB: [(f64, f64, f64, Option<f64>, usize); 12] = [
     (2.0, 0.0, 0.0, Some(1.0), 2),
     (1.0, 25.0, 25.0, Some(1.0), 3),
     (1.0, 25.0, 0.0, Some(2.1), 1),
+];
+
+/// Cohesion, friction and dilation in degrees, cone, elastic set.
+const DRUCKER_PRAGER: [(f64, f64, f64, Cone, usize); 8] = [
+    (10.0, 20.0, 0.0, Cone::PlaneStrain, 1),
+    (1.0, 30.0, 30.0, Cone::PlaneStrain, 0),
+    (1.0, 25.0, 5.0, Cone::Compression, 0),
+    (0.0, 35.0, 5.0, Cone::Extension, 0),
+    (2.0, 0.0, 0.0, Cone::PlaneStrain, 0),
+    (5.0, 45.0, 10.0, Cone::Compression, 2),
+    (1.0, 25.0, 25.0, Cone::Extension, 3),
+    (1.0, 40.0, 40.0, Cone::Compression, 0),
 ];
 
 fn elasticity(set: usize) -> Elasticity {
@@ -117,7 +129,20 @@ pub(crate) fn families() -> Vec<Vec<Entry>> {
         sets.clone().map(von_mises).collect(),
         sets.map(tresca).collect(),
         (0..MOHR_COULOMB.len()).map(mohr_coulomb).collect(),
+        (0..DRUCKER_PRAGER.len()).map(drucker_prager).collect(),
     ]
+}
+
+fn drucker_prager(row: usize) -> Entry {
+    let (cohesion, friction, dilation, cone, set) = DRUCKER_PRAGER[row];
+    let angles = [friction, dilation].map(f64::to_radians);
+    let law = DruckerPrager::new(elasticity(set), cohesion, angles[0], angles[1], cone).unwrap();
+    let mut regimes = vec![Regime::Elastic, Regime::Smooth];
+    if friction > 0.0 {
+        regimes.push(Regime::Apex);
+    }
+    let parameters = format!("{:?}", DRUCKER_PRAGER[row]);
+    entry(law, &parameters, cohesion.max(0.5), None, &regimes)
 }
 
 fn mohr_coulomb(row: usize) -> Entry {

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use igimp_material::{
-    ConstitutiveModel, Elasticity, History, MohrCoulomb, Principal, Regime, ReturnMap, Tresca,
-    VonMises,
+    Cone, ConstitutiveModel, DruckerPrager, Elasticity, History, MohrCoulomb, Principal, Regime,
+    ReturnMap, Tresca, VonMises,
 };
 
 use crate::random::Random;
@@ -49,6 +49,17 @@ fn sample(random: &mut Random) -> Sample {
             } else {
                 strength
             };
+            let cones = [Cone::Compression, Cone::Extension, Cone::PlaneStrain];
+            if random.below(3) == 0 {
+                let cone = cones[random.below(3)];
+                let law = DruckerPrager::new(elasticity, cohesion, friction, dilation, cone);
+                let law = Arc::new(law.unwrap());
+                return Sample {
+                    is_associated: law.has_symmetric_tangent(),
+                    law,
+                    strain,
+                };
+            }
             let mut law = MohrCoulomb::new(elasticity, cohesion, friction, dilation).unwrap();
             if random.below(3) == 0 {
                 let apex = if friction > 0.0 {

@@ -1,8 +1,8 @@
 //! Strength reduction, and laws that are limits of other laws.
 
 use igimp_material::{
-    ConstitutiveModel, Elasticity, History, MohrCoulomb, Principal, Regime, ReturnMap, Tresca,
-    VonMises,
+    Cone, ConstitutiveModel, DruckerPrager, Elasticity, History, MohrCoulomb, Principal, Regime,
+    ReturnMap, Tresca, VonMises,
 };
 
 use crate::catalogue::all;
@@ -133,6 +133,40 @@ fn reduction_divides_strength_and_keeps_elasticity() {
             expected.has_symmetric_tangent()
         );
         assert!(distance(&*found, &*expected) < 1e-15, "{}", law.name());
+    }
+}
+
+/// GOAL: reduction divides c and tan φ before the cone is matched, for all cones; the apex stays.
+#[test]
+fn a_cone_is_matched_to_reduced_strength() {
+    let (cohesion, friction, dilation, srf) = (2.0, 0.6_f64, 0.3, 2.5);
+    let reduced = (friction.tan() / srf).atan();
+    for cone in [Cone::Compression, Cone::Extension, Cone::PlaneStrain] {
+        let law = |c, friction, dilation| {
+            DruckerPrager::new(elasticity(), c, friction, dilation, cone).unwrap()
+        };
+        let found = law(cohesion, friction, dilation).reduced(srf).unwrap();
+        // ψ would exceed the reduced φ: flow becomes associated.
+        let expected = law(cohesion / srf, reduced, reduced);
+        assert!(found.has_symmetric_tangent());
+        assert!(distance(&*found, &expected) < 1e-15);
+        let apex = answer(&*found, &[0.1; 3]).tau[0];
+        assert!((apex * friction.tan() / cohesion - 1.0).abs() < 1e-14);
+    }
+}
+
+/// GOAL: without friction the cone is a cylinder: that of plane strain is von Mises with c_u = c, and the others pass through
+/// Tresca's uniaxial strength 2c.
+#[test]
+fn a_cone_without_friction_is_von_mises() {
+    for (cone, yield_stress) in [
+        (Cone::Compression, 3.0),
+        (Cone::Extension, 3.0),
+        (Cone::PlaneStrain, 1.5 * 3.0_f64.sqrt()),
+    ] {
+        let cone = DruckerPrager::new(elasticity(), 1.5, 0.0, 0.0, cone).unwrap();
+        let cylinder = VonMises::from_yield_stress(elasticity(), yield_stress).unwrap();
+        assert!(distance(&cone, &cylinder) < 1e-14);
     }
 }
 

@@ -1,8 +1,8 @@
 //! What is not accepted, and the words for it.
 
 use igimp_material::{
-    Elasticity, HenckyElastic, History, MaterialError, MohrCoulomb, TangentKind, Tensor, Tresca,
-    VonMises, lift_finite, lift_small, logarithmic_strain,
+    Cone, DruckerPrager, Elasticity, HenckyElastic, History, MaterialError, MohrCoulomb,
+    TangentKind, Tensor, Tresca, VonMises, lift_finite, lift_small, logarithmic_strain,
 };
 
 use crate::catalogue::all;
@@ -101,6 +101,21 @@ fn parameters_out_of_range_are_named() {
     ];
     for (found, expected) in cases {
         assert_eq!(found, expected);
+    }
+}
+
+#[test]
+fn parameters_of_a_cone_are_those_of_mohr_coulomb() {
+    for (c, friction, dilation) in [
+        (-1.0, 0.5, 0.1),
+        (0.0, 0.0, 0.0),
+        (1.0, f64::NAN, 0.1),
+        (1.0, 1.6, 0.1),
+        (1.0, 0.5, 0.6),
+    ] {
+        let cone = DruckerPrager::new(elasticity(), c, friction, dilation, Cone::Extension);
+        let pyramid = mohr_coulomb(c, friction, dilation);
+        assert_eq!(message(cone), message(pyramid));
     }
 }
 

@@ -80,6 +80,13 @@ fn shares_are_the_stated_ratios() {
     let friction = 20_f64.to_radians();
     let strength = 10.0 * friction.cos() + 50.0 * friction.sin();
     assert!((share - 10.0 / strength).abs() < 1e-14);
+    // Without friction and in plane strain q over √3 · 2.
+    let drucker_prager = named("Drucker-Prager (2.0, 0.0");
+    assert_share(
+        &*drucker_prager.law,
+        &[0.5, 0.0, 0.0],
+        0.25 / 3.0_f64.sqrt(),
+    );
 }
 
 /// GOAL: one at the apex and beyond it, and more than one for a shear stress beyond the surface.

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use igimp_assembly::SharedLaw;
 use igimp_material::{
-    CamClayParameters, Elasticity, HenckyElastic, MaterialError, ModifiedCamClay, MohrCoulomb,
-    ShearStiffness, Tresca, VonMises,
+    CamClayParameters, Cone, DruckerPrager, Elasticity, HenckyElastic, MaterialError,
+    ModifiedCamClay, MohrCoulomb, ShearStiffness, Tresca, VonMises,
 };
 
 /// How plastic flow of frictional soil follows from its angle of dilation.
@@ -46,6 +46,17 @@ pub enum Strength {
         /// Largest tensile stress \[Pa\]; none: the apex of the cone.
         tension_cutoff: Option<f64>,
     },
+    /// Drucker–Prager.
+    DruckerPrager {
+        /// c \[Pa\].
+        cohesion: f64,
+        /// φ \[rad\].
+        friction_angle: f64,
+        /// ψ \[rad\].
+        dilation_angle: f64,
+        /// Where it agrees with Mohr–Coulomb of these parameters.
+        cone: Cone,
+    },
     /// Modified Cam-clay; its elasticity is of its own.
     ModifiedCamClay(CamClayParameters),
 }
@@ -84,6 +95,7 @@ impl Strength {
             Self::VonMises { .. } => "von Mises",
             Self::Tresca { .. } => "Tresca",
             Self::MohrCoulomb { .. } => "Mohr–Coulomb",
+            Self::DruckerPrager { .. } => "Drucker–Prager",
             Self::ModifiedCamClay(_) => "modified Cam-clay",
         }
     }
@@ -118,6 +130,24 @@ impl Strength {
                 parameters.extend(tension_cutoff.map(limit));
                 parameters
             }
+            Self::DruckerPrager {
+                cohesion,
+                friction_angle,
+                dilation_angle,
+                cone,
+            } => vec![
+                parameter("c = ", ParameterValue::Cohesive(cohesion)),
+                parameter("φ = ", ParameterValue::Friction(friction_angle)),
+                parameter("ψ = ", ParameterValue::Angle(dilation_angle)),
+                parameter(
+                    match cone {
+                        Cone::Compression => "cone of triaxial compression",
+                        Cone::Extension => "cone of triaxial extension",
+                        Cone::PlaneStrain => "cone of plane strain",
+                    },
+                    ParameterValue::Note,
+                ),
+            ],
             Self::ModifiedCamClay(own) => {
                 let number = |label, value| parameter(label, ParameterValue::Number(value));
                 let shear = match own.shear {
@@ -144,7 +174,23 @@ impl Strength {
             Self::ModifiedCamClay(_) => Some(
                 "is modified Cam-clay: its strength is a result of the path, and no parameter to reduce",
             ),
-            Self::VonMises { .. } | Self::Tresca { .. } | Self::MohrCoulomb { .. } => None,
+            Self::VonMises { .. }
+            | Self::Tresca { .. }
+            | Self::MohrCoulomb { .. }
+            | Self::DruckerPrager { .. } => None,
+        }
+    }
+
+    /// Dilation angle ψ of flow that is not associated where it is below φ \[rad\]; none of a strength without one.
+    pub fn flows_by(&self) -> Option<f64> {
+        match *self {
+            Self::MohrCoulomb {
+                dilation_angle,
+                flow: Flow::Dilation,
+                ..
+            }
+            | Self::DruckerPrager { dilation_angle, .. } => Some(dilation_angle),
+            _ => None,
         }
     }
 
@@ -175,6 +221,13 @@ impl Strength {
         elasticity: Elasticity,
         least_cohesion: f64,
     ) -> Result<SharedLaw, MaterialError> {
+        let at_least = |cohesion: f64| {
+            if cohesion < least_cohesion {
+                least_cohesion
+            } else {
+                cohesion
+            }
+        };
         Ok(match *self {
             Self::Elastic => Arc::new(HenckyElastic::new(elasticity)),
             Self::VonMises { undrained_strength } => Arc::new(VonMises::from_undrained_strength(
@@ -191,11 +244,7 @@ impl Strength {
                 flow,
                 tension_cutoff,
             } => {
-                let cohesion = if cohesion < least_cohesion {
-                    least_cohesion
-                } else {
-                    cohesion
-                };
+                let cohesion = at_least(cohesion);
                 let mut law =
                     MohrCoulomb::new(elasticity, cohesion, friction_angle, dilation_angle)?;
                 if flow == Flow::Davis {
@@ -206,6 +255,18 @@ impl Strength {
                 }
                 Arc::new(law)
             }
+            Self::DruckerPrager {
+                cohesion,
+                friction_angle,
+                dilation_angle,
+                cone,
+            } => Arc::new(DruckerPrager::new(
+                elasticity,
+                at_least(cohesion),
+                friction_angle,
+                dilation_angle,
+                cone,
+            )?),
             Self::ModifiedCamClay(parameters) => Arc::new(ModifiedCamClay::new(parameters)?),
         })
     }

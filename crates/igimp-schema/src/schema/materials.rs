@@ -40,6 +40,7 @@ variants! {
     "von-mises" => VonMises(VON_MISES: VonMises),
     "tresca" => Tresca(TRESCA: Tresca),
     "mohr-coulomb" => MohrCoulomb(MOHR_COULOMB: MohrCoulomb),
+    "drucker-prager" => DruckerPrager(DRUCKER_PRAGER: DruckerPrager),
     "modified-cam-clay" => CamClay(CAM_CLAY: CamClay),
     after MATERIAL_COMMON: MaterialCommon;
 }
@@ -76,15 +77,36 @@ table! {
 
 table! {
     MOHR_COULOMB: MohrCoulomb, "Elastic and perfectly plastic, Mohr-Coulomb with non-associated flow.";
+    strength: part(FRICTIONAL: Frictional);
+    flow: apart(choice(Flow)), default "\"dilation\"", "how plastic flow follows from the angle of dilation";
+    tension_cutoff: apart(quantity(Stress, NotNegative)), optional "the apex of the cone limits tension",
+        "largest tensile stress; zero or missing where cohesion varies";
+    stiffness: part(STIFFNESS: Stiffness);
+}
+
+table! {
+    DRUCKER_PRAGER: DruckerPrager,
+    "Elastic and perfectly plastic, Drucker-Prager with non-associated flow: a cone that agrees with Mohr-Coulomb along one path.";
+    strength: part(FRICTIONAL: Frictional);
+    cone: apart(choice(Cone)), required "\"plane-strain\"", "where it has the strength of Mohr-Coulomb";
+    stiffness: part(STIFFNESS: Stiffness);
+}
+
+choices! {
+    /// Where a cone has the strength of Mohr-Coulomb.
+    Cone;
+    Compression "compression", "in triaxial compression: the outer cone, too strong elsewhere";
+    Extension "extension", "in triaxial extension: the inner cone";
+    PlaneStrain "plane-strain", "in plane strain, for any dilation angle";
+}
+
+table! {
+    FRICTIONAL: Frictional, "Strength by effective stress.";
     cohesion: apart(either(quantity(Stress, NotNegative), table(STRESS_PROFILE: Profile))), required "\"10 kPa\"",
         "cohesion c";
     friction: apart(either(quantity(Angle, NotNegative), table(FRICTION_PROFILE: Rows))), required "\"20 deg\"",
         "friction angle, below 90 deg";
     dilation: apart(quantity(Angle, NotNegative)), default "\"0 deg\"", "dilation angle, nowhere above the friction angle";
-    flow: apart(choice(Flow)), default "\"dilation\"", "how plastic flow follows from the angle of dilation";
-    tension_cutoff: apart(quantity(Stress, NotNegative)), optional "the apex of the cone limits tension",
-        "largest tensile stress; zero or missing where cohesion varies";
-    stiffness: part(STIFFNESS: Stiffness);
 }
 
 table! {

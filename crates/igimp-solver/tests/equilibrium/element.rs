@@ -1,8 +1,8 @@
 //! Laws on their own, along the paths of the laboratory.
 
 use igimp_material::{
-    CamClayParameters, ConstitutiveModel, Elasticity, ModifiedCamClay, MohrCoulomb, ShearStiffness,
-    Tresca, VonMises,
+    CamClayParameters, Cone, ConstitutiveModel, DruckerPrager, Elasticity, ModifiedCamClay,
+    MohrCoulomb, ShearStiffness, Tresca, VonMises,
 };
 use igimp_solver::element::{
     Control, ElementError, ElementPath, ElementState, ElementTest, Kinematics, StandardTest,
@@ -288,6 +288,80 @@ fn perfectly_plastic_laws_bear_what_they_should() {
     ] {
         let states = driven(clay, test, 0.3, 60, Kinematics::Small);
         close(states[60].sigma[0][1], 40e3, 1e-6, "simple shear");
+    }
+}
+
+/// The difference of the stresses along and across at failure, and the rate of volume over that of the difference of strains.
+fn bears(law: &dyn ConstitutiveModel, test: StandardTest, strain: f64) -> (f64, f64) {
+    let states = driven(law, test, strain, 200, Kinematics::Small);
+    let [before, last] = [160, 200].map(|state| &states[state]);
+    let difference = |state: &ElementState| state.sigma[0][0] - state.sigma[1][1];
+    let settled = (difference(last) / difference(before) - 1.0).abs();
+    assert!(settled < 1e-10, "still moving: {settled:e}");
+    let step = |a: usize| last.strain[a] - before.strain[a];
+    let volume = (0..3).map(step).sum::<f64>();
+    (difference(last).abs(), volume / (step(0) - step(1)).abs())
+}
+
+/// GOAL: a cone bears what Mohr–Coulomb bears where it was matched, and dilates alike there; between compression and extension
+/// it does not, which the last lines show.
+/// ORACLE: the closed form σ_1 = σ_3 K + 2 c √K, K = (1 + sin φ)/(1 − sin φ), by hand; in plane strain
+/// dε_v/dγ = sin ψ; in triaxial tests the flow of the corner, dε_v/dε_1 = −2 sin ψ/(1 − sin ψ) in compression and
+/// dε_v/dε_3 = 2 sin ψ/(1 + sin ψ) in extension. And the pyramid along the same path. BAND: 1e-9.
+#[test]
+fn a_cone_bears_what_mohr_coulomb_does_where_it_is_matched() {
+    let elasticity = Elasticity::new(20e6, 0.3).unwrap();
+    let c = 5e3;
+    for (friction, dilation) in [
+        (30.0_f64, 30.0_f64),
+        (30.0, 10.0),
+        (30.0, 0.0),
+        (20.0, 20.0),
+    ] {
+        let (phi, psi) = (friction.to_radians(), dilation.to_radians());
+        let passive = (1.0 + phi.sin()) / (1.0 - phi.sin());
+        let failed = P0 * (passive - 1.0) + 2.0 * c * passive.sqrt();
+        // σ_1 = P0 is kept, and σ_3 falls.
+        let extended = P0 - (P0 - 2.0 * c * passive.sqrt()) / passive;
+        let cone = |kind| DruckerPrager::new(elasticity, c, phi, psi, kind).unwrap();
+        let pyramid = MohrCoulomb::new(elasticity, c, phi, psi).unwrap();
+        let (compression, extension) = (
+            4.0 * psi.sin() / (3.0 - psi.sin()),
+            4.0 * psi.sin() / (3.0 + psi.sin()),
+        );
+        for (kind, test, strain, strength, flow) in [
+            (
+                Cone::PlaneStrain,
+                StandardTest::PlaneStrainDrained,
+                0.4,
+                failed,
+                psi.sin(),
+            ),
+            (
+                Cone::Compression,
+                StandardTest::TriaxialDrained,
+                0.4,
+                failed,
+                compression,
+            ),
+            (
+                Cone::Extension,
+                StandardTest::TriaxialDrained,
+                -0.4,
+                extended,
+                extension,
+            ),
+        ] {
+            let what = format!("{kind:?} {friction} {dilation}");
+            let (own, own_flow) = bears(&cone(kind), test, strain);
+            close(own, strength, 1e-9, &what);
+            close(own, bears(&pyramid, test, strain).0, 1e-9, &what);
+            assert!((own_flow - flow).abs() < 1e-9, "{what}: {own_flow} {flow}");
+        }
+        let far = |kind, test| bears(&cone(kind), test, 4.0).0;
+        let outer = far(Cone::Compression, StandardTest::PlaneStrainDrained);
+        let inner = far(Cone::Extension, StandardTest::TriaxialDrained);
+        assert!(outer > 1.05 * failed && inner < 0.95 * failed);
     }
 }
 

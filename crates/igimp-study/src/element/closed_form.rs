@@ -1,6 +1,6 @@
 //! What a law bears by a formula, where there is one.
 
-use igimp_material::{CamClayParameters, ShearStiffness};
+use igimp_material::{CamClayParameters, Cone, ShearStiffness};
 use igimp_model::{Flow, Material, Strength};
 use igimp_solver::element::{ElementState, Kinematics, StandardTest};
 
@@ -49,6 +49,12 @@ pub(super) fn strength(
                 friction_angle,
                 flow: Flow::Dilation,
                 ..
+            }
+            | Strength::DruckerPrager {
+                cohesion,
+                friction_angle,
+                cone: Cone::Compression,
+                ..
             },
             StandardTest::TriaxialDrained,
         ) => {
@@ -64,6 +70,12 @@ pub(super) fn strength(
                 dilation_angle: 0.0,
                 flow: Flow::Dilation,
                 ..
+            }
+            | Strength::DruckerPrager {
+                cohesion,
+                friction_angle,
+                dilation_angle: 0.0,
+                cone: Cone::Compression,
             },
             StandardTest::TriaxialUndrained,
         ) => {

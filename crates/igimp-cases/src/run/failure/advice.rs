@@ -339,6 +339,12 @@ fn more_steps(stage: &Stage) -> String {
 
 /// A tension cut-off where soil comes apart.
 fn tension(material: &Material) -> Option<String> {
+    if let Strength::DruckerPrager { .. } = material.strength {
+        return Some(format!(
+            "more cohesion in \"{}\", which comes apart there",
+            material.name
+        ));
+    }
     let Strength::MohrCoulomb {
         cohesion,
         friction_angle,

@@ -58,7 +58,9 @@ pub(crate) fn dilatant<const D: usize>(case: &Case<D>) -> Vec<String> {
         return Vec::new();
     }
     let remark = |material: &igimp_model::Material| {
-        let Strength::MohrCoulomb { dilation_angle, .. } = material.strength else {
+        let (Strength::MohrCoulomb { dilation_angle, .. }
+        | Strength::DruckerPrager { dilation_angle, .. }) = material.strength
+        else {
             return None;
         };
         let undrained = matches!(material.drainage, Drainage::Undrained { .. });

@@ -270,7 +270,8 @@ impl<const D: usize> Checker<'_, D> {
             }
             let has_friction = matches!(
                 material.strength,
-                Strength::MohrCoulomb { friction_angle, .. } if friction_angle > 0.0
+                Strength::MohrCoulomb { friction_angle, .. }
+                | Strength::DruckerPrager { friction_angle, .. } if friction_angle > 0.0
             );
             let is_wet = || own.is_none() && is_wet(around.earth, &condition.source, part);
             if has_friction && !self.told.contains(&number) && is_wet() {

@@ -141,7 +141,8 @@ pub(super) fn tension<const D: usize>(case: &Case<D>, state: &State<D>) -> Optio
     let may_carry = |particle: usize| {
         matches!(
             case.materials[particles.law[particle] % case.materials.len()].strength,
-            Strength::MohrCoulomb { cohesion, tension_cutoff: None, .. } if cohesion > 0.0
+            Strength::MohrCoulomb { cohesion, tension_cutoff: None, .. }
+            | Strength::DruckerPrager { cohesion, .. } if cohesion > 0.0
         )
     };
     let scale =
@@ -152,11 +153,14 @@ pub(super) fn tension<const D: usize>(case: &Case<D>, state: &State<D>) -> Optio
     let all = sum_of_moving(particles, |_| true)?;
     let pulled = sum_of_moving(particles, is_pulled)?;
     let share = pulled / all;
+    let mut materials = case.materials.iter();
+    let has_cone = materials.any(|own| matches!(own.strength, Strength::DruckerPrager { .. }));
     (share >= CARRIES).then(|| {
         format!(
             "{} % of the mass that moves carries tension, which open cracks would not: the factor may be a few per cent too \
-             high; tension_cutoff = \"0 kPa\" in the materials at the crest asks without it",
-            short(100.0 * share)
+             high; tension_cutoff = \"0 kPa\" in the materials at the crest asks without it{}",
+            short(100.0 * share),
+            if has_cone { " (with model = \"mohr-coulomb\")" } else { "" }
         )
     })
 }

@@ -1,0 +1,227 @@
+//! Soil with cohesion and friction, Mohr–Coulomb and Drucker–Prager: its parameters from what a file states.
+
+use igimp_material::Cone;
+use igimp_model::{Flow, Strength};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::materials::{
+    self as keys, DruckerPrager, Frictional, Model, MohrCoulomb,
+};
+use igimp_schema::text::{clip, number};
+use igimp_schema::tree::read::Either;
+
+use super::STRENGTH;
+use super::profiles::{Extent, Property, TABLES, Terms, property};
+
+/// What may be said of friction that varies.
+const FRICTION: Terms = Terms {
+    may_vanish: true,
+    may_be_nothing: true,
+    kept: f64::tan,
+    printed: |value| format!("{} deg", number(value.atan().to_degrees())),
+    forms: TABLES,
+};
+
+/// The keys of cohesion and friction, if the model has them.
+pub(super) fn keys_of(model: &Model) -> Option<&Frictional> {
+    match model {
+        Model::MohrCoulomb(Ok(own)) => Some(&own.strength),
+        Model::DruckerPrager(Ok(own)) => Some(&own.strength),
+        _ => None,
+    }
+}
+
+/// Cohesion, and tan φ.
+pub(super) fn properties<const D: usize>(
+    own: &Frictional,
+    extent: Extent<'_, D>,
+    problems: &mut Problems,
+) -> [Option<Property>; 2] {
+    let cohesive = own.cohesion.as_ref().ok();
+    let cohesive = cohesive.and_then(|own| property(own, "cohesion", extent, STRENGTH, problems));
+    [cohesive, friction(own, extent, problems)]
+}
+
+/// tan φ, where the angle is one.
+fn friction<const D: usize>(
+    own: &Frictional,
+    extent: Extent<'_, D>,
+    problems: &mut Problems,
+) -> Option<Property> {
+    let stated = own.friction.as_ref().ok()?;
+    let is_steep = |angle: f64| angle.to_degrees() > 89.999_999;
+    let steep = match &**stated {
+        Either::First(angle) => is_steep(*angle).then_some(stated.place),
+        Either::Second(table) => (table.values.iter().flat_map(|values| values.iter()))
+            .find(|angle| is_steep(***angle))
+            .map(|angle| angle.place),
+    };
+    if let Some(place) = steep {
+        problems
+            .error(place, "the friction angle must be below 90 deg")
+            .help("soils have 15 deg to 45 deg");
+        return None;
+    }
+    property(stated, "friction", extent, FRICTION, problems)
+}
+
+/// Refuses undrained soil that dilates as associated flow does; warns of one that dilates.
+pub(super) fn never_fails(model: &Model, problems: &mut Problems) -> Option<()> {
+    if let Model::MohrCoulomb(Ok(own)) = model
+        && let flow = own.flow.as_ref().ok()?
+        && **flow == keys::Flow::Davis
+    {
+        problems
+            .error(
+                flow.place,
+                "flow = \"davis\" dilates as associated flow does, and undrained soil that dilates never fails",
+            )
+            .help("leave `flow` out, or model = \"tresca\" with the undrained strength");
+        return None;
+    }
+    let Some(own) = keys_of(model) else {
+        return Some(());
+    };
+    let dilation = own.dilation.as_ref().ok()?;
+    if **dilation > 0.0 {
+        problems
+            .warning(
+                dilation.place,
+                "undrained soil that dilates never fails: suction grows without limit",
+            )
+            .help("dilation = \"0 deg\" for undrained soil");
+    }
+    Some(())
+}
+
+/// c, φ and ψ.
+fn angles(
+    name: &str,
+    own: &Frictional,
+    [cohesive, friction]: [Option<&Property>; 2],
+    problems: &mut Problems,
+) -> Option<[f64; 3]> {
+    let cohesion = cohesive.map(|own| own.constant);
+    let friction_varies = friction.is_some_and(|own| own.profile.is_some());
+    // An angle that is stated is kept to the last bit.
+    let stated = own.friction.as_ref().ok().map(|own| &own.value);
+    let friction = friction.and_then(|own| match (&own.profile, stated) {
+        (None, Some(Either::First(angle))) => Some(*angle),
+        (None, _) => None,
+        (Some(_), _) => Some(own.constant.atan()),
+    });
+    let dilation = own.dilation.as_ref().ok();
+    if let (Some(friction), Some(dilation)) = (friction, dilation)
+        && **dilation > friction * (1.0 + if friction_varies { 1e-12 } else { 0.0 })
+    {
+        problems
+            .error(
+                dilation.place,
+                "dilation angle is larger than the friction angle",
+            )
+            .help("dilation <= friction");
+    }
+    if let (Some(cohesion), Some(friction)) = (cohesion, friction)
+        && cohesion == 0.0
+    {
+        no_cohesion(name, own, friction, problems)?;
+    }
+    Some([cohesion?, friction?, (**dilation?).min(friction?)])
+}
+
+/// Drucker–Prager.
+pub(super) fn drucker_prager(
+    name: &str,
+    own: &DruckerPrager,
+    both: [Option<&Property>; 2],
+    problems: &mut Problems,
+) -> Option<Strength> {
+    let [cohesion, friction_angle, dilation_angle] = angles(name, &own.strength, both, problems)?;
+    Some(Strength::DruckerPrager {
+        cohesion,
+        friction_angle,
+        dilation_angle,
+        cone: match **own.cone.as_ref().ok()? {
+            keys::Cone::Compression => Cone::Compression,
+            keys::Cone::Extension => Cone::Extension,
+            keys::Cone::PlaneStrain => Cone::PlaneStrain,
+        },
+    })
+}
+
+/// Mohr–Coulomb.
+pub(super) fn mohr_coulomb(
+    name: &str,
+    own: &MohrCoulomb,
+    both: [Option<&Property>; 2],
+    problems: &mut Problems,
+) -> Option<Strength> {
+    let [cohesive, _] = both;
+    let parameters = angles(name, &own.strength, both, problems);
+    let cutoff = own.tension_cutoff.as_ref().ok()?.as_ref();
+    let cohesion_varies = cohesive.is_some_and(|own| own.profile.is_some());
+    if let Some(cutoff) = cutoff.filter(|cutoff| cohesion_varies && ***cutoff > 0.0) {
+        problems
+            .error(
+                cutoff.place,
+                "a constant tension cut-off does not go with a cohesion that varies",
+            )
+            .help("tension_cutoff = \"0 kPa\", or leave it out: cohesion / tan(friction) limits tension");
+        return None;
+    }
+    if let (Some([cohesion, friction, _]), Some(cutoff)) = (parameters, cutoff) {
+        let apex = cohesion / friction.tan();
+        if friction > 0.0 && **cutoff > apex * (1.0 + 1e-12) {
+            problems
+                .warning(
+                    cutoff.place,
+                    "this tension cut-off never acts: it lies above the apex of the cone",
+                )
+                .help(format!(
+                    "apex: cohesion / tan(friction) = {} kPa",
+                    number(apex / 1e3)
+                ));
+        }
+    }
+    let [cohesion, friction_angle, dilation_angle] = parameters?;
+    Some(Strength::MohrCoulomb {
+        cohesion,
+        friction_angle,
+        dilation_angle,
+        flow: match **own.flow.as_ref().ok()? {
+            keys::Flow::Davis => Flow::Davis,
+            keys::Flow::Dilation => Flow::Dilation,
+        },
+        tension_cutoff: cutoff.map(|cutoff| **cutoff),
+    })
+}
+
+/// Refuses soil without cohesion and friction, somewhere or everywhere; warns of soil without cohesion.
+fn no_cohesion(name: &str, own: &Frictional, friction: f64, problems: &mut Problems) -> Option<()> {
+    let name = clip(name, 40);
+    let stated = own.friction.as_ref().ok()?;
+    if let Either::Second(table) = &**stated
+        && (table.values.iter().flat_map(|values| values.iter())).any(|angle| **angle == 0.0)
+    {
+        problems
+            .error(
+                stated.place,
+                format!("`{name}` has no strength where friction is zero"),
+            )
+            .help("a small cohesion, like cohesion = \"0.1 kPa\"");
+        return None;
+    }
+    let place = own.cohesion.as_ref().ok()?.place;
+    if friction == 0.0 {
+        problems
+            .error(place, format!("`{name}` has neither cohesion nor friction"))
+            .help("give it one of them, or model = \"elastic\"");
+    } else {
+        problems
+            .warning(
+                place,
+                format!("`{name}` has no cohesion: without confinement it has no strength"),
+            )
+            .help("it counts with a cohesion of unit_weight × cell / 400, which the cells at its face need");
+    }
+    Some(())
+}
