@@ -476,7 +476,7 @@ fn a_body_that_is_laid_on_soil_takes_a_force() {
         let pose = &run.body.rigid[0].pose;
         assert!(run.failure.is_none(), "{edge}");
         assert!(pose.origin[1] < 2.0 - 1e-3, "{edge}: {pose:?}");
-        assert!(edge != 0.5 || pose.angle[0].abs() < 1e-9, "{pose:?}");
+        assert!(edge > 0.5 || pose.angle[0].abs() < 1e-9, "{pose:?}");
         let run = laid(edge, "given", 1.4 * carried);
         let limit = 1.4 * carried * run.summary.stages[0].reached;
         println!("edge {edge} m: {limit:.2} of {carried:.2} kN/m");

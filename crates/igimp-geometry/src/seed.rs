@@ -308,7 +308,8 @@ fn domain<const D: usize>(from: [f64; D], size: [f64; D], soil: &Part<D>) -> ([f
         std::array::from_fn(|axis| size[axis] - 2.0 * (soil.centroid[axis] - middle[axis]).abs());
     let volume: f64 = left.iter().product();
     let whole: f64 = size.iter().product();
-    if (volume - soil.volume).abs() < BOX * whole && left != size {
+    let is_box = (volume - soil.volume).abs() < BOX * whole;
+    if is_box && volume < (1.0 - BOX) * whole {
         return (soil.centroid, left.map(|length| 0.5 * length));
     }
     (middle, size.map(|size| 0.5 * size))

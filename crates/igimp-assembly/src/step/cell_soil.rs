@@ -232,7 +232,7 @@ fn loaded_cells<const D: usize>(grid: &Grid<D>, points: &[LoadPoint<D>]) -> Vec<
         let sides: [[Option<usize>; 2]; D] = std::array::from_fn(|axis| {
             let own = &grid.axes[axis];
             let at = own.cell_at(point.x[axis]);
-            let before = at.filter(|&cell| cell > 0 && own.nodes()[cell] == point.x[axis]);
+            let before = at.filter(|&cell| cell > 0 && point.x[axis] <= own.nodes()[cell]);
             [at, before.map(|cell| cell - 1)]
         });
         for corner in 0..1_usize << D {
