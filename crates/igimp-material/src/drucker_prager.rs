@@ -1,5 +1,5 @@
 //! Drucker–Prager plasticity: a cone about the hydrostatic axis that agrees with Mohr–Coulomb along one path (theory, eqs. 93
-//! and 108).
+//! and 94).
 //!
 //! The return to cone and apex is in closed form: theory, eqs. 95 and 96; de Souza Neto, Perić & Owen (2008), section 8.3.
 

@@ -13,6 +13,71 @@ use crate::laws::SharedLaw;
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
 
+/// A loaded point acts on soil that is no further away, in cells \[-\].
+const REACH: f64 = 0.25;
+
+/// Loaded points and the soil that carries them.
+impl<const D: usize> LoadPoint<D> {
+    /// The point put back on soil, where it left the last cell that holds some by no more than [`REACH`] of a cell: on the
+    /// nearest face of that cell. Particles and points drift apart by round-off and more, and a face that lies on a
+    /// line of the grid is then beyond it.
+    #[must_use]
+    pub(crate) fn on_soil(&self, grid: &Grid<D>, stencils: &Stencils<D>) -> Self {
+        let rests = |x: &[f64; D]| {
+            let own = Self { x: *x, ..*self }.supports(grid, 0);
+            own.is_ok_and(|own| {
+                let mut own = stencils.carried(&own).into_iter();
+                own.all(|own| own.value <= 0.0 || stencils.node_volume(own.node) > 0.0)
+            })
+        };
+        let Some(cell) = grid.cell_at(&self.x).filter(|_| !rests(&self.x)) else {
+            return *self;
+        };
+        // The nearest line of each axis, and how far off it is in cells.
+        let lines: [(f64, f64); D] = std::array::from_fn(|axis| {
+            let own = &grid.axes[axis];
+            let place = (self.x[axis] - own.nodes()[cell[axis]]) / own.spacing(cell[axis]);
+            let line = cell[axis] + usize::from(place > 0.5);
+            (own.nodes()[line], place.min(1.0 - place))
+        });
+        let moved = (1..1_usize << D).map(|axes| {
+            let goes = |axis: usize| axes >> axis & 1 == 1;
+            let way = (0..D).filter(|&axis| goes(axis)).map(|axis| lines[axis].1);
+            let x = std::array::from_fn(|axis| {
+                if goes(axis) {
+                    lines[axis].0
+                } else {
+                    self.x[axis]
+                }
+            });
+            (way.fold(0.0, f64::max), x)
+        });
+        let near = moved.filter(|(way, x)| *way <= REACH && rests(x));
+        let nearest = near.min_by(|(a, _), (b, _)| a.total_cmp(b));
+        nearest.map_or(*self, |(_, x)| Self { x, ..*self })
+    }
+
+    /// The point carried along by nodal step displacements `u` \[length\].
+    ///
+    /// # Errors
+    /// [`AssemblyError::LoadPoint`] when it is not on the grid.
+    pub fn carried(
+        &self,
+        grid: &Grid<D>,
+        stencils: &Stencils<D>,
+        point: usize,
+        u: &[[f64; D]],
+    ) -> Result<Self, AssemblyError> {
+        let mut carried = self.on_soil(grid, stencils);
+        for support in carried.supports(grid, point)? {
+            for axis in 0..D {
+                carried.x[axis] += support.value * u[support.node][axis];
+            }
+        }
+        Ok(carried)
+    }
+}
+
 /// The weight of the body, by node \[force\].
 pub(crate) fn weight<const D: usize>(
     grid: &Grid<D>,
