@@ -49,7 +49,8 @@ impl<const D: usize> Stencils<D> {
         Self::build_under(particles, method, conditions, &[])
     }
 
-    /// The same where points load faces of the body: soil of their cells balances what they press (theory, eq. 8h).
+    /// The same where points load faces of the body, by factors that are not zero: soil of their cells balances what they
+    /// press (theory, eq. 8h).
     ///
     /// # Errors
     /// As [`Self::build`].
@@ -61,7 +62,12 @@ impl<const D: usize> Stencils<D> {
     ) -> Result<Self, AssemblyError> {
         let StepConditions { grid, laws, .. } = conditions;
         conditions.validate(particles)?;
-        let mut supports = Supports::build(grid, particles, method, laws, points)?;
+        let is_loaded = |point: &&LoadPoint<D>| {
+            let factor = conditions.loads.factors.get(point.load);
+            factor.is_some_and(|factor| *factor != 0.0)
+        };
+        let loaded: Vec<LoadPoint<D>> = points.iter().filter(is_loaded).copied().collect();
+        let mut supports = Supports::build(grid, particles, method, laws, &loaded)?;
         let mut strips = Strips::build(grid, &supports);
         let mut shares = node_shares(grid, particles, &supports, &strips);
         let ties = ties(method, conditions, &supports, &shares);

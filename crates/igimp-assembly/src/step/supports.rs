@@ -35,7 +35,7 @@ struct Chunk<const D: usize> {
 impl<const D: usize> Supports<D> {
     /// Evaluates the basis of a method at all particles. Here alone is decided of which gradients the
     /// strain of a particle is made: without locking control ∇S̄ is replaced by ∇S; shared strain, a given geometry
-    /// and loaded faces take both from the cells (theory, eqs. 8a to 8e).
+    /// and loaded faces take both from the cells (theory, eqs. 8a to 8e and 8h).
     ///
     /// # Errors
     /// [`AssemblyError::Shape`] names the first particle whose centre left the grid.
