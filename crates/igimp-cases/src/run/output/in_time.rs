@@ -21,22 +21,27 @@ impl<const D: usize> Output<D> {
         let mut found = SafetyInTime::default();
         let columns = ["time [s]", "F at least [-]", "F below [-]"];
         let mut table = Table::new(NAME, &columns);
+        let mut rows: Vec<[f64; 3]> = Vec::new();
         for (number, stage) in summary.stages.iter().enumerate() {
             let safety = stage.safety.as_ref();
             let Some((stable, failed)) = safety.and_then(|own| own.stable.zip(own.failed)) else {
                 continue;
             };
-            let factor = 0.5 * (stable + failed);
-            match case.time_of_water_after(number) {
-                Some(time) => {
-                    table.push(vec![time, stable, failed]);
-                    found.points.push([time, factor]);
-                }
-                None => found.limits.push((stage.name.clone(), factor)),
+            if let Some(time) = case.time_of_water_after(number) {
+                rows.push([time, stable, failed]);
+            } else {
+                let factor = 0.5 * (stable + failed);
+                found.limits.push((stage.name.clone(), factor));
             }
         }
-        if found.points.is_empty() {
+        if rows.is_empty() {
             return Ok(None);
+        }
+        // Times may be stated in any order.
+        rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        for [time, stable, failed] in rows {
+            table.push(vec![time, stable, failed]);
+            found.points.push([time, 0.5 * (stable + failed)]);
         }
         table.write_csv(&self.folder.curves())?;
         if !self.draws {
