@@ -164,7 +164,7 @@ pub(crate) struct ElementArguments {
     /// The test.
     #[arg(long, value_name = "TEST", default_value = "triaxial-drained", value_parser = a_test())]
     pub(crate) test: String,
-    /// A path of one's own in place of a test: a CSV file with columns such as strain_yy [%] and stress_xx [kPa],
+    /// A path of one's own in place of a test: a CSV file with columns such as strain_yy `[%]` and stress_xx `[kPa]`,
     /// compression positive, and a row for the end of every leg.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["test", "strain"])]
     pub(crate) path: Option<PathBuf>,
