@@ -275,7 +275,10 @@ fn loaded_clay() -> Result<Oedometer, CaseError> {
     let stiffness = 30.0 * modulus;
     let mut clay = case.materials[0].clone();
     "clay".clone_into(&mut clay.name);
-    clay.drainage = Drainage::Undrained { stiffness };
+    clay.drainage = Drainage::Undrained {
+        stiffness,
+        flows: false,
+    };
     case.materials.push(clay);
     case.bodies[0].material = 1;
     case.stages[0].drained = true;

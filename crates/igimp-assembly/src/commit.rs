@@ -6,6 +6,7 @@ use igimp_shape::Grid;
 use rayon::prelude::*;
 
 use crate::body::particles::{CHUNK, ParticleFields, Particles};
+use crate::contributions::consolidation::ExcessAfter;
 use crate::contributions::inertia::Motion;
 use crate::contributions::rigid::{RigidBody, seeded_too_close};
 use crate::equations::kinematics::ParticleTrial;
@@ -138,6 +139,16 @@ impl<const D: usize> Particles<D> {
             fields.pore_pressure.fill(0.0);
         } else {
             fields.pore_pressure.copy_from_slice(pressure);
+        }
+    }
+
+    /// Keeps the excess pore pressures of an accepted step in which water flows.
+    pub fn flow_out(&mut self, after: &[ExcessAfter]) {
+        let fields = self.fields_mut();
+        for own in after {
+            fields.excess[own.particle] = own.excess;
+            fields.excess_within_cell[own.particle] = own.within_cell;
+            fields.water_rate[own.particle] = own.rate;
         }
     }
 

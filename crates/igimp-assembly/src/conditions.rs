@@ -3,6 +3,7 @@
 pub(crate) mod constraints;
 pub(crate) mod ground_motion;
 pub(crate) mod loads;
+pub(crate) mod pore_flow;
 pub(crate) mod reinforcement;
 pub(crate) mod rigid_motion;
 pub(crate) mod time_step;
@@ -21,6 +22,7 @@ use crate::laws::SharedLaw;
 use constraints::Constraints;
 use ground_motion::{GroundMotion, Rayleigh};
 use loads::StepLoads;
+use pore_flow::Consolidating;
 use time_step::TimeStep;
 use unbalanced::UnbalancedForces;
 use walls::Walls;
@@ -44,6 +46,8 @@ pub struct StepConditions<const D: usize> {
     pub reinforcement: Vec<ReinforcementControl>,
     /// Water in the pores at the end of the step.
     pub water: Water<D>,
+    /// How water flows out of soil, in a step that takes time.
+    pub flow: Option<Consolidating<D>>,
     /// What still holds the body where a change has put it out of balance.
     pub held: Option<UnbalancedForces<D>>,
     /// The time that the step takes; none in statics.
@@ -76,6 +80,7 @@ impl<const D: usize> StepConditions<D> {
             motions: Vec::new(),
             reinforcement: Vec::new(),
             water: Water::default(),
+            flow: None,
             held: None,
             time: None,
             walls: None,
@@ -115,6 +120,16 @@ impl<const D: usize> StepConditions<D> {
     /// [`AssemblyError::NonFinite`] for water that is not finite.
     pub fn with_water(mut self, water: Water<D>) -> Result<Self, AssemblyError> {
         self.water = water;
+        self.validate_fields()?;
+        Ok(self)
+    }
+
+    /// The same with water that flows out of soil while the step takes time.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for a duration, a permeability or a stiffness of water that is none.
+    pub fn with_flow(mut self, flow: Option<Consolidating<D>>) -> Result<Self, AssemblyError> {
+        self.flow = flow;
         self.validate_fields()?;
         Ok(self)
     }
@@ -213,6 +228,9 @@ impl<const D: usize> StepConditions<D> {
         ];
         if let Some((what, _)) = of_motion.into_iter().find(|(_, is_wrong)| *is_wrong) {
             return Err(AssemblyError::NonFinite { what, index: 0 });
+        }
+        if let Some(flow) = &self.flow {
+            flow.are_sound()?;
         }
         self.water.is_finite()?;
         self.loads.are_finite()

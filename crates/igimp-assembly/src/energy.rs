@@ -103,7 +103,7 @@ impl<const D: usize> System<'_, D> {
             own.add(at, &mut force, None);
             product(&force, u)
         };
-        let [ghost, drag, contact, reinforcement, _] = (self.forces())
+        let [ghost, drag, contact, reinforcement, ..] = (self.forces())
             .map(|own| theta * work_of(own, u) + (1.0 - theta) * work_of(own, &still));
         let ground = self.work_of_ground(inertia, u);
         let mut energy = StepEnergy {
@@ -209,9 +209,12 @@ impl<const D: usize> System<'_, D> {
                 .sum()
         });
         let dot = |strain: &[f64; 3]| (0..3).map(|k| principal[k] * strain[k]).sum::<f64>();
-        let response =
-            self.pores
-                .response(particles, &self.conditions().water, self.method, particle);
+        let response = self.pores.response(
+            particles,
+            &self.conditions().water,
+            self.method,
+            (particle, None),
+        );
         let stored = |excess: f64| match response.stiffness {
             0.0 => 0.0,
             stiffness => excess * excess / stiffness,

@@ -26,12 +26,14 @@ pub use conditions::StepConditions;
 pub use conditions::constraints::Constraints;
 pub use conditions::ground_motion::{GroundMotion, Rayleigh};
 pub use conditions::loads::{LoadPoint, StepLoads};
+pub use conditions::pore_flow::{Consolidating, Permeable, PoreFlow, VoidLaw};
 pub use conditions::reinforcement::ReinforcementControl;
 pub use conditions::rigid_motion::{Drive, RigidMotion};
 pub use conditions::time_step::{TimeScheme, TimeStep};
 pub use conditions::unbalanced::UnbalancedForces;
 pub use conditions::walls::{AbsorbingWall, WallNode, Walls};
 pub use conditions::water::{PoreSite, PoreState, PoreWater, Water};
+pub use contributions::consolidation::{ExcessAfter, WaterMoved};
 pub use contributions::inertia::Motion;
 pub use contributions::reinforcement::{Hold, Reinforcement, Segment, SegmentState, Station};
 pub use contributions::rigid::{

@@ -114,6 +114,7 @@ fn stage(like: &Stage, name: &str, from: usize, construction: Construction) -> S
         steps: 2,
         start_from: Some(from),
         drained: false,
+        consolidation: None,
         ..like.clone()
     }
 }
@@ -153,7 +154,10 @@ fn wet() -> Case<2> {
         })
         .to_vec();
     case.water_unit_weight = 10e3;
-    case.materials[1].drainage = Drainage::Undrained { stiffness: 50e6 };
+    case.materials[1].drainage = Drainage::Undrained {
+        stiffness: 50e6,
+        flows: false,
+    };
     case.stages[0].drained = true;
     if let StageKind::Construction(own) = &mut case.stages[3].kind {
         own.water = Some(1);

@@ -42,6 +42,8 @@ pub enum Reason {
     Asked,
     /// The system is that of a plane, or of a line.
     Plane,
+    /// Pore pressure is among the unknowns: the matrix is not positive definite.
+    Coupled,
     /// There are too few nodes for a coarser grid.
     Small {
         /// Unknowns of the system.
@@ -96,6 +98,7 @@ impl fmt::Display for Reason {
         match *self {
             Self::Asked => write!(f, "asked for"),
             Self::Plane => write!(f, "two dimensions"),
+            Self::Coupled => write!(f, "pore pressures are among the unknowns"),
             Self::Small { unknowns } => write!(f, "{unknowns} unknowns are few"),
             Self::IterationFaster {
                 unknowns,

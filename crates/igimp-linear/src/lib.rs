@@ -47,7 +47,7 @@ pub use libraries::faer_cholesky::FaerCholesky;
 pub use libraries::general_lu::GeneralLu;
 pub use libraries::nalgebra_cholesky::NalgebraCholesky;
 pub use libraries::sprs_bicgstab::SprsBiCgStab;
-pub use matrix::{CompressedColumns, NodeBlock, Pattern, TangentMatrix};
+pub use matrix::{CompressedColumns, NodeBlock, Pattern, SCALAR, TangentMatrix};
 pub use multifrontal::{MultifrontalCholesky, MultifrontalLu};
 pub use ordering::NestedDissection;
 pub use record::{Record, SolvedSystem};

@@ -9,14 +9,17 @@ use nalgebra_sparse::pattern::SparsityPattern;
 
 use crate::border::Border;
 
+/// The bit in [`NodeBlock::free`] of an unknown beside displacement, which is the last of its node: pore pressure.
+pub const SCALAR: u8 = 1 << 3;
+
 /// The unknowns that one grid node contributes: consecutive rows and columns of the matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NodeBlock {
     /// First unknown of the node.
     pub first: usize,
-    /// Number of unknowns of the node, 1 to D.
+    /// Number of unknowns of the node, 1 to D, and one more with a scalar.
     pub len: usize,
-    /// The components of the displacement that they are, one bit each from the first axis on.
+    /// The components of the displacement that they are, one bit each from the first axis on, and [`SCALAR`].
     pub free: u8,
     /// Position of the node along each axis of the grid (0 beyond the dimension), which lets a
     /// solver order the unknowns geometrically.
@@ -95,6 +98,11 @@ impl Pattern {
     #[inline]
     pub fn coupled_to(&self, block: usize) -> &[u32] {
         &self.coupled[self.starts[block]..self.starts[block + 1]]
+    }
+
+    /// Whether nodes have an unknown beside displacement: the matrix is not positive definite then.
+    pub fn has_scalars(&self) -> bool {
+        self.blocks.iter().any(|block| block.free & SCALAR != 0)
     }
 
     /// Stored entries of each column of a block.

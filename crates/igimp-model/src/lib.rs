@@ -48,8 +48,8 @@ pub use rigid::{
     RigidQuantity, RigidShape, RigidShear, components,
 };
 pub use stage::{
-    Dynamic, Reduction, ReductionPath, RunOut, SearchMethod, Stage, StageKind, StageWalls,
-    StopWhen, StrengthReduction,
+    Consolidation, Dynamic, Reduction, ReductionPath, RunOut, SearchMethod, Stage, StageKind,
+    StageWalls, StopWhen, StrengthReduction,
 };
 pub use water::seepage::{InTime, SeepageCase};
 pub use water::{Construction, Drainage, Drained, PoreSource, WaterCondition, table_level};

@@ -6,7 +6,7 @@ pub(crate) mod strength;
 
 use std::sync::Arc;
 
-use igimp_assembly::SharedLaw;
+use igimp_assembly::{SharedLaw, VoidLaw};
 use igimp_material::{Elasticity, MaterialError};
 use igimp_seepage::Soil;
 
@@ -34,8 +34,10 @@ pub struct Material {
     pub saturated: Option<f64>,
     /// Its drainage.
     pub drainage: Drainage,
-    /// Its permeability, where seepage is computed.
+    /// Its permeability, where seepage is computed or water flows out of it.
     pub permeability: Option<Soil>,
+    /// How its permeability follows the void ratio as water flows out of it; none: it stays.
+    pub void_law: Option<VoidLaw>,
     /// A law that takes the place of the one that `strength` names; case files know none.
     pub given: Option<GivenLaw>,
 }

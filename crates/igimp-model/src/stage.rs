@@ -27,6 +27,38 @@ pub struct Stage {
     pub stop_when: StopWhen,
     /// Whether all soil drains while it lasts: no excess pore pressure comes or goes.
     pub drained: bool,
+    /// Time in which water flows out of coupled soil; none: the stage takes no time.
+    pub consolidation: Option<Consolidation>,
+}
+
+impl Stage {
+    /// Whether it takes time.
+    pub fn takes_time(&self) -> bool {
+        self.duration() > 0.0
+    }
+
+    /// How long it lasts; zero in statics \[s\].
+    pub fn duration(&self) -> f64 {
+        match (&self.kind, &self.consolidation) {
+            (StageKind::Dynamic(own), _) => own.duration,
+            (_, own) => own.as_ref().map_or(0.0, |own| own.duration),
+        }
+    }
+}
+
+/// Time in which water flows out of soil.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Consolidation {
+    /// How long it lasts \[s\].
+    pub duration: f64,
+    /// Whether water leaves at the free faces of soil.
+    pub open_faces: bool,
+    /// Sides of the grid where water leaves, by axis and whether it is the upper end.
+    pub open_sides: Vec<(usize, bool)>,
+    /// Boxes where water leaves, lower and upper corner; coordinates beyond the dimension are zero \[m\].
+    pub drains: Vec<[[f64; 3]; 2]>,
+    /// Longest step \[s\]; none: the error in time alone chooses.
+    pub longest_step: Option<f64>,
 }
 
 /// Kinds of stages.
@@ -63,6 +95,8 @@ pub enum StageKind {
     Rigid(Vec<RigidMove>),
     /// Places and removes bodies, changes materials and water.
     Construction(Construction),
+    /// Changes nothing: water flows.
+    Wait,
     /// Searches for the factor of safety. The body is left as it was found.
     StrengthReduction(StrengthReduction),
     /// Lets the slope of reduced strength move until it rests.
@@ -191,6 +225,7 @@ impl StageKind {
             Self::Displacement { .. } => "displacement",
             Self::Rigid(_) => "rigid",
             Self::Construction(_) => "construction",
+            Self::Wait => "wait",
             Self::StrengthReduction(_) => "strength-reduction",
             Self::RunOut(_) => "run-out",
             Self::Dynamic(_) => "dynamic",

@@ -193,6 +193,8 @@ pub enum Drainage {
     Undrained {
         /// Bulk modulus of the water over the porosity, K_w/n \[Pa\].
         stiffness: f64,
+        /// Whether water leaves in stages with consolidation.
+        flows: bool,
     },
     /// The law speaks of total stress: there is no pore pressure to speak of, and free water presses on the surface alone.
     Total,

@@ -199,12 +199,41 @@ pub struct StageSummary {
     /// Where the work of a stage that takes time went.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub energy: Option<EnergySummary>,
+    /// The water that flowed out of soil, of a stage with consolidation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub consolidation: Option<ConsolidationSummary>,
     /// What a sliding block does by the motion of the ground, where the stage asks for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub newmark: Option<NewmarkSummary>,
     /// How its linear systems were solved, in space.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub linear: Option<LinearSummary>,
+}
+
+/// Water that flowed out of soil.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ConsolidationSummary {
+    /// Time that passed \[s\].
+    pub time: f64,
+    /// Water that left at open faces, sides and drains \[m³/m; m³ in space\].
+    pub outflow: f64,
+    /// What of the water of all steps does not close, by magnitude \[m³/m; m³ in space\].
+    pub missing: f64,
+    /// Mean excess pore pressure, by magnitude, of the soil that water flows out of, at the end \[Pa\].
+    pub excess: f64,
+    /// The largest of that after any step \[Pa\].
+    pub most_excess: f64,
+}
+
+impl ConsolidationSummary {
+    /// Share of the largest mean excess pore pressure that is gone at the end \[-\].
+    pub fn dissipated(&self) -> f64 {
+        if self.most_excess > 0.0 {
+            1.0 - self.excess / self.most_excess
+        } else {
+            0.0
+        }
+    }
 }
 
 impl StageSummary {

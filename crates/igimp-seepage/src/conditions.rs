@@ -42,7 +42,7 @@ impl Soil {
     }
 
     /// The tensor of permeability \[m/s\].
-    pub(crate) fn tensor<const D: usize>(&self) -> [[f64; D]; D] {
+    pub fn tensor<const D: usize>(&self) -> [[f64; D]; D] {
         let (sin, cos) = self.angle.sin_cos();
         let mut tensor = [[0.0; D]; D];
         for axis in 1..D - 1 {

@@ -556,8 +556,8 @@ impl<const D: usize> Corrector<'_, '_, D> {
         else {
             return None;
         };
-        let (node, axis) = self.system.unknowns().place(*unknown)?;
-        let is_of_grid = self.system.rigid_body_of(node, axis).is_none();
+        let (node, _) = self.system.unknowns().place(*unknown)?;
+        let is_of_grid = node < self.grid.node_count();
         is_of_grid.then(|| self.stencils.node_fill(self.grid, node))
     }
 }

@@ -244,10 +244,11 @@ fn equilibrium<const D: usize>(
     let work = (attempt.measures_work)
         .then(|| system.work(trial, &u))
         .transpose()?;
-    let pace = pace_after(&system, &u, iterations)?;
+    let pace = pace_after(&system, trial, &u, iterations)?;
     let energy = system.energy(trial, &u)?;
     let motion = system.motion(&u);
     let contact = system.bodies_at(&u)?;
+    let (excess, water) = (system.excess_after(&u), system.water_moved(&u));
     let pore_pressure = system.into_pore_pressure();
     body.load_points = load_points;
     body.rigid = contact.bodies;
@@ -257,6 +258,7 @@ fn equilibrium<const D: usize>(
         body.particles.accelerate(&stencils, motion);
     }
     body.particles.fill_pores(&pore_pressure);
+    body.particles.flow_out(&excess);
     body.particles.push_out(&contact.push_out);
     times.commit = clock.elapsed();
     let report = StepReport {
@@ -272,8 +274,11 @@ fn equilibrium<const D: usize>(
         ghost_penalty: attempt.ghost_penalty,
         drag_share,
         work,
-        duration: conditions.time.map_or(0.0, |time| time.duration),
+        duration: (conditions.time.map(|time| time.duration))
+            .or(conditions.flow.as_ref().map(|flow| flow.duration))
+            .unwrap_or(0.0),
         energy,
+        water,
         pace,
         external_work,
         gross_work,
@@ -308,15 +313,18 @@ fn start<const D: usize>(
 /// [`StepFailure::TooLong`] for a step that has to resolve the change of motion and does not.
 fn pace_after<const D: usize>(
     system: &System<'_, D>,
+    trial: &Trial<D>,
     u: &[[f64; D]],
     iterations: usize,
 ) -> Result<f64, StepFailure> {
-    let (pace, is_too_long) = pace::after(system, u, iterations);
-    match system.conditions().time {
-        Some(time) if time.must_resolve && is_too_long => Err(StepFailure::TooLong {
-            duration: time.duration,
-        }),
-        _ => Ok(pace),
+    let (pace, is_too_long) = pace::after(system, trial, u, iterations);
+    let conditions = system.conditions();
+    let of_motion = conditions.time.filter(|time| time.must_resolve);
+    let of_flow = conditions.flow.as_ref().filter(|flow| flow.must_resolve);
+    let duration = (of_motion.map(|time| time.duration)).or(of_flow.map(|flow| flow.duration));
+    match duration.filter(|_| is_too_long) {
+        Some(duration) => Err(StepFailure::TooLong { duration }),
+        None => Ok(pace),
     }
 }
 

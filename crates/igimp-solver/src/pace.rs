@@ -1,7 +1,7 @@
 //! How long the next step of a motion may be (theory, eq. 68): by the error of the time integration, by how far the body moves,
-//! and by how hard equilibrium was to find.
+//! and by how hard equilibrium was to find; where water flows by the error of its pressures alone (eq. 104).
 
-use igimp_assembly::System;
+use igimp_assembly::{System, Trial};
 
 /// The error of a step that is aimed at, over its motion \[-\].
 const ERROR: f64 = 0.02;
@@ -11,6 +11,9 @@ const WAY: f64 = 0.2;
 
 /// How many times as large error or way may be before the step is made again, shorter \[-\].
 const REFUSED: f64 = 4.0;
+
+/// The error that is aimed at where water flows, over its pressures \[-\].
+const FLOW_ERROR: f64 = 2e-3;
 
 /// Corrections from which on the next step is shorter.
 const CORRECTIONS: usize = 10;
@@ -22,9 +25,17 @@ const CHANGE: [f64; 2] = [0.5, 1.5];
 /// 1 in statics.
 pub(crate) fn after<const D: usize>(
     system: &System<'_, D>,
+    trial: &Trial<D>,
     u: &[[f64; D]],
     iterations: usize,
 ) -> (f64, bool) {
+    if let Some(error) = system.flow_error(trial, u) {
+        let factor = (FLOW_ERROR / error).sqrt().min(effort(iterations));
+        return (
+            factor.clamp(CHANGE[0], CHANGE[1]),
+            error > REFUSED * FLOW_ERROR,
+        );
+    }
     let Some(error) = system.time_error(u) else {
         return (1.0, false);
     };
@@ -41,10 +52,15 @@ pub(crate) fn after<const D: usize>(
         / cell;
     let factor = (ERROR / error).sqrt().min(WAY / way);
     let refused = error > REFUSED * ERROR || way > REFUSED * WAY;
-    let effort = if iterations > CORRECTIONS {
+    let factor = factor.min(effort(iterations));
+    (factor.clamp(CHANGE[0], CHANGE[1]), refused)
+}
+
+/// How many times as long the next step may be after so many corrections \[-\].
+fn effort(iterations: usize) -> f64 {
+    if iterations > CORRECTIONS {
         0.7
     } else {
         CHANGE[1]
-    };
-    (factor.min(effort).clamp(CHANGE[0], CHANGE[1]), refused)
+    }
 }

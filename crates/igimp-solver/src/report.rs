@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use igimp_assembly::{AssemblyError, Penetration, StepEnergy, StepWork};
+use igimp_assembly::{AssemblyError, Penetration, StepEnergy, StepWork, WaterMoved};
 use igimp_linear::{LinearEffort, LinearSolverError};
 use thiserror::Error;
 
@@ -234,6 +234,8 @@ pub struct StepReport {
     pub duration: f64,
     /// Where the work of a step that takes time goes; none in statics.
     pub energy: Option<StepEnergy>,
+    /// The water that moved, of a step in which water flows.
+    pub water: Option<WaterMoved>,
     /// How many times as long the next step may be as this one, of a step that takes time \[-\].
     pub pace: f64,
     /// The work of the external force on the step \[force·length\].

@@ -131,6 +131,7 @@ fn specimen(study: &mut Study) -> Result<(), CaseError> {
         let stiff = stiffness(POISSON, undrained);
         case.materials[0].drainage = Drainage::Undrained {
             stiffness: 1e3 * stiff,
+            flows: false,
         };
         case.stages[0].drained = true;
         let computed = Computed::new(case)?;
@@ -221,6 +222,7 @@ fn slope(study: &mut Study) -> Result<(), CaseError> {
         let mut case = case(&soil(CONFINED, dilation))?;
         case.materials[0].drainage = Drainage::Undrained {
             stiffness: 1e3 * stiffness(CONFINED, 0.499_999),
+            flows: false,
         };
         case.stages[0].drained = true;
         Computed::new(case)

@@ -66,6 +66,11 @@ columns! {
     pore_pressure: f64 = 0.0, Range::Finite;
     /// Excess pore pressure that the soil made itself, compression positive \[force/length²\].
     excess: f64 = 0.0, Range::Finite;
+    /// By how much the excess pore pressure at the particle differs from that mean of its cells, where water flows
+    /// \[force/length²\].
+    excess_within_cell: f64 = 0.0, Range::Finite, optional;
+    /// Rate at which the water by volume grew in the last step in which it flowed \[1/time\].
+    water_rate: f64 = 0.0, Range::Finite, optional;
     /// The number that a particle was seeded with and keeps, whatever others come and go.
     number: usize = number, Range::Finite;
     /// Index of the constitutive law.

@@ -27,19 +27,36 @@ pub(crate) struct PoreResponse {
     pub(crate) given: f64,
     /// K_w/n \[force/length²\].
     pub(crate) stiffness: f64,
+    /// Excess pore pressure where it is an unknown, in that stress at the volume of the start \[force/length²\].
+    pub(crate) unknown: Option<f64>,
 }
 
 impl PoreResponse {
     /// Whether soil is as if there were no water.
     #[inline]
     pub(crate) fn is_none(&self) -> bool {
-        self.excess == 0.0 && self.given == 0.0 && self.stiffness == 0.0
+        self.excess == 0.0 && self.given == 0.0 && self.stiffness == 0.0 && self.unknown.is_none()
     }
 
-    /// Excess pore pressure after a step that stretched the volume by the factor exp(`ln_volume`) \[force/length²\].
+    /// Whether the change of volume enters.
     #[inline]
-    pub(crate) fn excess_after(&self, ln_volume: f64) -> f64 {
-        self.excess - self.stiffness * ln_volume
+    pub(crate) fn asks_for_volume(&self) -> bool {
+        self.stiffness != 0.0 || self.unknown.is_some()
+    }
+
+    /// Excess pore pressure after a step that stretched the volume by the factor exp(`ln_volume`), and how fast it falls with
+    /// that logarithm \[force/length²\]. A pressure that is an unknown grows with the volume that it acts on, where that moves
+    /// (theory, eq. 98).
+    #[inline]
+    pub(crate) fn excess_after(&self, ln_volume: f64, kinematics: Kinematics) -> (f64, f64) {
+        match (self.unknown, kinematics) {
+            (None, _) => (self.excess - self.stiffness * ln_volume, self.stiffness),
+            (Some(unknown), Kinematics::SmallStrain) => (unknown, 0.0),
+            (Some(unknown), Kinematics::FiniteStrain) => {
+                let excess = unknown * ln_volume.exp();
+                (excess, -excess)
+            }
+        }
     }
 }
 
@@ -131,16 +148,20 @@ impl Pores {
         particles: &Particles<D>,
         water: &Water<D>,
         method: &Method,
-        particle: usize,
+        (particle, unknown): (usize, Option<f64>),
     ) -> PoreResponse {
-        let mut excess = particles.excess[particle];
-        if excess != 0.0 && method.kinematics == Kinematics::FiniteStrain {
-            excess *= determinant(&particles.def_grad[particle]);
-        }
+        let at_volume = |pressure: f64| {
+            if pressure != 0.0 && method.kinematics == Kinematics::FiniteStrain {
+                pressure * determinant(&particles.def_grad[particle])
+            } else {
+                pressure
+            }
+        };
         PoreResponse {
-            excess,
+            excess: at_volume(particles.excess[particle]),
             given: self.stress.get(particle).copied().unwrap_or(0.0),
             stiffness: water.stiffness_of(particles, particle),
+            unknown: unknown.map(at_volume),
         }
     }
 }

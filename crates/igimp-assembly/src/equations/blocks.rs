@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use igimp_linear::{NodeBlock, Pattern};
+use igimp_linear::{NodeBlock, Pattern, SCALAR};
 use igimp_shape::{Grid, Support};
 
 use crate::equations::reach::{SMALL_REACH, common_reach, furthest, same_nodes};
@@ -40,7 +40,7 @@ pub(crate) struct NodePlace {
     pub(crate) block: u32,
     /// First of its unknowns.
     pub(crate) first: u32,
-    /// How many unknowns it has.
+    /// How many components of its displacement are unknown. A pore pressure that is unknown follows them.
     pub(crate) len: u8,
     /// Which components they are, one bit each.
     pub(crate) free: u8,
@@ -95,17 +95,18 @@ impl<const D: usize> BlockTable<D> {
                 code: u32::try_from(code).expect("fewer than 2^32 places"),
                 block,
                 first: unknowns.before(node) as u32,
-                len: len as u8,
+                len: unknowns.free(node).count_ones() as u8,
                 free: unknowns.free(node),
                 is_wide: is_wide.get(node).is_some_and(|&is_wide| is_wide),
             });
             if len > 0 {
                 let mut block_place = [0; 3];
                 block_place[..D].copy_from_slice(&place);
+                let of_pressure = len > unknowns.free(node).count_ones() as usize;
                 blocks.push(NodeBlock {
                     first: unknowns.before(node),
                     len,
-                    free: unknowns.free(node),
+                    free: unknowns.free(node) | if of_pressure { SCALAR } else { 0 },
                     place: block_place,
                 });
             }

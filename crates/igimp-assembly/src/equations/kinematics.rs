@@ -132,7 +132,7 @@ pub(crate) fn strained<const D: usize>(
             let det = determinant(&delta_def_grad);
             let det_bar = positive(particle, determinant(&delta_bar))?;
             let lambda = (det_bar / det).cbrt();
-            if state.pores.stiffness != 0.0 {
+            if state.pores.asks_for_volume() {
                 ln_volume = det_bar.ln();
             }
             let b_trial = pushed_forward(state.b_e, &delta_def_grad, lambda * lambda);
@@ -168,11 +168,12 @@ pub(crate) fn answered<const D: usize>(
     straining: Straining<D>,
     law: &dyn ConstitutiveModel,
     answer: &ReturnMap,
-    kind: TangentKind,
+    (kind, kinematics): (TangentKind, Kinematics),
     trial: &mut ParticleTrial<D>,
 ) -> Result<Linearisation<D>, AssemblyError> {
     let particle = state.particle;
     let material = |source| AssemblyError::Material { particle, source };
+    let (excess, stiffness) = state.pores.excess_after(straining.ln_volume, kinematics);
     let lifted = straining.strain.lift(law, answer, kind).map_err(material)?;
     finite(&lifted).map_err(material)?;
     if let Some(&strain) = lifted.eps_e.iter().find(|eps| eps.abs() >= LARGEST_STRAIN) {
@@ -186,7 +187,7 @@ pub(crate) fn answered<const D: usize>(
         delta_eps_p: lifted.delta_eps_p,
         history: lifted.history,
         regime: lifted.regime,
-        excess: state.pores.excess_after(straining.ln_volume),
+        excess,
     };
     let mut linearisation = Linearisation {
         push: straining.push,
@@ -195,7 +196,7 @@ pub(crate) fn answered<const D: usize>(
     };
     if !state.pores.is_none() {
         let mean = state.pores.given - trial.excess;
-        linearisation.lifted.add_mean(mean, state.pores.stiffness);
+        linearisation.lifted.add_mean(mean, stiffness);
     }
     Ok(linearisation)
 }

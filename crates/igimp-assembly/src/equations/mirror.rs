@@ -90,7 +90,7 @@ fn fill_upper(
                     }
                 }
             } else {
-                let mut block = [[0.0; 3]; 3];
+                let mut block = [[0.0; 4]; 4];
                 for a in 0..other_len {
                     block[a][..len].copy_from_slice(&source[a * stride..][..len]);
                 }

@@ -177,6 +177,7 @@ impl<const D: usize> System<'_, D> {
         trial: &mut ParticleTrial<D>,
     ) -> Result<Linearisation<D>, AssemblyError> {
         let material = |source| AssemblyError::Material { particle, source };
+        let kinematics = self.method.kinematics_of_step();
         let ask = |law: &dyn ConstitutiveModel| {
             let (state, straining) = self.strain_particle(particle, u)?;
             let answer = match known {
@@ -185,7 +186,7 @@ impl<const D: usize> System<'_, D> {
                     .return_map(straining.principal(), &self.particles.history(particle))
                     .map_err(material)?,
             };
-            answered(state, straining, law, &answer, kind, trial)
+            answered(state, straining, law, &answer, (kind, kinematics), trial)
         };
         let laws = &self.conditions.laws;
         let asked = self.particles.ask_law(particle, laws, ask);
@@ -199,6 +200,7 @@ impl<const D: usize> System<'_, D> {
         particle: usize,
         u: &[[f64; D]],
     ) -> Result<(ParticleState<'_>, Straining<D>), AssemblyError> {
+        let unknown = self.consolidation.pressure(particle, u);
         let state = ParticleState {
             particle,
             b_e: &self.particles.b_e[particle],
@@ -206,7 +208,7 @@ impl<const D: usize> System<'_, D> {
                 self.particles,
                 &self.conditions.water,
                 self.method,
-                particle,
+                (particle, unknown),
             ),
         };
         let supports = self.stencils.of(particle);

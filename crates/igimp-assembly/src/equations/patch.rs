@@ -259,7 +259,7 @@ impl<const D: usize> Patch<D> {
             }
             let stored = pattern.values_of(column.block as usize);
             let values = &mut slice[stored.start - start..stored.end - start];
-            let height = values.len() / usize::from(column.len);
+            let height = pattern.height(column.block as usize);
             let first = if self.is_half { j * D } else { 0 };
             self.pieces.clear();
             let nodes = (table, &self.nodes[..]);

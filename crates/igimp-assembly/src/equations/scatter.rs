@@ -106,8 +106,8 @@ impl Rows {
             let values = &mut slice[stored.start - start..stored.end - start];
             let offsets = table.offsets_of(support.node);
             let offset = |run: &Run| offsets(run.code, run.block) + run.rank as usize;
+            let height = pattern.height(column.block as usize);
             if usize::from(column.len) == D {
-                let height = values.len() / D;
                 for run in &self.runs {
                     let offset = offset(run);
                     for c in 0..D {
@@ -116,7 +116,6 @@ impl Rows {
                     }
                 }
             } else {
-                let height = values.len() / usize::from(column.len);
                 for run in &self.runs {
                     let offset = offset(run);
                     for (rank, c) in column.components().enumerate() {

@@ -10,6 +10,7 @@ use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::conditions::loads::{LoadPoint, finite_points};
 use crate::conditions::rigid_motion::{Drive, RigidMotion, rotations};
+use crate::contributions::consolidation::{Consolidation, ExcessAfter, WaterMoved, pressure_nodes};
 use crate::contributions::couplings::Couplings;
 use crate::contributions::ghost::ghost_penalty;
 use crate::contributions::inertia::{Inertia, Motion};
@@ -61,6 +62,8 @@ pub struct System<'a, const D: usize> {
     /// Damping by the elastic stiffness, in a step that takes time.
     pub(crate) damping: Option<StiffnessDamping>,
     pub(crate) pores: Pores,
+    /// Excess pore pressure as an unknown, in a step in which water flows.
+    pub(crate) consolidation: Consolidation<D>,
     pub(crate) table: BlockTable<D>,
     pub(crate) pattern: Arc<Pattern>,
     symmetric: bool,
@@ -124,7 +127,9 @@ impl<'a, const D: usize> System<'a, D> {
             .map(|motion| motion.map(|drive| matches!(drive, Drive::Loaded(_))))
             .collect();
         let constraints = &conditions.constraints;
-        let unknowns = Unknowns::number(grid, stencils, constraints, cuts.below, &free)?;
+        let has_pressure = pressure_nodes(particles, stencils, conditions);
+        let below = cuts.below;
+        let unknowns = Unknowns::number(grid, stencils, constraints, below, &free, &has_pressure)?;
         let young = |particle: usize| particles.young(particle, &conditions.laws);
         let couplings = [
             ghost_penalty(grid, particles, stencils, young, cuts.ghost_penalty),
@@ -132,10 +137,14 @@ impl<'a, const D: usize> System<'a, D> {
         ];
         let contact = Contact::find(bodies, particles, stencils, conditions, &unknowns);
         let reinforcement = Members::find(members, stencils, conditions, method, &unknowns)?;
-        let (f_ext, pores) = external_force(particles, stencils, conditions, method, &motions)?;
+        let (mut f_ext, pores) = external_force(particles, stencils, conditions, method, &motions)?;
+        f_ext.resize(f_ext.len() + unknowns.pressure_count(), [0.0; D]);
+        let of_step = (conditions, method);
+        let consolidation =
+            Consolidation::find(particles, bodies, stencils, of_step, &unknowns, &pores)?;
         let mass_of = |particle: usize| particles.mass[particle] + pores.mass(particle);
         let walls = WallForces::find(particles, stencils, conditions, &unknowns, &mass_of);
-        let forces = beside_particles(&couplings, &contact, &reinforcement, &walls);
+        let forces = beside_particles(&couplings, &contact, &reinforcement, &walls, &consolidation);
         let pairs: Vec<_> = forces.iter().flat_map(|force| force.pairs()).collect();
         let symmetric = symmetric_particles && forces.iter().all(|force| force.is_symmetric());
         let (table, pattern) = BlockTable::build(grid, stencils, &unknowns, &pairs);
@@ -154,6 +163,7 @@ impl<'a, const D: usize> System<'a, D> {
             inertia: None,
             damping: None,
             pores,
+            consolidation,
             motions,
             table,
             pattern: Arc::new(pattern),
@@ -242,6 +252,7 @@ impl<'a, const D: usize> System<'a, D> {
             &self.contact,
             &self.reinforcement,
             &self.walls,
+            &self.consolidation,
         );
         self.symmetric =
             self.symmetric_particles && forces.iter().all(|force| force.is_symmetric());
@@ -254,6 +265,7 @@ impl<'a, const D: usize> System<'a, D> {
             self.method,
             &self.motions,
         )?;
+        f_ext.resize(self.f_ext.len(), [0.0; D]);
         add_force_of_points(
             &mut f_ext,
             points,
@@ -402,9 +414,11 @@ impl<'a, const D: usize> System<'a, D> {
         matrix.border = Border::zeros(self.unknowns.len() - of_grid, of_grid);
         let TangentMatrix { values, border, .. } = matrix;
         let mut add_block = |row: usize, column: usize, block: &[[f64; D]; D]| {
+            let [row_node, column_node] = [row, column].map(|node| self.unknowns.block_node(node));
             for (b, column_unknown) in self.unknowns.of(column) {
                 for (a, row_unknown) in self.unknowns.of(row) {
                     if row_unknown < of_grid && column_unknown < of_grid {
+                        let (row, column) = (row_node, column_node);
                         let component = column_unknown - self.unknowns.before(column);
                         let rank = row_unknown - self.unknowns.before(row);
                         let place = self.table.value(&self.pattern, column, component, row);
@@ -477,6 +491,16 @@ impl<'a, const D: usize> System<'a, D> {
     /// Given pore pressure by particle, empty where there is none \[force/length²\].
     pub fn into_pore_pressure(self) -> Vec<f64> {
         self.pores.pressure
+    }
+
+    /// The excess pore pressures after a step with nodal values `u`, for [`Particles::flow_out`]; empty where no water flows.
+    pub fn excess_after(&self, u: &[[f64; D]]) -> Vec<ExcessAfter> {
+        self.consolidation.excess_after(u)
+    }
+
+    /// The water that a step with nodal values `u` moves; none where no water flows.
+    pub fn water_moved(&self, u: &[[f64; D]]) -> Option<WaterMoved> {
+        self.consolidation.water_moved(u)
     }
 
     /// The reaction f_int − f_ext by node, zero at unknowns \[force\].
@@ -618,13 +642,16 @@ impl<'a, const D: usize> System<'a, D> {
             .collect()
     }
 
-    /// Number of nodes: those of the grid, and two behind them for the motion of each rigid body.
+    /// Number of nodes: those of the grid, two behind them for the motion of each rigid body, and one for each pore pressure
+    /// that is unknown.
     pub fn node_count(&self) -> usize {
-        self.conditions.grid.node_count() + self.motions.len()
+        self.unknowns.first_pressure() + self.unknowns.pressure_count()
     }
 
-    /// Where a node stands \[length\]; one that stands for a rigid body at its reference point.
+    /// Where a node stands \[length\]; one that stands for a rigid body at its reference point, one for pore pressure where its
+    /// node of the grid is.
     pub fn node_position(&self, node: usize) -> [f64; D] {
+        let node = self.unknowns.block_node(node);
         let of_grid = self.conditions.grid.node_count();
         match node.checked_sub(of_grid) {
             Some(beyond) => self.contact.body(beyond / NODES_PER_BODY).pose.origin,
@@ -645,7 +672,7 @@ impl<'a, const D: usize> System<'a, D> {
         let Some(beyond) = node.checked_sub(of_grid) else {
             return self.conditions.constraints.of(node, axis);
         };
-        match self.motions[beyond][axis] {
+        match self.motions.get(beyond)?[axis] {
             Drive::Moved(by) => Some(by),
             Drive::Loaded(_) => None,
         }
@@ -655,6 +682,9 @@ impl<'a, const D: usize> System<'a, D> {
     /// along the axes, then rotations; and whether any soil can touch it in this step.
     pub fn rigid_body_of(&self, node: usize, axis: usize) -> Option<(&RigidBody<D>, usize, bool)> {
         let beyond = node.checked_sub(self.conditions.grid.node_count())?;
+        if beyond >= self.motions.len() {
+            return None;
+        }
         let index = beyond / NODES_PER_BODY;
         let component = axis + D * (beyond % NODES_PER_BODY);
         let touches = self.contact.may_touch(index);
@@ -706,6 +736,14 @@ impl<'a, const D: usize> System<'a, D> {
         (self.inertia.as_ref()).map(|inertia| inertia.error(u, negligible))
     }
 
+    /// The error in time of a step with nodal values `u` in which water flows, as a share of its excess pore pressures \[-\]; none
+    /// where none flows.
+    pub fn flow_error(&self, trial: &Trial<D>, u: &[[f64; D]]) -> Option<f64> {
+        let mean = |own: &ParticleTrial<D>| (own.tau[0][0] + own.tau[1][1] + own.tau[2][2]) / 3.0;
+        let stress = trial.particles.iter().map(|own| mean(own).abs());
+        self.consolidation.time_error(u, stress.fold(0.0, f64::max))
+    }
+
     /// How the nodes move over a step by nodal step displacements `u` \[length\], for [`Particles::accelerate`]; none in statics.
     pub fn motion(&self, u: &[[f64; D]]) -> Option<Motion<D>> {
         self.inertia.as_ref().map(|inertia| inertia.motion(u))
@@ -746,12 +784,13 @@ impl<'a, const D: usize> System<'a, D> {
     }
 
     /// The forces beside those of particles and of acceleration.
-    pub(crate) fn forces(&self) -> [&dyn NodalForces<D>; 5] {
+    pub(crate) fn forces(&self) -> [&dyn NodalForces<D>; 6] {
         beside_particles(
             &self.couplings,
             &self.contact,
             &self.reinforcement,
             &self.walls,
+            &self.consolidation,
         )
     }
 
@@ -816,14 +855,15 @@ fn external_force<const D: usize>(
     Ok((f_ext, pores))
 }
 
-/// Ghost penalty, drag, contact, reinforcement and walls, in the order in which they are summed.
+/// Ghost penalty, drag, contact, reinforcement, walls and flow, in the order in which they are summed.
 fn beside_particles<'s, const D: usize>(
     [ghost, drag]: &'s [Couplings; 2],
     contact: &'s Contact<'_, D>,
     reinforcement: &'s Members<'_, D>,
     walls: &'s WallForces<D>,
-) -> [&'s dyn NodalForces<D>; 5] {
-    [ghost, drag, contact, reinforcement, walls]
+    consolidation: &'s Consolidation<D>,
+) -> [&'s dyn NodalForces<D>; 6] {
+    [ghost, drag, contact, reinforcement, walls, consolidation]
 }
 
 /// What drives the nodes that stand for rigid bodies: two for each, displacement and rotation, the

@@ -11,7 +11,8 @@ use crate::step::stencils::Stencils;
 const NONE: u32 = u32::MAX;
 
 /// The unknowns of a step: free degrees of freedom of active nodes, nodes ascending, and then those of
-/// rigid bodies.
+/// rigid bodies. Excess pore pressure is the last unknown of its node; a node of its own, behind those of rigid bodies,
+/// stands for it wherever displacements are listed by node.
 #[derive(Clone, Debug)]
 pub struct Unknowns<const D: usize> {
     /// Number of unknowns on nodes before each node; length nodes + 1.
@@ -25,12 +26,15 @@ pub struct Unknowns<const D: usize> {
     /// Unknowns of the grid; those of rigid bodies follow.
     of_grid: usize,
     len: usize,
+    /// The unknowns that are pore pressures, with their nodes of the grid, ascending.
+    pressures: Vec<(u32, u32)>,
 }
 
 impl<const D: usize> Unknowns<D> {
     /// Numbers the unknowns. Nodes whose volume is below `drop_below` of their cells' volume are
     /// dropped: their displacement is zero. (Tied nodes carry no volume any more.) Behind the nodes of the
-    /// grid stand those of rigid bodies, each with its free components.
+    /// grid stand those of rigid bodies, each with its free components, and those of pore pressure: the nodes of the grid that
+    /// `has_pressure` names, if it names any.
     ///
     /// # Errors
     /// [`AssemblyError::NoUnknowns`].
@@ -40,6 +44,7 @@ impl<const D: usize> Unknowns<D> {
         constraints: &Constraints<D>,
         drop_below: f64,
         of_bodies: &[[bool; D]],
+        has_pressure: &[bool],
     ) -> Result<Self, AssemblyError> {
         let nodes = grid.node_count();
         let all = nodes + of_bodies.len();
@@ -47,6 +52,7 @@ impl<const D: usize> Unknowns<D> {
         let mut rank = vec![[NONE; D]; all];
         let mut active = vec![false; nodes];
         let mut blocks_before = Vec::with_capacity(nodes + 1);
+        let mut pressures = Vec::new();
         let mut blocks = 0;
         let mut len: u32 = 0;
         for node in 0..nodes {
@@ -64,6 +70,10 @@ impl<const D: usize> Unknowns<D> {
                     rank[node][axis] = own;
                     own += 1;
                 }
+            }
+            if has_pressure.get(node) == Some(&true) {
+                pressures.push((len + own, node as u32));
+                own += 1;
             }
             len += own;
             blocks += u32::from(own > 0);
@@ -90,6 +100,7 @@ impl<const D: usize> Unknowns<D> {
             active,
             of_grid,
             len: len as usize,
+            pressures,
         })
     }
 
@@ -113,15 +124,38 @@ impl<const D: usize> Unknowns<D> {
         self.len == 0
     }
 
+    /// The first of the nodes that stand for pore pressure, which is the first component of each.
+    pub fn first_pressure(&self) -> usize {
+        self.rank.len()
+    }
+
+    /// The nodes of the grid with an unknown pore pressure, ascending, in the order of the nodes that stand for it.
+    pub fn pressure_nodes(&self) -> impl Iterator<Item = usize> + '_ {
+        self.pressures.iter().map(|&(_, node)| node as usize)
+    }
+
+    /// Number of unknowns that are pore pressures.
+    pub(crate) fn pressure_count(&self) -> usize {
+        self.pressures.len()
+    }
+
     /// The unknown of a node's component, if it is free.
     #[inline]
     pub fn index(&self, node: usize, axis: usize) -> Option<usize> {
-        let rank = self.rank[node][axis];
+        let Some(rank) = self.rank.get(node) else {
+            let (unknown, _) = self.pressures[node - self.rank.len()];
+            return (axis == 0).then_some(unknown as usize);
+        };
+        let rank = rank[axis];
         (rank != NONE).then(|| (self.first[node] + rank) as usize)
     }
 
-    /// The node and the axis of an unknown, if there is such an unknown.
+    /// The node and the axis of an unknown, if there is such an unknown; of a pore pressure the node that stands for it.
     pub fn place(&self, unknown: usize) -> Option<(usize, usize)> {
+        let among = (self.pressures).binary_search_by_key(&unknown, |&(own, _)| own as usize);
+        if let Ok(place) = among {
+            return Some((self.rank.len() + place, 0));
+        }
         let after = self
             .first
             .partition_point(|&first| first as usize <= unknown);
@@ -133,6 +167,15 @@ impl<const D: usize> Unknowns<D> {
     /// Whether a node takes part: it carries enough volume.
     pub fn is_active(&self, node: usize) -> bool {
         self.active[node]
+    }
+
+    /// The node of the grid in whose block of the matrix the unknowns of a node are: itself, but for pore pressure.
+    #[inline]
+    pub(crate) fn block_node(&self, node: usize) -> usize {
+        match node.checked_sub(self.rank.len()) {
+            Some(place) => self.pressures[place].1 as usize,
+            None => node,
+        }
     }
 
     /// Number of unknowns on nodes before `node`.
@@ -151,7 +194,7 @@ impl<const D: usize> Unknowns<D> {
         (0..D).filter_map(move |axis| self.index(node, axis).map(|unknown| (axis, unknown)))
     }
 
-    /// The free components of a node, one bit each.
+    /// The free components of displacement of a node, one bit each.
     #[inline]
     pub(crate) fn free(&self, node: usize) -> u8 {
         let mut free = 0;
@@ -161,7 +204,7 @@ impl<const D: usize> Unknowns<D> {
         free
     }
 
-    /// Number of unknowns of a node.
+    /// Number of unknowns of a node of the grid, pore pressure included.
     pub(crate) fn count(&self, node: usize) -> u32 {
         self.first[node + 1] - self.first[node]
     }

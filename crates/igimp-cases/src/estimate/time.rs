@@ -98,6 +98,9 @@ struct StepsTaken {
     trials: f64,
 }
 
+/// Steps of a stage in which water flows, which its error in time chooses.
+const FLOW_STEPS: f64 = 60.0;
+
 /// The effort that the case plans for a stage.
 fn planned<const D: usize>(case: &Case<D>, stage: &Stage) -> StepsTaken {
     let steps = stage.steps as f64;
@@ -121,6 +124,7 @@ fn planned<const D: usize>(case: &Case<D>, stage: &Stage) -> StepsTaken {
             }
         }
         StageKind::Dynamic(own) => (steps.max(steps_of_time(case, own)), 0.0),
+        _ if stage.consolidation.is_some() => (steps.max(FLOW_STEPS), 0.0),
         _ => (steps, 0.0),
     };
     let to_collapse =
@@ -131,6 +135,7 @@ fn planned<const D: usize>(case: &Case<D>, stage: &Stage) -> StepsTaken {
         StageKind::Gravity { .. } | StageKind::Load { .. } => 3.7,
         StageKind::Displacement { .. } | StageKind::Rigid(_) => 6.5,
         StageKind::Dynamic(_) => 4.0,
+        StageKind::Wait => 3.0,
         _ => 5.0,
     };
     let failing = if trials > 0.0 || to_collapse {

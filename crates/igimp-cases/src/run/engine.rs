@@ -427,6 +427,7 @@ fn dispatch<const D: usize>(
         | StageKind::K0
         | StageKind::Load { .. }
         | StageKind::Displacement { .. }
+        | StageKind::Wait
         | StageKind::Rigid(_) => loading::load(session, state, number, summary, resumption),
         StageKind::StrengthReduction(reduction) => {
             match fallen::anew(session, number, reduction, state) {

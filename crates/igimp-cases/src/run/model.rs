@@ -292,7 +292,7 @@ impl<'c, const D: usize> Model<'c, D> {
     fn water(&self, to: &Controls) -> Water<D> {
         let materials = &self.case.materials;
         let stiffness = |material: &Material| match material.drainage {
-            Drainage::Undrained { stiffness } if !to.drained => stiffness,
+            Drainage::Undrained { stiffness, .. } if !to.drained => stiffness,
             _ => 0.0,
         };
         let own = to.water.and_then(|condition| self.ground_water(condition));

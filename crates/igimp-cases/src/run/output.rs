@@ -139,8 +139,8 @@ impl<const D: usize> Output<D> {
                 open(path, &table.header, rows(|notes| &notes.rigid_rows, k))
             })
             .collect::<Result<_, _>>()?;
-        let takes_time = |stage: &Stage| matches!(stage.kind, StageKind::Dynamic(_));
-        let energy = case.stages.iter().any(takes_time).then(|| {
+        let moves = |stage: &Stage| matches!(stage.kind, StageKind::Dynamic(_));
+        let energy = case.stages.iter().any(moves).then(|| {
             let rows = notes.map_or(0, |notes| notes.energy_rows);
             open(folder.energy(), &records.energy.header, rows)
         });

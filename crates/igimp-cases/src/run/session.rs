@@ -1,6 +1,6 @@
 //! What passes from stage to stage of a run: model, listener, records and results folder.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -11,6 +11,7 @@ use igimp_assembly::{
     UnbalancedForces,
 };
 use igimp_linear::LinearEffort;
+use igimp_model::Consolidation;
 use igimp_results::ending::EndReason;
 use igimp_results::fields;
 use igimp_results::summary::{StageSummary, Summary};
@@ -26,6 +27,7 @@ use super::output::export::Export;
 use super::output::records::{Moment, Records, largest_displacement};
 use super::resume::Resumption;
 use super::state::{Controls, RigidTrack, State, WallTrack};
+use super::water::flow;
 use super::{Event, Listener, rigid};
 use crate::error::CaseError;
 use crate::estimate::factor_memory::decides;
@@ -247,6 +249,8 @@ pub(crate) struct StagePath<'a, const D: usize> {
     pub(crate) drag: &'a dyn Fn(f64, f64) -> f64,
     /// The time integration, where the march takes time.
     pub(crate) time: Option<TimeIntegration<'a, D>>,
+    /// How water flows, where it does while the march takes time.
+    pub(crate) flow: Option<&'a Consolidation>,
     /// The method, with the geometry that its steps are computed on.
     pub(crate) method: Method,
     /// Sizes of steps.
@@ -298,8 +302,12 @@ pub(crate) fn march_path<const D: usize>(
     let model = session.model;
     let tracks = RefCell::new(state.controls.tracks());
     let walls = RefCell::new(state.controls.walls.clone());
+    let flow_step = Cell::new(state.controls.flow_step);
     let at = |reached: f64| {
-        let controls = path.from.towards(path.to, reached);
+        let controls = Controls {
+            flow_step: flow_step.get(),
+            ..path.from.towards(path.to, reached)
+        };
         (controls.with_tracks(&tracks.borrow())).with_walls(&walls.borrow())
     };
     let load_path = |from: f64, to: f64| {
@@ -313,7 +321,9 @@ pub(crate) fn march_path<const D: usize>(
             Some(own) => (own.on_ground)(&before, &after, conditions)?,
             None => conditions,
         };
+        let flow = |own| model.flow(own, [after.time - before.time, flow_step.get()]);
         conditions
+            .with_flow(path.flow.map(flow))?
             .with_unbalanced(path.held.as_ref().map(|forces| UnbalancedForces {
                 forces: Arc::clone(forces),
                 share: 1.0 - to,
@@ -344,6 +354,7 @@ pub(crate) fn march_path<const D: usize>(
         each,
         tracks: &tracks,
         walls: &walls,
+        flow_step: &flow_step,
         reached: march.at,
         stopped: Ok(None),
     };
@@ -386,6 +397,8 @@ struct Watch<'w, 's, const D: usize> {
     tracks: &'w RefCell<Vec<RigidTrack>>,
     /// What stands at walls.
     walls: &'w RefCell<Vec<WallTrack>>,
+    /// Duration of the last step in which water flowed.
+    flow_step: &'w Cell<f64>,
     reached: f64,
     stopped: Result<Option<Stop>, CaseError>,
 }
@@ -401,7 +414,13 @@ impl<const D: usize> Watch<'_, '_, D> {
             export.accepted(accepted.conditions, &self.session.summary, self.stage);
         }
         let model = self.session.model;
+        if self.path.flow.is_some() {
+            let own = self.stage.consolidation.get_or_insert_default();
+            flow::tally(own, model.case, report, &accepted.body.particles);
+            self.flow_step.set(report.duration);
+        }
         let mut controls = self.path.from.towards(self.path.to, report.to);
+        controls.flow_step = self.flow_step.get();
         controls = controls.with_tracks(&self.tracks.borrow());
         let tracks = rigid::tracks(model.case, &controls, accepted);
         controls = controls.with_tracks(&tracks);

@@ -28,6 +28,9 @@ pub struct Controls {
     /// Time since the first stage that takes some \[s\].
     #[serde(default)]
     pub time: f64,
+    /// Duration of the last step in which water flowed; zero where statics came after it \[s\].
+    #[serde(default)]
+    pub flow_step: f64,
     /// What stands at the nodes of walls that a motion has let go.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub walls: Vec<WallTrack>,
@@ -128,6 +131,7 @@ impl Controls {
             water: None,
             drained: false,
             time: 0.0,
+            flow_step: 0.0,
             walls: Vec::new(),
         }
     }
@@ -152,6 +156,7 @@ impl Controls {
             water: end.water,
             drained: end.drained,
             time: between(self.time, end.time, t),
+            flow_step: self.flow_step,
             walls: self.walls.clone(),
         }
     }

@@ -1,5 +1,6 @@
 //! Water in the ground as particles find it: the conditions of a case, averaged over domains (theory, eqs. 51 and 52).
 
+pub(crate) mod flow;
 pub(crate) mod pores;
 pub(crate) mod seepage;
 

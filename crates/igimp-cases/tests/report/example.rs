@@ -39,6 +39,7 @@ fn stage(name: &str, kind: StageKind) -> Stage {
         install: Vec::new(),
         stop_when: StopWhen::default(),
         drained: false,
+        consolidation: None,
     }
 }
 
@@ -151,6 +152,7 @@ fn materials() -> Vec<Material> {
         k0: None,
         profiles: Profiles::default(),
         permeability: None,
+        void_law: None,
         saturated: None,
         drainage: Drainage::Drained,
         given: None,

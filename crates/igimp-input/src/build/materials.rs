@@ -7,6 +7,7 @@ pub(crate) mod profiles;
 
 use std::sync::Arc;
 
+use igimp_assembly::VoidLaw;
 use igimp_model::{BodyPart, Drainage, Ground, Layer, Material, Profile, Profiles, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
@@ -126,10 +127,12 @@ fn material<const D: usize>(
         (None, _) => None,
     };
     let drainage = drainage((common, &own.form), stiffness, strength, problems);
+    let permeability = permeability(common, problems).ok()?;
     let material = Material {
         saturated: saturated.ok()?,
         drainage: drainage?,
-        permeability: permeability(common, problems).ok()?,
+        permeability: permeability.map(|(soil, _)| soil),
+        void_law: permeability.and_then(|(_, law)| law),
         given: None,
         name: name.clone(),
         unit_weight: unit_weight?.constant,
@@ -281,13 +284,18 @@ fn constants(own: &keys::Material, common: &MaterialCommon) -> Vec<(&'static str
 }
 
 /// The permeability, if the material states one.
-fn permeability(common: &MaterialCommon, problems: &mut Problems) -> Result<Option<Soil>, Wrong> {
+fn permeability(
+    common: &MaterialCommon,
+    problems: &mut Problems,
+) -> Result<Option<(Soil, Option<VoidLaw>)>, Wrong> {
     let stated = common.permeability.as_ref().map_err(|_| Wrong)?;
     let Some(stated) = stated else {
         return Ok(None);
     };
     let own = match &**stated {
-        Either::First(permeability) => return Ok(Some(Soil::isotropic(*permeability))),
+        Either::First(permeability) => {
+            return Ok(Some((Soil::isotropic(*permeability), None)));
+        }
         Either::Second(own) => own,
     };
     let curve = match (&own.gardner, &own.van_genuchten) {
@@ -314,7 +322,20 @@ fn permeability(common: &MaterialCommon, problems: &mut Problems) -> Result<Opti
         }
         (None, None) => Curve::Ramp,
     };
-    Ok(Some(Soil {
+    if let (Some(index), None) = (&own.c_k, &own.void_ratio) {
+        problems
+            .error(
+                index.place,
+                "`c_k` needs the void ratio that it starts from",
+            )
+            .help("add void_ratio = 1.0, or what it is");
+        return Err(Wrong);
+    }
+    let void_law = own.void_ratio.as_ref().map(|initial| VoidLaw {
+        initial: **initial,
+        index: own.c_k.as_ref().map(|own| **own),
+    });
+    let soil = Soil {
         along: *own.horizontal,
         across: own.vertical.as_ref().map_or(*own.horizontal, |own| **own),
         angle: *own.angle,
@@ -322,7 +343,8 @@ fn permeability(common: &MaterialCommon, problems: &mut Problems) -> Result<Opti
         drainable: own.drainable.as_ref().map_or(0.0, |own| **own),
         // It follows from the stiffness, with the weight of the water.
         specific_storage: 0.0,
-    }))
+    };
+    Ok(Some((soil, void_law)))
 }
 
 /// The unit weight below a water table, if the material states one.
@@ -370,7 +392,7 @@ fn drainage(
         (None, own) => own.as_ref().map(|own| ("pore_water", own.place)),
     };
     let unlike = match kind {
-        keys::Drainage::Undrained => None,
+        keys::Drainage::Undrained | keys::Drainage::Coupled => None,
         keys::Drainage::Total => Some((Drainage::Total, "one of total stress")),
         keys::Drainage::Drained => Some((Drainage::Drained, "drained")),
     };
@@ -381,9 +403,21 @@ fn drainage(
         problems
             .error(
                 place,
-                format!("`{first}` is for undrained soil, and this material is {words}"),
+                format!(
+                    "`{first}` is for undrained and coupled soil, and this material is {words}"
+                ),
             )
-            .help("write drainage = \"undrained\", or remove it");
+            .help("write drainage = \"undrained\" or \"coupled\", or remove it");
+        return None;
+    }
+    let flows = kind == keys::Drainage::Coupled;
+    if let (true, Ok(None)) = (flows, &common.permeability) {
+        problems
+            .error(
+                common.drainage.as_ref().ok()?.as_ref()?.place,
+                "water flows through coupled soil, and it has no permeability",
+            )
+            .help("add permeability = \"1e-9 m/s\"; clay 1e-9, silt 1e-7, sand 1e-4");
         return None;
     }
     if let (Some(_), Some(second)) = (undrained, pore_water) {
@@ -401,6 +435,7 @@ fn drainage(
     if let Some(stiffness) = pore_water {
         return Some(Drainage::Undrained {
             stiffness: **stiffness,
+            flows,
         });
     }
     let [young, poisson] = stiffness?;
@@ -424,6 +459,7 @@ fn drainage(
     let bulk = |poisson: f64| 2.0 * shear * (1.0 + poisson) / (3.0 * (1.0 - 2.0 * poisson));
     Some(Drainage::Undrained {
         stiffness: bulk(with_water) - bulk(poisson),
+        flows,
     })
 }
 

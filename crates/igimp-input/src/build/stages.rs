@@ -1,6 +1,7 @@
 //! Stages: what each needs from loads, materials and the stages before it.
 
 mod at_rest;
+mod consolidation;
 pub(crate) mod construction;
 pub(crate) mod dynamic;
 pub(crate) mod ground_motion;
@@ -50,6 +51,7 @@ fn stage<const D: usize>(
     let stop_when = common.stop_when.as_ref().ok();
     let stop_when = stop_when.and_then(|own| stop_when_of(&about, own, problems));
     let install = super::reinforcement::installs(&about, problems);
+    let consolidation = consolidation::consolidation(&about, common, problems);
     Some(Stage {
         drained: **common.drained.as_ref().ok()?,
         name: own.name.known()?,
@@ -60,6 +62,7 @@ fn stage<const D: usize>(
         reset_displacements: **common.reset_displacements.as_ref().ok()?,
         install: install?,
         stop_when: stop_when?,
+        consolidation: consolidation.ok()?,
     })
 }
 
@@ -77,6 +80,7 @@ fn kind<const D: usize>(about: &About<'_, D>, problems: &mut Problems) -> Option
         StageForm::Displacement(own) => displacement(about, own.as_ref().ok()?, problems),
         StageForm::Rigid(_) => super::rigid::stage::stage(about, problems),
         StageForm::Construction(own) => construction::stage(about, own.as_ref().ok()?, problems),
+        StageForm::Wait(_) => Some(StageKind::Wait),
         StageForm::StrengthReduction(own) => {
             strength_reduction(about, own.as_ref().ok()?, problems)
                 .map(StageKind::StrengthReduction)
@@ -106,6 +110,7 @@ fn geometry(form: &StageForm) -> Geometry {
         StageForm::Displacement(Ok(own)) => own.geometry.as_ref().ok(),
         StageForm::Rigid(Ok(own)) => own.geometry.as_ref().ok(),
         StageForm::Construction(Ok(own)) => own.geometry.as_ref().ok(),
+        StageForm::Wait(Ok(own)) => own.geometry.as_ref().ok(),
         StageForm::StrengthReduction(Ok(own)) => Some(&own.geometry),
         StageForm::Dynamic(Ok(own)) => own.geometry.as_ref().ok(),
         _ => None,

@@ -1,7 +1,7 @@
 //! Conditions of the water.
 
 pub(crate) mod checks;
-mod seepage;
+pub(crate) mod seepage;
 
 use igimp_model::{BodyPart, Material, PoreSource, WaterCondition};
 use igimp_schema::diagnostic::Problems;

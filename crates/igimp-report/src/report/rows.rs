@@ -106,6 +106,27 @@ pub(super) fn headline(summary: &Summary) -> Vec<Number> {
             add("Excess pore pressure".to_owned(), value, note);
         }
     }
+    for stage in &summary.stages {
+        if let Some(own) = &stage.consolidation {
+            let name = several(
+                |stage| stage.consolidation.is_some(),
+                stage,
+                "Excess pressure dissipated",
+            );
+            let note = format!(
+                "mean of coupled soil {} of {} at most; water that left {} {}",
+                quantity(own.excess, "Pa"),
+                quantity(own.most_excess, "Pa"),
+                short(own.outflow),
+                if summary.size.is_in_space() {
+                    "m³"
+                } else {
+                    "m³/m"
+                }
+            );
+            add(name, format!("{} %", short(100.0 * own.dissipated())), note);
+        }
+    }
     if !summary.checks.is_empty() {
         let met = summary.checks.iter().filter(|row| row.pass).count();
         let value = format!("{met} of {}", summary.checks.len());

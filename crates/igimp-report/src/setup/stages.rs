@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use igimp_assembly::{Geometry, TimeScheme};
 use igimp_model::{
-    Base, Case, Construction, Dynamic, Load, Reduction, ReductionPath, RigidDrive, RigidMove,
-    SearchMethod, Stage, StageKind, StopWhen,
+    Base, Case, Consolidation, Construction, Dynamic, Load, Reduction, ReductionPath, RigidDrive,
+    RigidMove, SearchMethod, Stage, StageKind, StopWhen,
 };
 use igimp_results::summary::SetupTable;
 use igimp_text::short;
@@ -29,6 +29,7 @@ pub(super) fn stages<const D: usize>(case: &Case<D>) -> SetupTable {
         if stage.drained {
             what.push("all soil drains".to_owned());
         }
+        what.extend(stage.consolidation.as_ref().map(consolidation_in_words));
         if stage.reset_displacements {
             what.push("displacements count from its end on".to_owned());
         }
@@ -87,6 +88,7 @@ fn happens<const D: usize>(case: &Case<D>, stage: &Stage) -> String {
             format!("{name} pushed down by {} m", short(*settlement))
         }
         StageKind::Construction(own) => construction_in_words(case, own),
+        StageKind::Wait => "nothing changes".to_owned(),
         StageKind::Rigid(moves) => {
             let told: Vec<String> = moves.iter().map(|own| moves_in_words(case, own)).collect();
             told.join("; ")
@@ -130,6 +132,44 @@ fn happens<const D: usize>(case: &Case<D>, stage: &Stage) -> String {
             parts.extend(dynamic.bodies.iter().map(|own| moves_in_words(case, own)));
             parts.join("; ")
         }
+    }
+}
+
+/// The time in which water flows, in words.
+fn consolidation_in_words(own: &Consolidation) -> String {
+    let mut told = format!(
+        "over {}, in which water flows out of soil",
+        duration(own.duration)
+    );
+    if !own.open_faces {
+        told += ", faces sealed";
+    }
+    match own.open_sides.len() {
+        0 => {}
+        1 => told += ", one side open",
+        sides => {
+            let _ = write!(told, ", {sides} sides open");
+        }
+    }
+    match own.drains.len() {
+        0 => {}
+        1 => told += ", one drain",
+        drains => {
+            let _ = write!(told, ", {drains} drains");
+        }
+    }
+    told
+}
+
+/// A duration in the unit that suits it, given in seconds.
+fn duration(seconds: f64) -> String {
+    let day = 86_400.0;
+    if seconds >= 730.0 * day {
+        format!("{} years", short(seconds / (365.25 * day)))
+    } else if seconds >= day {
+        format!("{} d", short(seconds / day))
+    } else {
+        format!("{} s", short(seconds))
     }
 }
 

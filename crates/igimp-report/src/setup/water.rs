@@ -116,8 +116,9 @@ pub(super) fn soils<const D: usize>(case: &Case<D>) -> SetupTable {
     let rows = soils.map(|own| {
         let drainage = match own.drainage {
             Drainage::Drained => "drained; strength by effective stress".to_owned(),
-            Drainage::Undrained { stiffness } => format!(
-                "undrained; strength by effective stress, water of K_w/n = {}",
+            Drainage::Undrained { stiffness, flows } => format!(
+                "{}; strength by effective stress, water of K_w/n = {}",
+                if flows { "coupled" } else { "undrained" },
                 kilo(stiffness, "Pa")
             ),
             Drainage::Total => "strength by total stress".to_owned(),

@@ -148,12 +148,12 @@ table! {
         "unit weight below a water table, water included";
     drainage: apart(choice(Drainage)), derived "\"total\" with `cu`, \"drained\" otherwise",
         "what it does with the water in its pores";
-    undrained_poisson: apart(number(Share)), optional "0.495 where `drainage` is undrained and `pore_water` is not given",
+    undrained_poisson: apart(number(Share)), optional "0.495 where `drainage` is undrained or coupled and `pore_water` is not given",
         "Poisson's ratio of undrained soil with its water, above `poisson`";
     pore_water: apart(quantity(Stress, Positive)), optional "`undrained_poisson` says it",
-        "bulk modulus of the water over the porosity, K_w/n, of undrained soil";
+        "bulk modulus of the water over the porosity, K_w/n, of undrained and coupled soil";
     permeability: apart(either(quantity(Velocity, Positive), table(PERMEABILITY: Permeability))),
-        optional "none is needed without computed seepage", "permeability, for computed seepage";
+        optional "none is needed without computed seepage and coupled soil", "permeability, for computed seepage and coupled soil";
 }
 
 table! {
@@ -167,6 +167,10 @@ table! {
         "curve of van Genuchten and Mualem above the free surface";
     drainable: number(Share), optional "seepage in time needs it",
         "share of its volume that soil gives back as water where it drains";
+    void_ratio: number(Positive), optional "permeability stays as soil consolidates",
+        "void ratio at the start: in coupled soil permeability follows it, by Kozeny and Carman unless `c_k` is given";
+    c_k: number(Positive), optional "Kozeny and Carman say how it follows",
+        "change of the void ratio by which permeability becomes ten times another, in coupled soil";
 }
 
 table! {
@@ -180,6 +184,7 @@ choices! {
     Drainage;
     Drained "drained", "water comes and goes: strength and stiffness are those of effective stress";
     Undrained "undrained", "the same, and changes of volume make excess pore pressure";
+    Coupled "coupled", "the same, and the water flows in stages with `consolidation`";
     Total "total", "strength and stiffness are those of total stress: pore pressure does not matter";
 }
 

@@ -1,6 +1,7 @@
 //! The schema of a case file, declared once.
 
 pub mod bodies;
+pub mod consolidation;
 mod declare;
 pub mod grid;
 pub mod ground_motion;

@@ -1,6 +1,7 @@
 //! Stages.
 
 use super::MOST_THINGS;
+use super::consolidation::{CONSOLIDATION, Consolidation};
 use super::declare::{choices, table, variants};
 use super::ground_motion::{GROUND_MOTION, GroundMotion, RAYLEIGH, Rayleigh, Wall};
 use super::rigid::{MOVE, Move};
@@ -19,6 +20,7 @@ variants! {
     "displacement" => Displacement(DISPLACEMENT: Displacement),
     "rigid" => Rigid(RIGID_MOTION: RigidMotion),
     "construction" => Construction(CONSTRUCTION: Construction),
+    "wait" => Wait(WAIT: Wait),
     "strength-reduction" => StrengthReduction(STRENGTH_REDUCTION: StrengthReduction),
     "run-out" => RunOut(RUN_OUT: RunOut),
     "dynamic" => Dynamic(DYNAMIC: Dynamic),
@@ -78,6 +80,11 @@ table! {
         "bodies that consist of another material from now on";
     water: apart(reference("water condition")), optional "as before", "condition of the water from now on";
     dissipate: apart(flag), default "false", "whether excess pore pressure of undrained soil is gone at the end";
+    geometry: apart(choice(Geometry)), default "\"moving\"", "the geometry that its steps are computed on";
+}
+
+table! {
+    WAIT: Wait, "Changes nothing: water flows, for the time that its `consolidation` says.";
     geometry: apart(choice(Geometry)), default "\"moving\"", "the geometry that its steps are computed on";
 }
 
@@ -158,6 +165,8 @@ table! {
     reset_displacements: apart(flag), default "false", "whether displacements count from the end of this stage on";
     drained: apart(flag), default "false",
         "whether all soil drains while it lasts: no excess pore pressure comes or goes";
+    consolidation: apart(table(CONSOLIDATION: Consolidation)), optional "it takes no time, and coupled soil is undrained",
+        "time in which water flows out of coupled soil";
     stop_when: apart(table(STOP_WHEN: StopWhen)), default "{}", "conditions that end the stage early";
 }
 

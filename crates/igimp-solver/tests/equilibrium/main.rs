@@ -3,6 +3,7 @@
 mod beam;
 #[path = "../body_support/mod.rs"]
 mod body_support;
+mod consolidation;
 mod drag;
 mod element;
 mod faults;

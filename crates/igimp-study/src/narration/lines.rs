@@ -399,6 +399,7 @@ mod tests {
                 reinforcement: Vec::new(),
                 water: None,
                 drained: false,
+                consolidation: None,
                 time: 0.0,
                 walls: Vec::new(),
             },

@@ -320,7 +320,7 @@ fn collapse<const D: usize>(case: &Case<D>, stage: &Stage) -> Vec<String> {
             let is_loaded = moves.iter().any(RigidMove::is_loaded);
             is_loaded.then_some(instead).into_iter().collect()
         }
-        StageKind::RunOut(_) | StageKind::Dynamic(_) => Vec::new(),
+        StageKind::RunOut(_) | StageKind::Dynamic(_) | StageKind::Wait => Vec::new(),
     }
 }
 
@@ -333,6 +333,12 @@ fn more_steps(stage: &Stage) -> String {
             short(run_out.move_per_step)
         ),
         StageKind::Dynamic(_) => format!("a shorter longest_step in stage \"{}\"", stage.name),
+        _ if stage.consolidation.is_some() => {
+            format!(
+                "a shorter longest_step in the consolidation of stage \"{}\"",
+                stage.name
+            )
+        }
         _ => format!("steps = {} for this stage", 2 * stage.steps.max(1)),
     }
 }

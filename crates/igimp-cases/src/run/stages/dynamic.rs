@@ -95,6 +95,7 @@ pub(crate) fn dynamic<const D: usize>(
             lumped: dynamic.lumped_share,
             on_ground: &on_ground,
         }),
+        flow: None,
         method,
         settings: pace(model, state, dynamic, stage.steps)?,
         held: None,

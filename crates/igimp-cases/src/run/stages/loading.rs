@@ -55,6 +55,7 @@ pub(crate) fn target<const D: usize>(case: &Case<D>, stage: &Stage, start: &Cont
         StageKind::Construction(own) => end.water = own.water.or(end.water),
         _ => {}
     }
+    end.time += stage.consolidation.as_ref().map_or(0.0, |own| own.duration);
     end.drained =
         stage.drained || matches!(&stage.kind, StageKind::Construction(own) if own.dissipate);
     end
@@ -88,7 +89,10 @@ pub(crate) fn release<const D: usize>(
     }
     if resumption.is_none() {
         reinforcement::begin(model.case, state, stage);
+        // What came before it may have changed the pressures at once.
+        state.controls.flow_step = 0.0;
     }
+    let flow = stage.consolidation.as_ref();
     let from = resumption.map_or_else(|| state.controls.clone(), |left| left.from.clone());
     let to = target(model.case, stage, &from);
     let mut resistance = resumption.map_or(0.0, |left| left.resistance);
@@ -100,8 +104,12 @@ pub(crate) fn release<const D: usize>(
         to: &to,
         drag: &|_, _| 0.0,
         time: None,
+        flow,
         method: model.method(stage.geometry),
-        settings: model.march_settings(stage.steps),
+        settings: match flow {
+            Some(own) => model.flow_settings(own, stage.steps)?,
+            None => model.march_settings(stage.steps),
+        },
         held,
         left: resumption,
     };
@@ -129,7 +137,9 @@ pub(crate) fn release<const D: usize>(
         },
     )?;
     match &ended {
-        StageEnd::NotConverged(error) if limit_load::is_sought(stage, summary, error) => {
+        StageEnd::NotConverged(error)
+            if flow.is_none() && limit_load::is_sought(stage, summary, error) =>
+        {
             limit_load::follow_on(session, state, (number, &from, &to), summary)
         }
         _ => Ok(ended),

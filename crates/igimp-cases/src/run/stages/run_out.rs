@@ -60,6 +60,7 @@ pub(crate) fn run_out<const D: usize>(
         to: &to,
         drag: &|from, to| drag.get() / ((to - from) * steps as f64),
         time: None,
+        flow: None,
         method: flowing(session.model),
         settings: session.model.march_settings(steps),
         held: None,
@@ -161,6 +162,7 @@ fn stand<const D: usize>(
     let last = StagePath {
         drag: &|_, _| 0.0,
         time: None,
+        flow: None,
         method: flowing(session.model),
         settings: session.model.march_settings(1),
         held: None,

@@ -220,6 +220,7 @@ impl<'a, const D: usize> Trials<'a, D> {
             to: &to,
             drag: &|_, _| 0.0,
             time: None,
+            flow: None,
             method: session.model.method(self.stage.geometry),
             settings,
             held: None,

@@ -89,7 +89,10 @@ mod tests {
         let mut case = case();
         let particles = Model::new(&case).unwrap().1.body.particles;
         assert_eq!(summary(&case, &particles), None);
-        case.materials[0].drainage = Drainage::Undrained { stiffness: 1e9 };
+        case.materials[0].drainage = Drainage::Undrained {
+            stiffness: 1e9,
+            flows: false,
+        };
         assert_eq!(summary(&case, &particles), None);
         let mut fields: ParticleFields<2> = (*particles).clone();
         fields.pore_pressure[1] = 40e3;
@@ -123,7 +126,10 @@ mod tests {
             tension_cutoff: None,
         };
         assert!(dilatant(&case).is_empty());
-        case.materials[0].drainage = Drainage::Undrained { stiffness: 1e9 };
+        case.materials[0].drainage = Drainage::Undrained {
+            stiffness: 1e9,
+            flows: false,
+        };
         assert_eq!(dilatant(&case).len(), 1);
         for stage in &mut case.stages {
             stage.drained = true;

@@ -5,10 +5,11 @@ use igimp_model::{Base, GroundMotion, StageWalls};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::grid::Side;
-use igimp_schema::schema::ground_motion::{self as keys, BaseKind, MotionAxis, Wall};
+use igimp_schema::schema::ground_motion::{self as keys, BaseKind, MotionAxis};
 use igimp_schema::schema::stages::{Dynamic, StageForm};
 use igimp_schema::tree::read::At;
 
+use super::consolidation::side;
 use crate::build::context::About;
 
 /// What lies beyond the walls.
@@ -19,21 +20,7 @@ pub(super) fn walls<const D: usize>(
 ) -> Option<StageWalls> {
     let mut absorbing = Vec::new();
     for wall in own.absorbing.iter() {
-        let known = match **wall {
-            Wall::Left => Some((0, false)),
-            Wall::Right => Some((0, true)),
-            Wall::Front => (D == 3).then_some((1, false)),
-            Wall::Back => (D == 3).then_some((1, true)),
-            Wall::Bottom => Some((D - 1, false)),
-            Wall::Top => Some((D - 1, true)),
-        };
-        let Some(known) = known else {
-            let message = format!("there is no side {} in plane strain", wall.name());
-            problems
-                .error(wall.place, message)
-                .help("write left, right, bottom or top");
-            return None;
-        };
+        let known = side::<D>(wall, problems).ok()?;
         if *own.tied_sides && known.0 == 0 {
             problems
                 .error(

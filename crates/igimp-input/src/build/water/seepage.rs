@@ -196,7 +196,7 @@ fn free_water<const D: usize>(
 }
 
 /// A box with as many axes as the analysis has.
-fn extent<const D: usize>(
+pub(crate) fn extent<const D: usize>(
     from: &At<Vec<At<f64>>>,
     to: &At<Vec<At<f64>>>,
     problems: &mut Problems,

@@ -165,6 +165,7 @@ impl Search<'_> {
             to: &self.at(factor),
             drag: &|_, _| 0.0,
             time: None,
+            flow: None,
             method: session.model.method(self.stage.geometry),
             settings: session.model.march_settings(self.stage.steps),
             held: None,

@@ -1,0 +1,126 @@
+//! Water that flows out of coupled soil while a stage takes time.
+
+use igimp_assembly::{Consolidating, Particles, Permeable, PoreFlow};
+use igimp_model::{Case, Consolidation, Drainage, Material};
+use igimp_results::summary::ConsolidationSummary;
+use igimp_solver::{MarchSettings, Pace, StepReport};
+
+use crate::error::CaseError;
+use crate::run::model::Model;
+
+/// The first step over the time in which pressure evens out across a cell \[-\].
+const FIRST_STEP: f64 = 0.02;
+
+/// How often a step may be cut in succession, at least: steps are chosen by their error.
+const CUTS: u32 = 12;
+
+impl<const D: usize> Model<'_, D> {
+    /// The flow of a step of a duration after one of another \[s\].
+    pub(crate) fn flow(
+        &self,
+        stage: &Consolidation,
+        [duration, before]: [f64; 2],
+    ) -> Consolidating<D> {
+        let materials = &self.case.materials;
+        let of_law = |law: usize| pore_flow(self.case, &materials[law % materials.len()]);
+        let corner = |own: &[f64; 3]| std::array::from_fn(|axis| own[axis]);
+        Consolidating {
+            duration,
+            before,
+            must_resolve: true,
+            soils: (0..self.laws.len()).map(of_law).collect(),
+            open_sides: stage.open_sides.clone(),
+            open_faces: stage.open_faces,
+            drains: (stage.drains.iter())
+                .map(|[lower, upper]| [corner(lower), corner(upper)])
+                .collect(),
+        }
+    }
+
+    /// Sizes of the steps of a stage in which water flows: they land on equal parts of its duration, as many as the stage has steps.
+    ///
+    /// # Errors
+    /// As [`Self::grid`].
+    pub(crate) fn flow_settings(
+        &self,
+        stage: &Consolidation,
+        parts: usize,
+    ) -> Result<MarchSettings, CaseError> {
+        let settings = self.march_settings(parts);
+        let smallest = self.case.grid.smallest_cell().into_iter();
+        let cell = smallest.fold(self.cell_height()?, f64::min);
+        let fastest = fastest_consolidation(self.case);
+        let share = |time: f64| time / stage.duration;
+        let longest = (stage.longest_step.map_or(1.0, share)).min(1.0 / parts as f64);
+        Ok(MarchSettings {
+            cuts: settings.cuts.max(CUTS),
+            pace: Some(Pace {
+                first: share(FIRST_STEP * cell * cell / fastest).min(longest),
+                longest,
+            }),
+            ..settings
+        })
+    }
+}
+
+/// The largest coefficient of consolidation c_v = k/(m_v γ_w) of the coupled soils \[m²/s\].
+pub(crate) fn fastest_consolidation<const D: usize>(case: &Case<D>) -> f64 {
+    let of = |own: &Material| match (own.drainage, own.permeability) {
+        (Drainage::Undrained { flows: true, .. }, Some(soil)) => {
+            soil.along.max(soil.across) / case.water_unit_weight * own.constrained_modulus()
+        }
+        _ => 0.0,
+    };
+    case.materials
+        .iter()
+        .map(of)
+        .fold(f64::MIN_POSITIVE, f64::max)
+}
+
+/// What the water in a material does.
+fn pore_flow<const D: usize>(case: &Case<D>, material: &Material) -> PoreFlow<D> {
+    match (material.drainage, material.permeability) {
+        (Drainage::Drained, _) => PoreFlow::Drained,
+        (
+            Drainage::Undrained {
+                stiffness,
+                flows: true,
+            },
+            Some(soil),
+        ) => PoreFlow::Flows(Permeable {
+            mobility: soil
+                .tensor()
+                .map(|row| row.map(|k| k / case.water_unit_weight)),
+            stiffness,
+            follows: material.void_law,
+        }),
+        _ => PoreFlow::Sealed,
+    }
+}
+
+/// Adds an accepted step to what a stage tells of its consolidation.
+pub(crate) fn tally<const D: usize>(
+    own: &mut ConsolidationSummary,
+    case: &Case<D>,
+    report: &StepReport,
+    particles: &Particles<D>,
+) {
+    let Some(water) = &report.water else {
+        return;
+    };
+    own.time += report.duration;
+    own.outflow += water.outflow;
+    own.missing += water.missing().abs();
+    let materials = &case.materials;
+    let flows = |law: usize| {
+        let drainage = materials[law % materials.len()].drainage;
+        matches!(drainage, Drainage::Undrained { flows: true, .. })
+    };
+    let (mut volume, mut excess) = (0.0, 0.0);
+    for particle in (0..particles.len()).filter(|&particle| flows(particles.law[particle])) {
+        volume += particles.volume(particle);
+        excess += particles.volume(particle) * particles.excess[particle].abs();
+    }
+    own.excess = if volume > 0.0 { excess / volume } else { 0.0 };
+    own.most_excess = own.most_excess.max(own.excess);
+}

@@ -1,0 +1,103 @@
+//! Time in which water flows out of soil.
+
+use igimp_model::{Consolidation, Drainage};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::consolidation as keys;
+use igimp_schema::schema::ground_motion::Wall;
+use igimp_schema::schema::stages::{StageCommon, StageForm};
+use igimp_schema::tree::Wrong;
+use igimp_schema::tree::read::At;
+
+use crate::build::context::About;
+use crate::build::water::seepage::extent;
+
+/// The time that a stage takes for water to flow, if it takes any.
+pub(super) fn consolidation<const D: usize>(
+    about: &About<'_, D>,
+    common: &StageCommon,
+    problems: &mut Problems,
+) -> Result<Option<Consolidation>, Wrong> {
+    let form = &about.stage.form;
+    let Some(own) = common.consolidation.as_ref().map_err(|_| Wrong)? else {
+        if let StageForm::Wait(_) = **form {
+            let message = format!("stage `{}` waits and says not how long", about.name);
+            problems
+                .error(about.stage.place, message)
+                .help("add consolidation = { duration = \"90 d\" }");
+            return Err(Wrong);
+        }
+        return Ok(None);
+    };
+    let refused = match **form {
+        StageForm::StrengthReduction(_) | StageForm::RunOut(_) => {
+            Some("water does not flow while strength is reduced")
+        }
+        StageForm::Dynamic(_) => Some("soil with inertia is drained or undrained"),
+        StageForm::K0(_) => Some("ground at rest has had its time"),
+        _ if common.drained.as_ref().is_ok_and(|drained| drained.value) => {
+            Some("all soil drains at once in a stage with `drained`")
+        }
+        _ => None,
+    };
+    if let Some(why) = refused {
+        problems
+            .error(
+                own.place,
+                format!("stage `{}` cannot consolidate: {why}", about.name),
+            )
+            .help("let water flow in a stage of type wait before it or after it");
+        return Err(Wrong);
+    }
+    let flows = |own: &igimp_model::Material| {
+        matches!(own.drainage, Drainage::Undrained { flows: true, .. })
+    };
+    let materials = &about.context.materials;
+    if materials.iter().all(Option::is_some) && !materials.iter().flatten().any(flows) {
+        problems
+            .error(own.place, "no material is coupled: no water flows")
+            .help("write drainage = \"coupled\" and a permeability in the soil that consolidates");
+        return Err(Wrong);
+    }
+    let mut open_sides = Vec::new();
+    for wall in own.open_sides.iter() {
+        let side = side::<D>(wall, problems)?;
+        if !open_sides.contains(&side) {
+            open_sides.push(side);
+        }
+    }
+    let mut drains = Vec::new();
+    for drain in own.drains.iter() {
+        let keys::Drain { from, to } = &drain.as_ref().map_err(|_| Wrong)?.value;
+        let within = extent::<D>(from, to, problems)?;
+        drains.push([within.lower, within.upper]);
+    }
+    Ok(Some(Consolidation {
+        duration: *own.duration,
+        open_faces: *own.open_faces,
+        open_sides,
+        drains,
+        longest_step: own.longest_step.as_ref().map(|own| **own),
+    }))
+}
+
+/// A side of the grid by its name: axis, and whether it is the upper end.
+pub(super) fn side<const D: usize>(
+    wall: &At<Wall>,
+    problems: &mut Problems,
+) -> Result<(usize, bool), Wrong> {
+    let known = match **wall {
+        Wall::Left => Some((0, false)),
+        Wall::Right => Some((0, true)),
+        Wall::Front => (D == 3).then_some((1, false)),
+        Wall::Back => (D == 3).then_some((1, true)),
+        Wall::Bottom => Some((D - 1, false)),
+        Wall::Top => Some((D - 1, true)),
+    };
+    known.ok_or_else(|| {
+        let message = format!("there is no side {} in plane strain", wall.name());
+        problems
+            .error(wall.place, message)
+            .help("write left, right, bottom or top");
+        Wrong
+    })
+}
