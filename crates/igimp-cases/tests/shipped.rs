@@ -629,6 +629,61 @@ fn a_dam_recovers_from_a_rapid_drawdown() {
     assert!(sudden < early && early < late && late < end && early < full);
 }
 
+/// GOAL: clay settles as its water leaves, and a run that was interrupted leaves the same files, on any number of threads.
+/// ORACLE: Terzaghi's series, in the checks of the case; the run that was not interrupted.
+#[test]
+fn clay_consolidates_under_a_fill() {
+    let changed = ["grid.cell=0.5 m", "output.figures=[]"];
+    let file = file("consolidation", &changed);
+    let [whole, stopped] = ["consolidation-whole", "consolidation-stopped"].map(folder);
+    let run = run_into((&file, file.case()), &whole, Start::Afresh, None);
+    assert_done(&run.summary);
+    assert!(run.summary.checks.iter().all(|check| check.pass));
+    for stage in &run.summary.stages[2..] {
+        let own = stage.consolidation.as_ref().unwrap();
+        assert!(own.missing < 1e-8 * own.outflow, "{own:?}");
+    }
+    run_into((&file, file.case()), &stopped, Start::Afresh, Some(20));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build();
+    let resume = || run_into((&file, file.case()), &stopped, Start::Resume, None);
+    assert_done(&pool.unwrap().install(resume).summary);
+    assert_equal(
+        &everything(&whole),
+        &everything(&stopped),
+        "resumed on three threads",
+    );
+}
+
+#[test]
+fn an_embankment_on_soft_clay_gains_strength_with_time() {
+    let ran = ran("embankment_time", &["grid.cell=1.5 m", "output.figures=[]"]);
+    assert_eq!(ran.outcomes(), [Completed; 9]);
+    let stages = ran.run.summary.stages.iter();
+    let safety = stages.filter_map(|own| own.safety.as_ref());
+    let factors: Vec<f64> = safety.map(|own| own.stable.unwrap()).collect();
+    println!("factors of safety {factors:.3?}");
+    assert!(factors[0] > 1.0 && factors[1] > 1.1 * factors[0] && factors[2] > factors[1]);
+}
+
+/// GOAL: what a footing carries grows with the time that water has.
+/// ORACLE: the undrained and the drained answer without time.
+#[test]
+fn a_slower_push_carries_more() {
+    let ran = ran(
+        "penetration_rate",
+        &["grid.cell=0.8 m", "output.figures=[]"],
+    );
+    assert_eq!(ran.outcomes(), [Completed; 6]);
+    let stages = ran.run.summary.stages.iter();
+    let peaks: Vec<f64> = stages.filter_map(|own| own.peak_resistance).collect();
+    println!("undrained, an hour, half a year, fifty years, drained: {peaks:.0?} N/m");
+    let [undrained, hour, half, years, drained] = peaks[..] else {
+        panic!("five pushes");
+    };
+    assert!((hour / undrained - 1.0).abs() < 0.05 && (years / drained - 1.0).abs() < 0.02);
+    assert!(hour < half && half < years);
+}
+
 #[test]
 fn what_is_left_below_a_pit_is_its_buoyant_weight() {
     let ran = ran(

@@ -100,8 +100,6 @@ pub enum Quantity {
     Top,
     /// Time since the first stage that takes some \[s\].
     Time,
-    /// The same in days \[d\].
-    Days,
     /// Kinetic energy, in stages that take time \[J/m; J in space\].
     KineticEnergy,
 }

@@ -80,7 +80,7 @@ pub enum StepFailure {
         position: [f64; 3],
     },
     /// Converged, but motion changed by more than the step resolves.
-    #[error("the motion changes by more than a step of {duration:.3e} s resolves")]
+    #[error("what changes with time changes by more than a step of {duration:.3e} s resolves")]
     TooLong {
         /// Duration of the step \[time\].
         duration: f64,

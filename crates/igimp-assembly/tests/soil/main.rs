@@ -2,6 +2,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod consolidation;
 mod energy;
 mod errors;
 mod given_geometry;

@@ -117,9 +117,15 @@ pub(super) fn soils<const D: usize>(case: &Case<D>) -> SetupTable {
         let drainage = match own.drainage {
             Drainage::Drained => "drained; strength by effective stress".to_owned(),
             Drainage::Undrained { stiffness, flows } => format!(
-                "{}; strength by effective stress, water of K_w/n = {}",
+                "{}; strength by effective stress, water of K_w/n = {}{}",
                 if flows { "coupled" } else { "undrained" },
-                kilo(stiffness, "Pa")
+                kilo(stiffness, "Pa"),
+                own.permeability
+                    .filter(|_| flows)
+                    .map_or_else(String::new, |soil| format!(
+                        ", k = {} m/s",
+                        short(soil.along)
+                    ))
             ),
             Drainage::Total => "strength by total stress".to_owned(),
         };

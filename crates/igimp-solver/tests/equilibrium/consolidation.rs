@@ -310,6 +310,80 @@ fn the_end_is_drained() {
     }
 }
 
+// GOAL: a column in space is the column of a line.
+// ORACLE: the line, with its face on a line of the grid and within a cell.
+#[test]
+fn a_column_in_space_is_that_of_a_line() {
+    for part in [0.0, 0.4] {
+        let full = 8;
+        let mut line = Column::new(full, part, 1e-3);
+        let size = 1.0 / (full as f64 + part);
+        let grid = Grid::new([
+            Axis::uniform(0.0, size, 1).unwrap(),
+            Axis::uniform(0.0, size, 1).unwrap(),
+            Axis::uniform(0.0, size, full + 3).unwrap(),
+        ]);
+        let along: Vec<[f64; 2]> = (line.body.particles.x.iter())
+            .zip(&line.body.particles.half_length)
+            .map(|(x, half)| [x[0], half[0]])
+            .collect();
+        let mut seeds = Vec::new();
+        for [x, half] in along {
+            for corner in 0..4 {
+                let across = [corner % 2, corner / 2].map(|k| size * (0.25 + 0.5 * f64::from(k)));
+                seeds.push(ParticleSeed {
+                    x: [across[0], across[1], x],
+                    half_length: [0.25 * size, 0.25 * size, half],
+                    volume: 0.5 * size * size * half,
+                    density: 1.0,
+                    law: 0,
+                    centroid: [0.0; 3],
+                });
+            }
+        }
+        let mut body = Body::new(Particles::new(&seeds).unwrap());
+        for corner in 0..4 {
+            let across = [corner % 2, corner / 2].map(|k| size * (0.25 + 0.5 * f64::from(k)));
+            body.load_points.push(LoadPoint {
+                x: [across[0], across[1], 1.0],
+                force: [0.0, 0.0, -0.25e-3 * size * size],
+                load: 0,
+            });
+        }
+        let mut constraints = Constraints::free(&grid);
+        for axis in 0..3 {
+            constraints.fix_wall(&grid, axis, false, axis).unwrap();
+        }
+        constraints.fix_wall(&grid, 0, true, 0).unwrap();
+        constraints.fix_wall(&grid, 1, true, 1).unwrap();
+        let mut loads = StepLoads::gravity([0.0; 3]);
+        loads.factors = vec![1.0];
+        let law = Arc::clone(&line.law);
+        let conditions = StepConditions::new(grid, constraints, loads, vec![law]).unwrap();
+        let mut workspace = workspace();
+        for time in [1e-6, 1e-3, 2e-3, 4e-3, 8e-3, 1.6e-2] {
+            let durations = [(time - line.time) / line.modulus, line.before];
+            line.to(time, STIFF);
+            step(
+                &mut body,
+                &Method::igimp_bbar(),
+                &flow(conditions.clone(), durations, STIFF),
+                (0.0, 1.0),
+                &TIGHT,
+                &mut workspace,
+            )
+            .unwrap();
+        }
+        for (p, excess) in body.particles.excess.iter().enumerate() {
+            let own = line.body.particles.excess[p / 4];
+            assert!(
+                (excess / own - 1.0).abs() < 1e-6,
+                "{part}: {p} {excess} {own}"
+            );
+        }
+    }
+}
+
 /// A block of `cells` over the length 1 on a grid that ends at its top and goes on at its right, rollers at its left and base.
 fn block(cells: [usize; 2], beyond: usize, height: f64) -> (Body<2>, Grid<2>, Constraints<2>) {
     let size = [1.0 / cells[0] as f64, height / cells[1] as f64];

@@ -7,7 +7,7 @@
 
 mod faces;
 
-use igimp_shape::{Grid, cell_parts};
+use igimp_shape::{Grid, Support, cell_parts};
 
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
@@ -56,10 +56,27 @@ struct Seeping {
     start: f64,
     /// Softness of the water, n/K_w \[length²/force\].
     softness: f64,
-    /// Growth of the water by volume if it went on as in the step before \[-\].
+}
+
+/// What a pressure couples to another one, as the water that a unit of the other moves \[length^D·length²/force\].
+#[derive(Clone, Copy, Debug)]
+struct Move {
+    column: u32,
+    /// All of it.
+    all: f64,
+    /// What flows, and leaves at openings.
+    flow: f64,
+}
+
+/// The soil of a pressure: sums over particles.
+#[derive(Clone, Copy, Debug, Default)]
+struct Share {
+    /// Its volume \[length^D\].
+    volume: f64,
+    /// Volume by oedometric modulus \[length^D·force/length²\].
+    stiffness: f64,
+    /// Growth of its water if that went on as in the step before \[length^D\].
     expected: f64,
-    /// Oedometric modulus of the soil \[force/length²\].
-    modulus: f64,
 }
 
 /// The water that a step moved.
@@ -93,13 +110,15 @@ pub struct ExcessAfter {
     pub rate: f64,
 }
 
-/// Excess pore pressure of a particle and what its water grew by.
-#[derive(Clone, Copy, Debug)]
-struct WaterOf {
-    excess: f64,
-    /// Growth of its volume, and what compression of the water made room for, by volume \[-\].
-    swelling: f64,
-    stored: f64,
+impl Share {
+    /// A sum over particles by volume; zero where extrapolation left no soil.
+    fn by_volume(&self, sum: f64) -> f64 {
+        if self.volume > 0.0 {
+            sum / self.volume
+        } else {
+            0.0
+        }
+    }
 }
 
 /// Excess pore pressure as an unknown; empty where no water flows.
@@ -115,17 +134,22 @@ pub(crate) struct Consolidation<const D: usize> {
     place_of: Vec<u32>,
     /// Supports of displacement of each seeping particle: node, ∇S̄.
     couples: Vec<Vec<(usize, [f64; D])>>,
-    /// What does not change during the step: by pressure, others with the water that a unit of them moves
-    /// \[length^D·length²/force\].
-    moves: Vec<Vec<(u32, f64)>>,
+    /// Pairs of a pressure and a node that it acts on.
+    acts: Vec<(u32, u32)>,
+    /// By seeping particle: the pairs of its supports, those of displacement first.
+    pairs_of: Vec<Vec<u32>>,
+    /// By pressure: what does not change during the step.
+    moves: Vec<Vec<Move>>,
+    /// By pressure: its soil.
+    shares: Vec<Share>,
+    /// What the rate of the step before weighs in this one \[-\].
+    of_rate: f64,
     /// By pressure: the same of the pressures at the start \[length^D\].
     at_start: Vec<f64>,
     /// By pressure: water that leaves at openings \[length^D·length²/force\].
     leaves: Vec<f64>,
     /// Pairs of nodes of the grid that openings couple.
     pairs: Vec<(usize, usize)>,
-    /// Water that leaves in the step because it left in the one before \[length^D\].
-    goes_on: f64,
     duration: f64,
     finite: bool,
 }
@@ -155,11 +179,13 @@ struct Gathering<'a, const D: usize> {
     flow: &'a Consolidating<D>,
     /// By node of the grid: the number of its pressure.
     numbers: Vec<u32>,
-    /// By row: columns with the water that they move.
-    moves: Vec<Vec<(u32, f64)>>,
+    moves: Vec<Vec<Move>>,
+    shares: Vec<Share>,
+    acts: Vec<(u32, u32)>,
+    /// By pressure: the nodes that it acts on, and their pairs.
+    acts_on: Vec<Vec<(u32, u32)>>,
     at_start: Vec<f64>,
     leaves: Vec<f64>,
-    goes_on: f64,
     pairs: Vec<(usize, usize)>,
 }
 
@@ -176,17 +202,62 @@ impl<'a, const D: usize> Gathering<'a, D> {
             moves: vec![Vec::new(); count],
             at_start: vec![0.0; count],
             leaves: vec![0.0; count],
-            goes_on: 0.0,
+            shares: vec![Share::default(); count],
+            acts: Vec::new(),
+            acts_on: vec![Vec::new(); count],
             pairs: Vec::new(),
         }
     }
 
-    fn add(&mut self, row: u32, column: u32, water: f64) {
+    /// Adds the water that a unit of the pressure `column` moves at another: what flows, and what is stored.
+    fn add(&mut self, row: u32, column: u32, flow: f64, stored: f64) {
         let row = &mut self.moves[row as usize];
-        match row.iter_mut().find(|(other, _)| *other == column) {
-            Some((_, sum)) => *sum += water,
-            None => row.push((column, water)),
+        let all = flow + stored;
+        match row.iter_mut().find(|own| own.column == column) {
+            Some(own) => {
+                own.all += all;
+                own.flow += flow;
+            }
+            None => row.push(Move { column, all, flow }),
         }
+    }
+
+    /// The pair of a pressure and a node that it acts on.
+    fn pair(&mut self, place: u32, node: u32) -> u32 {
+        let known = &mut self.acts_on[place as usize];
+        if let Some(&(_, pair)) = known.iter().find(|(other, _)| *other == node) {
+            return pair;
+        }
+        let pair = self.acts.len() as u32;
+        known.push((node, pair));
+        self.acts.push((place, node));
+        pair
+    }
+
+    /// The pressures of a particle: number, value, mean over cells and gradient. What falls to a node that was dropped falls to the
+    /// one with the largest value: no water is lost with it.
+    fn of_particle(
+        &self,
+        supports: &[Support<D>],
+        means: &[(usize, f64)],
+    ) -> Vec<(u32, f64, f64, [f64; D])> {
+        let all = supports.iter().map(|support| {
+            let mean = mean_of(means, support.node);
+            let number = self.numbers[support.node];
+            (number, support.value, mean, support.grad)
+        });
+        let (dropped, mut own): (Vec<_>, Vec<_>) = all.partition(|&(number, ..)| number == NONE);
+        let largest = own.iter_mut().max_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((_, value, mean, grad)) = largest {
+            for other in dropped {
+                *value += other.1;
+                *mean += other.2;
+                for (own, other) in grad.iter_mut().zip(other.3) {
+                    *own += other;
+                }
+            }
+        }
+        own
     }
 
     /// Lets water leave where a function of pressure, given by nodes of the grid, would be zero.
@@ -197,7 +268,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
             .collect();
         for &(row_node, row, row_value) in &numbered {
             for &(column_node, column, value) in &numbered {
-                self.add(row, column, conductance * row_value * value);
+                self.add(row, column, conductance * row_value * value, 0.0);
                 self.leaves[column as usize] += conductance * row_value * value;
                 self.pairs.push((column_node, row_node));
             }
@@ -274,8 +345,10 @@ impl<const D: usize> Consolidation<D> {
         own.moves = gathering.moves;
         own.at_start = gathering.at_start;
         own.leaves = gathering.leaves;
-        own.goes_on = gathering.goes_on;
+        own.shares = gathering.shares;
+        own.of_rate = flow.weights()[1];
         own.pairs = gathering.pairs;
+        own.acts = gathering.acts;
         Ok(own)
     }
 
@@ -302,17 +375,8 @@ impl<const D: usize> Consolidation<D> {
         let flows = of_flow * flow.duration * volume * share;
         let stores = volume / soil.stiffness;
         let expected = flow.duration * particles.water_rate[particle];
-        gathering.goes_on -= of_rate * volume * expected;
         let projects = volume * softness;
-        let mut own = Vec::with_capacity(supports.len());
-        for support in supports {
-            let number = gathering.numbers[support.node];
-            if number == NONE {
-                continue;
-            }
-            let mean = mean_of(&means, support.node);
-            own.push((number, support.value, mean, support.grad));
-        }
+        let own = gathering.of_particle(supports, &means);
         let within = particles.excess_within_cell[particle];
         for &(row, value, mean, grad) in &own {
             let bulge = value - mean;
@@ -320,19 +384,28 @@ impl<const D: usize> Consolidation<D> {
                 std::array::from_fn(|a| (0..D).map(|b| soil.mobility[a][b] * grad[b]).sum());
             for &(column, other_value, other_mean, other_grad) in &own {
                 let along: f64 = (0..D).map(|a| towards[a] * other_grad[a]).sum();
-                let water = flows * along
-                    + stores * mean * other_mean
-                    + projects * bulge * (other_value - other_mean);
-                gathering.add(column, row, water);
+                let stored =
+                    stores * mean * other_mean + projects * bulge * (other_value - other_mean);
+                gathering.add(column, row, flows * along, stored);
             }
             gathering.at_start[row as usize] +=
                 mean * (stores * start + of_rate * volume * expected) + projects * bulge * within;
+            let share = &mut gathering.shares[row as usize];
+            share.volume += volume * mean;
+            share.stiffness += volume * mean * modulus;
+            share.expected += volume * mean * expected;
             self.supports.push(PressureSupport {
                 place: row,
                 value,
                 mean,
             });
         }
+        self.pairs_of.push(
+            (supports.iter())
+                .flat_map(|support| own.iter().map(|&(place, ..)| (place, support.node as u32)))
+                .map(|(place, node)| gathering.pair(place, node))
+                .collect(),
+        );
         self.couples.push(
             (supports.iter())
                 .map(|support| (support.node, support.grad_bar))
@@ -345,8 +418,6 @@ impl<const D: usize> Consolidation<D> {
             volume,
             start,
             softness: 1.0 / soil.stiffness,
-            expected,
-            modulus,
         });
         Ok(())
     }
@@ -374,42 +445,46 @@ impl<const D: usize> Consolidation<D> {
 
     /// The excess pore pressures of particles at nodal values `u`.
     pub(crate) fn excess_after(&self, u: &[[f64; D]]) -> Vec<ExcessAfter> {
-        let after = |(seeping, couples): (&Seeping, &Vec<(usize, [f64; D])>)| {
+        let grown: Vec<f64> = (0..self.shares.len())
+            .map(|place| self.shares[place].by_volume(self.grown(place, u)))
+            .collect();
+        let after = |seeping: &Seeping| {
             let within_cell = (self.supports_of(seeping).iter())
                 .map(|own| (own.value - own.mean) * self.scale * self.value(own.place, u))
                 .sum();
-            let water = self.water(seeping, couples, u);
+            let supports = self.supports_of(seeping).iter();
+            let grows: f64 = supports
+                .map(|own| own.mean * grown[own.place as usize])
+                .sum();
             ExcessAfter {
                 particle: seeping.particle as usize,
-                excess: water.excess,
+                excess: self.pressure(seeping.particle as usize, u).unwrap_or(0.0),
                 within_cell,
-                rate: (water.swelling + water.stored) / self.duration,
+                rate: grows / self.duration,
             }
         };
-        self.seeping.iter().zip(&self.couples).map(after).collect()
+        self.seeping.iter().map(after).collect()
     }
 
-    /// The water of a particle at nodal values `u`.
-    fn water(&self, seeping: &Seeping, couples: &[(usize, [f64; D])], u: &[[f64; D]]) -> WaterOf {
-        let excess = self.pressure(seeping.particle as usize, u).unwrap_or(0.0);
-        WaterOf {
-            excess,
-            swelling: self.stretched(seeping, couples, u).0 / seeping.volume,
-            stored: seeping.softness * (excess - seeping.start),
-        }
+    /// The growth of the water of a pressure by what flows at nodal values `u` \[length^D\].
+    fn grown(&self, place: usize, u: &[[f64; D]]) -> f64 {
+        let flows = self.moves[place].iter();
+        let flows: f64 = flows.map(|own| own.flow * self.value(own.column, u)).sum();
+        self.of_rate * self.shares[place].expected - self.scale * flows
     }
 
     /// The error of the step in time at nodal values `u`, the mean square of that of excess pore pressures over the largest of them,
     /// or over a part of the largest effective stress `stress` \[-\]; none where no water flows (theory, eq. 104).
     pub(crate) fn time_error(&self, u: &[[f64; D]], stress: f64) -> Option<f64> {
         let (mut volume, mut squared, mut largest) = (0.0, 0.0, STRESS_SHARE * stress);
-        for (seeping, couples) in self.seeping.iter().zip(&self.couples) {
-            let own = self.water(seeping, couples, u);
-            let change = own.swelling + own.stored - seeping.expected;
-            volume += seeping.volume;
-            squared += seeping.volume * (0.5 * seeping.modulus * change).powi(2);
-            largest = largest.max(own.excess.abs()).max(seeping.start.abs());
+        for (place, own) in self.shares.iter().enumerate() {
+            let change = own.by_volume(self.grown(place, u) - own.expected);
+            volume += own.volume;
+            squared += own.volume * (0.5 * own.by_volume(own.stiffness) * change).powi(2);
+            largest = largest.max((self.scale * self.value(place as u32, u)).abs());
         }
+        let starts = self.seeping.iter().map(|own| own.start.abs());
+        largest = starts.fold(largest, f64::max);
         (volume > 0.0 && largest > 0.0).then(|| (squared / volume).sqrt() / largest)
     }
 
@@ -425,13 +500,14 @@ impl<const D: usize> Consolidation<D> {
                 .sum()
         };
         let mut moved = WaterMoved {
-            outflow: of(&self.leaves) + self.goes_on,
+            outflow: of(&self.leaves)
+                - self.of_rate * self.shares.iter().map(|own| own.expected).sum::<f64>(),
             ..WaterMoved::default()
         };
         for (seeping, couples) in self.seeping.iter().zip(&self.couples) {
-            let own = self.water(seeping, couples, u);
-            moved.swelling += seeping.volume * own.swelling;
-            moved.stored += seeping.volume * own.stored;
+            let excess = self.pressure(seeping.particle as usize, u).unwrap_or(0.0);
+            moved.swelling += self.stretched(seeping, couples, u).0;
+            moved.stored += seeping.volume * seeping.softness * (excess - seeping.start);
         }
         Some(moved)
     }
@@ -479,39 +555,51 @@ impl<const D: usize> NodalForces<D> for Consolidation<D> {
         let scale = self.scale;
         for (row, columns) in self.moves.iter().enumerate() {
             let mut water = -self.at_start[row];
-            for &(column, moved) in columns {
-                water += moved * scale * self.value(column, u);
+            for &Move { column, all, .. } in columns {
+                water += all * scale * self.value(column, u);
                 if let Some(blocks) = &mut blocks {
                     let mut block = [[0.0; D]; D];
-                    block[0][0] = -scale * scale * moved;
+                    block[0][0] = -scale * scale * all;
                     blocks(self.first + row, self.first + column as usize, &block);
                 }
             }
             f[self.first + row][0] -= scale * water;
         }
-        for (seeping, couples) in self.seeping.iter().zip(&self.couples) {
+        let mut coupling = vec![[0.0; D]; if blocks.is_some() { self.acts.len() } else { 0 }];
+        let particles = self.seeping.iter().zip(&self.couples).zip(&self.pairs_of);
+        for ((seeping, couples), pairs) in particles {
             let (grows, volume, push) = self.stretched(seeping, couples, u);
             let supports = self.supports_of(seeping);
             for own in supports {
                 f[self.first + own.place as usize][0] -= scale * own.mean * grows;
             }
-            let Some(blocks) = &mut blocks else {
+            if blocks.is_none() {
                 continue;
-            };
-            for &(node, ref slope) in couples {
+            }
+            let mut pairs = pairs.iter();
+            for (_, slope) in couples {
                 let slope = transpose_apply(&push, slope);
-                for own in supports {
-                    let pressure = self.first + own.place as usize;
+                for (own, &pair) in supports.iter().zip(&mut pairs) {
                     let share = -scale * volume * own.mean;
-                    let (mut of_water, mut of_soil) = ([[0.0; D]; D], [[0.0; D]; D]);
+                    let sum = &mut coupling[pair as usize];
                     for a in 0..D {
-                        of_water[0][a] = share * slope[a];
-                        of_soil[a][0] = share * slope[a];
+                        sum[a] += share * slope[a];
                     }
-                    blocks(pressure, node, &of_water);
-                    blocks(node, pressure, &of_soil);
                 }
             }
+        }
+        let Some(blocks) = &mut blocks else {
+            return;
+        };
+        for (&(place, node), sum) in self.acts.iter().zip(&coupling) {
+            let (pressure, node) = (self.first + place as usize, node as usize);
+            let (mut of_water, mut of_soil) = ([[0.0; D]; D], [[0.0; D]; D]);
+            of_water[0] = *sum;
+            for a in 0..D {
+                of_soil[a][0] = sum[a];
+            }
+            blocks(pressure, node, &of_water);
+            blocks(node, pressure, &of_soil);
         }
     }
 }

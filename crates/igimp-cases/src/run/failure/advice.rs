@@ -58,6 +58,10 @@ pub(crate) fn advice<const D: usize>(
             component,
             touches,
         } => not_held(stage, body, *component, *touches),
+        StepFailure::TooLong { .. } if stage.consolidation.is_some() => vec![
+            format!("a longer duration in stage \"{}\"", stage.name),
+            finer_cell(case),
+        ],
         StepFailure::TooLong { .. } => vec![
             format!(
                 "scheme = \"backward-euler\" in stage \"{}\", which damps what steps do not resolve",

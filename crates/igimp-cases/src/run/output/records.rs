@@ -14,9 +14,6 @@ use crate::run::model::reduced;
 use crate::run::state::Controls;
 use crate::run::{reinforcement, rigid};
 
-/// Seconds of a day \[s/d\].
-const SECONDS_PER_DAY: f64 = 86_400.0;
-
 /// A state that is recorded: the end of a step, or of a trial in a strength reduction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moment<'a, const D: usize> {
@@ -199,7 +196,6 @@ impl Records {
             Quantity::PlasticShare => moment.plastic_share,
             Quantity::FactorOfSafety => self.factor_of_safety,
             Quantity::Time => controls.time,
-            Quantity::Days => controls.time / SECONDS_PER_DAY,
             Quantity::KineticEnergy => kinetic_energy(moment.particles, moment.rigid),
             Quantity::Top => std::iter::zip(&moment.particles.x, &moment.particles.half_length)
                 .map(|(x, l)| x[D - 1] + l[D - 1])

@@ -55,7 +55,7 @@ const REINFORCEMENT: [(&str, ReinforcementQuantity, &str); 3] = [
 ];
 
 /// Quantities of the whole model.
-const GLOBAL: [(&str, Quantity, &str); 11] = [
+const GLOBAL: [(&str, Quantity, &str); 10] = [
     ("largest_displacement", Quantity::LargestDisplacement, "m"),
     ("gravity_factor", Quantity::GravityFactor, "-"),
     ("horizontal_factor", Quantity::HorizontalFactor, "-"),
@@ -64,7 +64,6 @@ const GLOBAL: [(&str, Quantity, &str); 11] = [
     ("plastic_share", Quantity::PlasticShare, "-"),
     ("top", Quantity::Top, "m"),
     ("time", Quantity::Time, "s"),
-    ("days", Quantity::Days, "d"),
     ("kinetic_energy", Quantity::KineticEnergy, "J/m"),
     ("factor_of_safety", Quantity::FactorOfSafety, "-"),
 ];
