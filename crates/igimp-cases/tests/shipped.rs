@@ -633,8 +633,7 @@ fn a_dam_recovers_from_a_rapid_drawdown() {
 /// ORACLE: Terzaghi's series, in the checks of the case; the run that was not interrupted.
 #[test]
 fn clay_consolidates_under_a_fill() {
-    let changed = ["grid.cell=0.5 m", "output.figures=[]"];
-    let file = file("consolidation", &changed);
+    let file = file("consolidation", &["output.figures=[]"]);
     let [whole, stopped] = ["consolidation-whole", "consolidation-stopped"].map(folder);
     let run = run_into((&file, file.case()), &whole, Start::Afresh, None);
     assert_done(&run.summary);
@@ -671,7 +670,14 @@ fn an_embankment_on_soft_clay_gains_strength_with_time() {
 fn a_slower_push_carries_more() {
     let ran = ran(
         "penetration_rate",
-        &["grid.cell=0.8 m", "output.figures=[]"],
+        &[
+            "stages.1.steps=10",
+            "stages.2.steps=10",
+            "stages.3.steps=10",
+            "stages.4.steps=10",
+            "stages.5.steps=10",
+            "output.figures=[]",
+        ],
     );
     assert_eq!(ran.outcomes(), [Completed; 6]);
     let stages = ran.run.summary.stages.iter();

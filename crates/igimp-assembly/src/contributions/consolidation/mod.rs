@@ -305,6 +305,7 @@ impl<const D: usize> Consolidation<D> {
             finite: method.kinematics_of_step() == Kinematics::FiniteStrain,
             ..Self::default()
         };
+        let side = least_side(grid);
         for &particle in stencils.order() {
             let particle = particle as usize;
             let law = particles.law[particle];
@@ -314,7 +315,7 @@ impl<const D: usize> Consolidation<D> {
             let bound = conditions.laws[law].stiffness_bound();
             let ratio = particles.ratios[particle].stiffness;
             let modulus = ratio * (bound.bulk() + 4.0 / 3.0 * bound.shear());
-            own.scale = own.scale.max(modulus / least_side(grid));
+            own.scale = own.scale.max(modulus / side);
             own.place_of[particle] = own.seeping.len() as u32;
             let softness = 0.5 / (ratio * bound.shear());
             let given = pores.pressure.get(particle).copied();
