@@ -9,6 +9,7 @@
 //! | linear Hencky elasticity | [`Elasticity`] |
 //! | the seam | [`ConstitutiveModel`], [`ReturnMap`], [`History`], [`Regime`] |
 //! | laws | [`HenckyElastic`], [`VonMises`], [`Tresca`], [`MohrCoulomb`], [`DruckerPrager`], [`ModifiedCamClay`] |
+//! | laws whose strength goes with plastic strain | [`Softening`], [`Curve`] |
 //! | soil whose strength and stiffness vary | [`Ratios`], [`ScaledLaw`] |
 //! | from principal space to tensors | [`lift_finite`], [`lift_small`], [`Lifted`], [`SpatialTangent`] |
 //! | what can go wrong | [`MaterialError`] |
@@ -63,6 +64,7 @@ mod law;
 mod mohr_coulomb;
 mod pyramid;
 mod scaled;
+mod softening;
 mod spectral;
 mod surface;
 mod tresca;
@@ -79,6 +81,7 @@ pub use law::{
 };
 pub use mohr_coulomb::MohrCoulomb;
 pub use scaled::{Ratios, ScaledLaw};
+pub use softening::{Curve, Decay, FrictionalCurves, Softening};
 pub use spectral::eigen::principal_values;
 pub use spectral::lift::{
     Lifted, TangentKind, TrialStrain, elastic_left_cauchy_green, elastic_left_cauchy_green_of,

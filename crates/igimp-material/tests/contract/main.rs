@@ -31,6 +31,7 @@ mod reduction;
 mod refusals;
 mod returns;
 mod scaled;
+mod softening;
 mod tangents;
 mod tensors;
 mod utilisation;
