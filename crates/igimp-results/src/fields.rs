@@ -257,6 +257,7 @@ mod tests {
             k0: None,
             profiles: Profiles::default(),
             permeability: None,
+            softening: None,
             saturated: None,
             drainage: igimp_model::Drainage::Drained,
             given: None,

@@ -151,6 +151,7 @@ fn materials() -> Vec<Material> {
         k0: None,
         profiles: Profiles::default(),
         permeability: None,
+        softening: None,
         saturated: None,
         drainage: Drainage::Drained,
         given: None,

@@ -4,6 +4,7 @@ mod cam_clay;
 mod frictional;
 mod plausible;
 pub(crate) mod profiles;
+mod softening;
 
 use std::sync::Arc;
 
@@ -125,6 +126,8 @@ fn material<const D: usize>(
         (None, Some(Strength::ModifiedCamClay(own))) => cam_clay::stiffness(own),
         (None, _) => None,
     };
+    let varies = profile(friction.as_ref()).is_some();
+    let softening = softening::curves(name, &own.form, (strength, varies), problems);
     let drainage = drainage((common, &own.form), stiffness, strength, problems);
     let material = Material {
         saturated: saturated.ok()?,
@@ -136,6 +139,7 @@ fn material<const D: usize>(
         young: stiffness?[0],
         poisson: stiffness?[1],
         strength: strength?,
+        softening: softening.ok()?,
         k0: k0.ok()?,
         profiles: Profiles {
             strength: profile(cohesive.as_ref()),

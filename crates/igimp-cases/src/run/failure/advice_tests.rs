@@ -21,6 +21,7 @@ fn case(kind: StageKind) -> Case<2> {
         k0: None,
         profiles: Profiles::default(),
         permeability: None,
+        softening: None,
         saturated: None,
         drainage: igimp_model::Drainage::Drained,
         given: None,
