@@ -8,7 +8,7 @@ mod softening;
 
 use std::sync::Arc;
 
-use igimp_model::{BodyPart, Drainage, Ground, Layer, Material, Profile, Profiles, Strength};
+use igimp_model::{BodyPart, Case, Drainage, Ground, Layer, Material, Profile, Profiles, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::materials::{self as keys, MaterialCommon, Model};
@@ -155,6 +155,27 @@ fn material<const D: usize>(
         problems.error(stated.place, message);
     }
     Some(material)
+}
+
+/// Refuses strength that softens so fast, on the cells of a case, that stress snaps back.
+pub(super) fn check_on_cells<const D: usize>(case: &Case<D>, problems: &mut Problems) {
+    let cell = case.grid.smallest_cell()[D - 1];
+    for material in &case.materials {
+        let Some(curves) = material.softening.filter(|own| own.band_width.is_some()) else {
+            continue;
+        };
+        if let Err(error) = material.law_on(cell) {
+            let message = format!(
+                "the material `{}` is not possible on cells of {} m, where its strains are times {}: {error}",
+                clip(&material.name, 40),
+                number(cell),
+                number(curves.strain_ratio(cell))
+            );
+            problems
+                .error(None, message)
+                .help("smaller cells, or a larger `band_width` or `strain` of its softening");
+        }
+    }
 }
 
 /// The keys of linear elasticity, if the model has them.

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use crate::error::{positive, required};
 use crate::law::trial_stress;
 use crate::pyramid::{Pyramid, Strength};
-use crate::spectral::principal::{deviator, descending, dot, sorted, unsorted};
+use crate::spectral::principal::{descending, deviator, dot, sorted, unsorted};
 use crate::{
     ConstitutiveModel, Dissipation, Elasticity, History, InternalVariable, MaterialError,
     MohrCoulomb, Principal, ReturnMap, Scaling, ShearStrength, Tresca, VonMises,
@@ -282,12 +282,8 @@ impl Softening {
         let [friction, dilation] = [friction_angle.initial, dilation_angle.initial];
         MohrCoulomb::new(elasticity, cohesion.initial, friction, dilation)?;
         let most = dilation_angle.residual.min(friction_angle.residual);
-        let residual = MohrCoulomb::new(
-            elasticity,
-            cohesion.residual,
-            friction_angle.residual,
-            most,
-        )?;
+        let residual =
+            MohrCoulomb::new(elasticity, cohesion.residual, friction_angle.residual, most)?;
         if let Some(cutoff) = tension_cutoff {
             residual.with_tension_cutoff(cutoff)?;
         }
@@ -307,10 +303,9 @@ impl Softening {
 
     fn build(elasticity: Elasticity, kind: Kind, dilatancy: f64) -> Result<Self, MaterialError> {
         let strongest: Arc<dyn ConstitutiveModel> = match kind {
-            Kind::VonMises(curve) => Arc::new(VonMises::from_yield_stress(
-                elasticity,
-                curve.greatest(),
-            )?),
+            Kind::VonMises(curve) => {
+                Arc::new(VonMises::from_yield_stress(elasticity, curve.greatest())?)
+            }
             Kind::Tresca(curve) => Arc::new(Tresca::new(elasticity, curve.greatest())?),
             Kind::MohrCoulomb {
                 cohesion, friction, ..
@@ -333,12 +328,14 @@ impl Softening {
         let held = self.kind.held(self.elasticity, 0.0)?;
         for path in [[1.0, 0.0, -1.0], [1.0, 1.0, -2.0], [2.0, -1.0, -1.0]] {
             let answer = self.at_first_yield(&held, path)?;
-            required(
-                "softening strain",
-                self.first_strain(),
-                answer.by_kappa < 1.0 - LEAST_MARGIN,
-                "larger: strength falls faster than elastic stress does, and stress snaps back within the point",
-            )?;
+            if answer.by_kappa < 1.0 - LEAST_MARGIN {
+                continue;
+            }
+            return Err(MaterialError::InvalidParameter {
+                field: "softening strain",
+                value: self.first_strain(),
+                requirement: "larger: strength falls faster than elastic stress does, and stress snaps back within the point",
+            });
         }
         Ok(self)
     }

@@ -37,9 +37,8 @@ const FRICTIONAL: [([f64; 2], [f64; 2], [f64; 2], Option<f64>); 6] = [
 
 fn frictional(row: usize, decay: Decay) -> Softening {
     let (c, friction, dilation, cutoff) = FRICTIONAL[row];
-    let angles = |[from, to]: [f64; 2], strain| {
-        curve(from.to_radians(), to.to_radians(), strain, decay)
-    };
+    let angles =
+        |[from, to]: [f64; 2], strain| curve(from.to_radians(), to.to_radians(), strain, decay);
     let curves = FrictionalCurves {
         cohesion: curve(c[0], c[1], 0.08, decay),
         friction_angle: angles(friction, 0.12),
@@ -108,7 +107,11 @@ fn returns_are_admissible_and_dissipate() {
                 let excess = law.yield_function(&answer.tau, &answer.history);
                 assert!(excess <= 1e-12 * scale, "{} {excess:e}", about());
                 let numbers = answer.tangent.as_flattened().iter().chain(&answer.tau);
-                assert!(numbers.chain(&answer.history.internal).all(|n| n.is_finite()));
+                assert!(
+                    numbers
+                        .chain(&answer.history.internal)
+                        .all(|n| n.is_finite())
+                );
                 let work = dot(&answer.tau, &answer.delta_eps_p);
                 let flow = size(&answer.delta_eps_p);
                 assert!(work >= -1e-13 * size(&answer.tau) * flow, "{}", about());
@@ -119,7 +122,11 @@ fn returns_are_admissible_and_dissipate() {
                 }
                 let grown = answer.history.eps_p_eq - history.eps_p_eq;
                 let softened = answer.history.internal[0] - history.internal[0];
-                assert!((grown - softened).abs() <= 1e-13 * (1.0 + grown), "{}", about());
+                assert!(
+                    (grown - softened).abs() <= 1e-13 * (1.0 + grown),
+                    "{}",
+                    about()
+                );
                 let again = law.return_map(&elastic, &answer.history).unwrap();
                 assert_eq!(again.regime, Regime::Elastic, "{}", about());
                 plastic += usize::from(answer.regime.is_plastic());
@@ -167,7 +174,10 @@ fn tangents_are_derivatives() {
                 }
                 for a in 0..3 {
                     let error = (slope(a).0 - answer.tangent[a][b]).abs() / (2.0 * G);
-                    assert!(error < 1e-6, "{law:?} {strain:?} {history:?} {answer:?} {error:e}");
+                    assert!(
+                        error < 1e-6,
+                        "{law:?} {strain:?} {history:?} {answer:?} {error:e}"
+                    );
                 }
                 if !seen.contains(&answer.regime) {
                     seen.push(answer.regime);
@@ -225,9 +235,14 @@ fn shear_follows_the_curve() {
                             let fall = (peak - residual) / (3.0_f64.sqrt() * strain);
                             ((peak - fall * gamma) / (1.0 - fall / G)).max(residual)
                         }
-                        Decay::Exponential => residual + (peak - residual) * (-kappa / strain).exp(),
+                        Decay::Exponential => {
+                            residual + (peak - residual) * (-kappa / strain).exp()
+                        }
                     };
-                    assert!((tau - expected).abs() < 1e-12 * peak, "{law:?} {gamma} {tau} {expected}");
+                    assert!(
+                        (tau - expected).abs() < 1e-12 * peak,
+                        "{law:?} {gamma} {tau} {expected}"
+                    );
                 }
                 assert!(history.internal[0] > 0.04, "{history:?}");
             }
@@ -251,7 +266,11 @@ fn friction_and_dilation_follow_their_curves() {
         if step > 50 {
             let kappa = history.internal[0];
             let way = |from: f64, to: f64, strain: f64| to + (from - to) * (-kappa / strain).exp();
-            let tangent = way(f64::to_radians(30.0).tan(), f64::to_radians(20.0).tan(), 0.12);
+            let tangent = way(
+                f64::to_radians(30.0).tan(),
+                f64::to_radians(20.0).tan(),
+                0.12,
+            );
             let (sin, cos) = tangent.atan().sin_cos();
             let c = way(1.0, 0.2, 0.08);
             let [major, _, minor] = answer.tau;
@@ -260,7 +279,10 @@ fn friction_and_dilation_follow_their_curves() {
         }
     }
     // ψ is 10° at first and ends with κ: its share exp(−κ/0.05) of the tangent is left.
-    assert!(history.internal[0] > 0.7 && volume[1] >= 0.0 && volume[1] < 1e-9, "{volume:?}");
+    assert!(
+        history.internal[0] > 0.7 && volume[1] >= 0.0 && volume[1] < 1e-9,
+        "{volume:?}"
+    );
 }
 
 /// GOAL: a reduction divides c, c_u and tan φ all along the curve, and leaves plastic strains as they are.
@@ -283,10 +305,16 @@ fn a_reduction_divides_the_curve() {
         let [one, other] = [&*reduced, &made].map(|law| law.return_map(&strain, &history).unwrap());
         for a in 0..3 {
             let error = (one.tau[a] - other.tau[a]).abs();
-            assert!(error < 1e-11 * (1.0 + size(&one.tau)), "{strain:?} {error:e}");
+            assert!(
+                error < 1e-11 * (1.0 + size(&one.tau)),
+                "{strain:?} {error:e}"
+            );
         }
     }
-    assert!(matches!(law.reduced(0.0), Err(MaterialError::InvalidParameter { .. })));
+    assert!(matches!(
+        law.reduced(0.0),
+        Err(MaterialError::InvalidParameter { .. })
+    ));
 }
 
 /// GOAL: a law at ratios answers as the law with those parameters, of which the strains of the curves go with s/e.
@@ -332,12 +360,19 @@ fn steep_curves_are_refused() {
             match law {
                 Ok(_) => assert!(is_taken),
                 Err(error) => {
-                    assert!(!is_taken && error.to_string().contains("snaps back"), "{error}");
+                    assert!(
+                        !is_taken && error.to_string().contains("snaps back"),
+                        "{error}"
+                    );
                 }
             }
         }
     }
-    let refused = |curve| Softening::tresca(elasticity(), curve).unwrap_err().to_string();
+    let refused = |curve| {
+        Softening::tresca(elasticity(), curve)
+            .unwrap_err()
+            .to_string()
+    };
     let none = refused(curve(1.0, 0.0, 0.1, Decay::Linear));
     assert_eq!(none, "`undrained_strength` = 0 must be positive and finite");
     let never = refused(curve(1.0, 0.5, 0.0, Decay::Linear));

@@ -93,7 +93,7 @@ impl StrengthCurves {
         })
     }
 
-    /// The curves in words, such as `c to 40 % over 0.05`, with angles as they are printed.
+    /// The curves in words, such as `c or c_u to 40 % on a line over a plastic strain of 0.05`, with angles as they are printed.
     pub fn in_words(&self, number: impl Fn(f64) -> String) -> Vec<String> {
         let share = |residual: f64| format!("{} %", number(100.0 * residual));
         let angle = |residual: f64| format!("{}°", number(residual.to_degrees()));
@@ -108,12 +108,70 @@ impl StrengthCurves {
             )
         };
         let mut all = Vec::new();
-        all.extend((self.cohesive).map(|own| words("cohesion", own, share(own.residual))));
+        all.extend((self.cohesive).map(|own| words("c or c_u", own, share(own.residual))));
         all.extend((self.friction).map(|own| words("φ", own, angle(own.residual))));
         all.extend((self.dilation).map(|own| words("ψ", own, angle(own.residual))));
-        all.extend(
-            (self.band_width).map(|width| format!("in bands of {} m", number(width))),
-        );
+        all.extend((self.band_width).map(|width| format!("in bands of {} m", number(width))));
         all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use igimp_material::{ConstitutiveModel, Principal};
+
+    /// GOAL: on cells of a size the law has its strains times the width of the band over that size (eq. 110), on none as they are stated;
+    /// residual cohesion is no less than the least one. ORACLE: laws made by hand.
+    #[test]
+    fn strains_go_with_the_width_over_the_cell() {
+        let elasticity = Elasticity::new(1e7, 0.3).unwrap();
+        let curves = StrengthCurves {
+            cohesive: Some(Softens {
+                residual: 0.4,
+                strain: 0.05,
+                decay: Decay::Linear,
+            }),
+            band_width: Some(0.3),
+            ..StrengthCurves::default()
+        };
+        let strength = Strength::Tresca {
+            undrained_strength: 50e3,
+        };
+        for (cell, ratio) in [(0.0, 1.0), (0.6, 0.5), (0.1, 3.0)] {
+            let made = Curve {
+                initial: 50e3,
+                residual: 20e3,
+                strain: 0.05 * ratio,
+                decay: Decay::Linear,
+            };
+            let made = Softening::tresca(elasticity, made).unwrap();
+            let law = curves.law(&strength, elasticity, (0.0, cell)).unwrap();
+            let strain: Principal = [0.02, 0.0, -0.02];
+            let history = law.initial_history(&[0.0; 3]);
+            let [one, other] = [
+                law.return_map(&strain, &history),
+                made.return_map(&strain, &history),
+            ]
+            .map(|answer| answer.unwrap().tau);
+            for a in 0..3 {
+                assert!((one[a] - other[a]).abs() < 1e-9 * 50e3, "{cell}");
+            }
+        }
+        let frictional = Strength::MohrCoulomb {
+            cohesion: 5e3,
+            friction_angle: 0.5,
+            dilation_angle: 0.0,
+            flow: crate::Flow::Dilation,
+            tension_cutoff: None,
+        };
+        let law = curves.law(&frictional, elasticity, (3e3, 0.0)).unwrap();
+        let mut far = law.initial_history(&[0.0; 3]);
+        far.internal[0] = 1.0;
+        let apex = 3e3 / 0.5_f64.tan();
+        assert!(law.yield_function(&[apex; 3], &far).abs() < 1e-9 * apex);
+        let words = curves.in_words(|number| number.to_string());
+        let expected = "c or c_u to 40 % on a line over a plastic strain of 0.05";
+        assert_eq!(words, [expected, "in bands of 0.3 m"]);
     }
 }

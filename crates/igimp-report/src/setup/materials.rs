@@ -49,7 +49,12 @@ fn material(material: &Material) -> Vec<String> {
     };
     let parameters = material.strength.parameters().into_iter();
     let mut strength: Vec<String> = parameters.map(printed).collect();
-    strength.extend(material.softening.iter().flat_map(|own| own.in_words(short)));
+    strength.extend(
+        material
+            .softening
+            .iter()
+            .flat_map(|own| own.in_words(short)),
+    );
     vec![
         material.name.clone(),
         material.strength.name().to_owned(),

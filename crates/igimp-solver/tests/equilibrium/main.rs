@@ -14,3 +14,4 @@ mod newton;
 mod newton_failures;
 mod one_dimension;
 mod reinforcement;
+mod softening;

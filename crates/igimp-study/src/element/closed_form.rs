@@ -31,6 +31,10 @@ pub(super) fn strength(
         test,
         StandardTest::TriaxialDrained | StandardTest::TriaxialUndrained
     );
+    if material.softening.is_some() {
+        // What it ends on depends on how far it was sheared.
+        return None;
+    }
     match (material.strength, test) {
         (_, StandardTest::Oedometer) => None,
         (Strength::Tresca { undrained_strength }, _) if is_triaxial => {

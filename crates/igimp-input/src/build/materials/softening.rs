@@ -35,6 +35,16 @@ pub(super) fn curves(
     }
 }
 
+/// Whether soil that is sheared far dilates no more.
+pub(super) fn ends_dilation(model: &Model) -> bool {
+    let Model::MohrCoulomb(Ok(own)) = model else {
+        return false;
+    };
+    let stated = own.softening.as_ref().ok().and_then(Option::as_ref);
+    let dilation = stated.and_then(|own| own.dilation.as_ref());
+    dilation.is_some_and(|own| *own.residual == 0.0)
+}
+
 fn decay(own: keys::Decay) -> Decay {
     match own {
         keys::Decay::Linear => Decay::Linear,
@@ -64,7 +74,10 @@ fn of_undrained(
 ) -> Result<StrengthCurves, Wrong> {
     if *own.cu.residual == 0.0 {
         problems
-            .error(own.cu.residual.place, "soil by total stress has no strength left")
+            .error(
+                own.cu.residual.place,
+                "soil by total stress has no strength left",
+            )
             .help("remoulded clay keeps 1/sensitivity, like residual = 0.1");
         return Err(Wrong);
     }
@@ -92,18 +105,26 @@ fn frictional(
     if flow == Flow::Davis {
         problems
             .error(own.place, "flow = \"davis\" does not go with `softening`")
-            .help("leave `flow` out: strengths of Davis are of one dilation angle, which ends here");
+            .help(
+                "leave `flow` out: strengths of Davis are of one dilation angle, which ends here",
+            );
         return Err(Wrong);
     }
     if let (Some(friction), true) = (&own.friction, friction_varies) {
         problems
-            .error(friction.place, "friction that softens has to be one angle, and friction varies here")
+            .error(
+                friction.place,
+                "friction that softens has to be one angle, and friction varies here",
+            )
             .help("friction = \"25 deg\", or soften cohesion and dilation alone");
         return Err(Wrong);
     }
     if own.cohesion.is_none() && own.friction.is_none() && own.dilation.is_none() {
         problems
-            .error(own.place, format!("nothing of `{}` softens", clip(name, 40)))
+            .error(
+                own.place,
+                format!("nothing of `{}` softens", clip(name, 40)),
+            )
             .help("cohesion = { residual = 0.2, strain = 0.1 }, `friction`, or `dilation`");
         return Err(Wrong);
     }
@@ -111,7 +132,10 @@ fn frictional(
         if let Some(angle) = angle
             && angle.residual.to_degrees() > 89.0
         {
-            let message = format!("a residual {key} angle of {} deg", number(angle.residual.to_degrees()));
+            let message = format!(
+                "a residual {key} angle of {} deg",
+                number(angle.residual.to_degrees())
+            );
             problems
                 .error(angle.residual.place, message)
                 .help("soils have 10 deg to 40 deg of friction, and no dilation in the end");
@@ -122,7 +146,10 @@ fn frictional(
         && let Some(friction) = &own.friction
     {
         problems
-            .error(friction.place, format!("`{}` has no friction that could go", clip(name, 40)))
+            .error(
+                friction.place,
+                format!("`{}` has no friction that could go", clip(name, 40)),
+            )
             .help("remove it, or give the soil `friction`");
         return Err(Wrong);
     }
