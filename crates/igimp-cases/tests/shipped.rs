@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 use igimp_cases::run::{Nobody, Run, Start, run};
 use igimp_input::CaseFile;
 use igimp_input::shipped::{SHIPPED, find};
-use igimp_model::Case;
+use igimp_model::{Case, Strength};
 use igimp_results::summary::StageOutcome::{self, Completed, Stopped};
 use resuming::{assert_done, assert_equal, everything, folder, run_into};
 
@@ -330,6 +330,66 @@ fn sensitive_slope_is_as_safe_on_three_meshes() {
         between(factor / factors[0], 0.98, 1.02);
     }
     assert!(unscaled > 1.03 * factors[2], "{unscaled}");
+}
+
+/// GOAL: the factor of a slope by Hoek and Brown lies between those of two Mohr–Coulomb soils that enclose its envelope.
+/// ORACLE: the envelope is concave: a tangent lies above it, and the chord from no normal stress to that of the height below it.
+#[test]
+fn rock_slope_lies_between_chord_and_tangent() {
+    let own = ran("rock_slope", &[]);
+    assert_eq!(own.outcomes(), [Completed, Completed]);
+    let rock = own.factor_of_safety(1);
+    let file = file("rock_slope", &[]);
+    let Strength::HoekBrown(hoek) = file.case().materials[0].strength else {
+        panic!("no rock")
+    };
+    // Normal and shear stress of the envelope, and its slope, by the minor stress.
+    let point = |minor: f64| {
+        let (ratio, exponent) = (hoek.ratio(), hoek.exponent());
+        let base = ratio * minor / hoek.intact_strength + hoek.cohesive_share();
+        let width = hoek.intact_strength * base.powf(exponent);
+        let steep = 1.0 + exponent * ratio * base.powf(exponent - 1.0);
+        let root = steep.sqrt();
+        [
+            minor + width / (steep + 1.0),
+            width * root / (steep + 1.0),
+            (steep - 1.0) / (2.0 * root),
+        ]
+    };
+    let factor = |cohesion: f64, tangent: f64| {
+        let mut case = file.case().clone();
+        case.materials[0].strength = Strength::MohrCoulomb {
+            cohesion,
+            friction_angle: tangent.atan(),
+            dilation_angle: 0.0,
+            flow: igimp_model::Flow::Dilation,
+            tension_cutoff: None,
+        };
+        ran_case(&case).factor_of_safety(1)
+    };
+    let [normal, shear, tangent] = point(40e3);
+    let above = factor(shear - normal * tangent, tangent);
+    let at = |stress: f64| {
+        let (mut low, mut high) = (
+            -hoek.cohesive_share() * hoek.intact_strength / hoek.ratio(),
+            stress + 1e6,
+        );
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if point(middle)[0] < stress {
+                low = middle
+            } else {
+                high = middle
+            }
+        }
+        point(high)[1]
+    };
+    let (foot, head) = (at(0.0), at(250e3));
+    let below = factor(foot, (head - foot) / 250e3);
+    println!(
+        "F {rock:?} of rock, {below:?} of the chord, {above:?} of the tangent at {normal:.0} Pa"
+    );
+    assert!(rock[0] > below[0] && rock[1] < above[1]);
 }
 
 #[test]

@@ -8,7 +8,7 @@
 //! |---|---|
 //! | linear Hencky elasticity | [`Elasticity`] |
 //! | the seam | [`ConstitutiveModel`], [`ReturnMap`], [`History`], [`Regime`] |
-//! | laws | [`HenckyElastic`], [`VonMises`], [`Tresca`], [`MohrCoulomb`], [`DruckerPrager`], [`ModifiedCamClay`] |
+//! | laws | [`HenckyElastic`], [`VonMises`], [`Tresca`], [`MohrCoulomb`], [`DruckerPrager`], [`HoekBrown`], [`ModifiedCamClay`] |
 //! | laws whose strength goes with plastic strain | [`Softening`], [`Curve`] |
 //! | soil whose strength and stiffness vary | [`Ratios`], [`ScaledLaw`] |
 //! | from principal space to tensors | [`lift_finite`], [`lift_small`], [`Lifted`], [`SpatialTangent`] |
@@ -59,6 +59,7 @@ mod drucker_prager;
 mod elasticity;
 mod error;
 mod hencky;
+mod hoek_brown;
 mod koiter;
 mod law;
 mod mohr_coulomb;
@@ -75,6 +76,7 @@ pub use drucker_prager::{Cone, DruckerPrager};
 pub use elasticity::Elasticity;
 pub use error::MaterialError;
 pub use hencky::HenckyElastic;
+pub use hoek_brown::{HoekBrown, HoekBrownParameters};
 pub use law::{
     ConstitutiveModel, Dissipation, ElasticStiffness, History, INTERNAL_VARIABLES,
     InternalVariable, Regime, ReturnMap, Scaling, ShearStrength,

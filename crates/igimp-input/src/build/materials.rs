@@ -2,6 +2,7 @@
 
 mod cam_clay;
 mod frictional;
+mod hoek_brown;
 mod plausible;
 pub(crate) mod profiles;
 mod softening;
@@ -186,6 +187,7 @@ pub(crate) fn linear_stiffness(model: &Model) -> Option<&keys::Stiffness> {
         Model::Tresca(own) => own.as_ref().ok().map(|own| &own.stiffness),
         Model::MohrCoulomb(own) => own.as_ref().ok().map(|own| &own.stiffness),
         Model::DruckerPrager(own) => own.as_ref().ok().map(|own| &own.stiffness),
+        Model::HoekBrown(own) => own.as_ref().ok().map(|own| &own.stiffness),
         Model::CamClay(_) => None,
     }
 }
@@ -240,6 +242,14 @@ fn resistance<const D: usize>(
             let own = own.as_ref().ok();
             (
                 own.and_then(|own| cam_clay::strength(own, problems)),
+                None,
+                None,
+            )
+        }
+        Model::HoekBrown(own) => {
+            let own = own.as_ref().ok();
+            (
+                own.and_then(|own| hoek_brown::strength(own, problems)),
                 None,
                 None,
             )

@@ -4,7 +4,7 @@
 //! at which the return makes just this strain is found by Newton's method in one unknown.
 
 mod curve;
-mod rates;
+pub(crate) mod rates;
 
 use std::sync::Arc;
 

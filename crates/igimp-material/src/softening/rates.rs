@@ -16,9 +16,9 @@ struct Moving {
 
 /// A strength, and its derivative by plastic strain.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Changing {
-    pub(super) strength: Strength,
-    pub(super) rate: Strength,
+pub(crate) struct Changing {
+    pub(crate) strength: Strength,
+    pub(crate) rate: Strength,
 }
 
 impl Changing {
@@ -56,7 +56,7 @@ impl Changing {
     }
 
     /// ∂τ/∂κ at a stress that a trial stress was returned to, both in descending order \[stress\].
-    pub(super) fn stress_rate(
+    pub(crate) fn stress_rate(
         &self,
         elasticity: &Elasticity,
         regime: Regime,

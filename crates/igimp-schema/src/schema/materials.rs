@@ -42,6 +42,7 @@ variants! {
     "mohr-coulomb" => MohrCoulomb(MOHR_COULOMB: MohrCoulomb),
     "drucker-prager" => DruckerPrager(DRUCKER_PRAGER: DruckerPrager),
     "modified-cam-clay" => CamClay(CAM_CLAY: CamClay),
+    "hoek-brown" => HoekBrown(HOEK_BROWN: HoekBrown),
     after MATERIAL_COMMON: MaterialCommon;
 }
 
@@ -172,6 +173,16 @@ table! {
         "preconsolidation pressure over p + q^2/(M^2 p) of the initial stress, 1 or more";
     reference_pressure: quantity(Stress, Positive), default "\"100 kPa\"",
         "pressure whose stiffness contact, ties of small cuts and estimates go by";
+}
+
+table! {
+    HOEK_BROWN: HoekBrown, "Elastic and perfectly plastic rock mass, Hoek-Brown of 2002.";
+    sci: quantity(Stress, Positive), required "\"30 MPa\"", "uniaxial compressive strength of intact rock";
+    gsi: number(Positive), required "45.0", "geological strength index, at most 100";
+    mi: number(Positive), required "10.0", "m_i of intact rock";
+    disturbance: number(NotNegative), default "0.0", "factor of disturbance D, from 0 of rock left whole to 1 of blasted slopes";
+    dilation: quantity(Angle, NotNegative), default "\"0 deg\"", "dilation angle, nowhere above the friction angle that acts";
+    stiffness: part(STIFFNESS: Stiffness);
 }
 
 choices! {

@@ -91,6 +91,14 @@ pub(super) fn strength(
                 "constant p, ψ = 0",
             )
         }
+        (Strength::HoekBrown(own), StandardTest::TriaxialDrained) => {
+            let (sci, side) = (own.intact_strength, request.stress[1] * volume);
+            let base = own.ratio() * side / sci + own.cohesive_share();
+            form(
+                sci * base.powf(own.exponent()) / volume,
+                "σ_ci (m_b σ_3/σ_ci + s)^a",
+            )
+        }
         (Strength::ModifiedCamClay(own), StandardTest::TriaxialDrained) => form(
             3.0 * own.critical_ratio * request.stress[1] / (3.0 - own.critical_ratio),
             "M p with p = 3 σ_3/(3 - M)",
