@@ -275,12 +275,26 @@ impl HoekBrown {
         }
         Err(MaterialError::NotConverged { law: self.name() })
     }
+
+    /// The trial strain goes to the apex.
+    fn at_apex(&self, strain: &Principal, history: &History) -> ReturnMap {
+        let tau = [self.tensile_strength(); 3];
+        let elastic = self.elasticity.strain(&tau);
+        let delta_eps_p: Principal = std::array::from_fn(|a| strain[a] - elastic[a]);
+        ReturnMap {
+            tau,
+            tangent: [[0.0; 3]; 3],
+            delta_eps_p,
+            history: history.after(&delta_eps_p),
+            regime: Regime::Apex,
+        }
+    }
 }
 
 /// The next base of Newton's method between bounds; every fourth correction halves what is left, in its logarithm.
 fn next_base([low, high]: [f64; 2], newton: f64, correction: usize) -> f64 {
     let is_inside = newton > low && newton < high;
-    if is_inside && (correction % 4 != 0 || high.is_infinite()) {
+    if is_inside && (!correction.is_multiple_of(4) || high.is_infinite()) {
         newton
     } else if high.is_infinite() {
         4.0 * low
@@ -311,8 +325,8 @@ impl ConstitutiveModel for HoekBrown {
             let tau = unsorted(&trial, &order);
             return Ok(ReturnMap::elastic(&self.elasticity, tau, *history));
         }
-        let map = match self.settled(&strain, &trial, history)? {
-            Some((touching, mut map, moves)) => {
+        let map =
+            if let Some((touching, mut map, moves)) = self.settled(&strain, &trial, history)? {
                 let [_, [_, minor_rate]] = touching.stress;
                 let (first, slope) = (map.tangent[0], minor_rate + moves[0]);
                 for (row, moves) in map.tangent.iter_mut().zip(moves) {
@@ -321,20 +335,9 @@ impl ConstitutiveModel for HoekBrown {
                     }
                 }
                 map
-            }
-            None => {
-                let tau = [self.tensile_strength(); 3];
-                let elastic = self.elasticity.strain(&tau);
-                let delta_eps_p: Principal = std::array::from_fn(|a| strain[a] - elastic[a]);
-                ReturnMap {
-                    tau,
-                    tangent: [[0.0; 3]; 3],
-                    delta_eps_p,
-                    history: history.after(&delta_eps_p),
-                    regime: Regime::Apex,
-                }
-            }
-        };
+            } else {
+                self.at_apex(&strain, history)
+            };
         let mut tangent = [[0.0; 3]; 3];
         for a in 0..3 {
             tangent[order[a]] = unsorted(&map.tangent[a], &order);

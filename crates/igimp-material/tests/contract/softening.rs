@@ -26,7 +26,10 @@ fn curve(initial: f64, residual: f64, strain: f64, decay: Decay) -> Curve {
 }
 
 /// Cohesion, friction and dilation in degrees, initial and residual, and a cut-off.
-const FRICTIONAL: [([f64; 2], [f64; 2], [f64; 2], Option<f64>); 6] = [
+type Row = ([f64; 2], [f64; 2], [f64; 2], Option<f64>);
+
+/// Those that are tried.
+const FRICTIONAL: [Row; 6] = [
     ([1.0, 0.2], [30.0, 20.0], [10.0, 0.0], None),
     ([1.0, 0.0], [25.0, 25.0], [0.0, 0.0], None),
     ([1.0, 1.0], [20.0, 35.0], [5.0, 0.0], None),
