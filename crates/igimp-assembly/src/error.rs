@@ -168,7 +168,7 @@ impl AssemblyError {
             Self::Inverted { .. }
                 | Self::Overstrained { .. }
                 | Self::Material {
-                    source: MaterialError::NotConverged { .. },
+                    source: MaterialError::NotConverged { .. } | MaterialError::SnapBack { .. },
                     ..
                 }
         )

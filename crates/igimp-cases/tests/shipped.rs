@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 use igimp_cases::run::{Nobody, Run, Start, run};
 use igimp_input::CaseFile;
 use igimp_input::shipped::{SHIPPED, find};
-use igimp_model::Case;
+use igimp_model::{Case, Strength};
 use igimp_results::summary::StageOutcome::{self, Completed, Stopped};
 use resuming::{assert_done, assert_equal, everything, folder, run_into};
 
@@ -220,6 +220,71 @@ fn slope_stands_fails_and_rests() {
     between(ran.virtual_work(1.0), 0.98, 1.02);
 }
 
+/// The shipped slope on coarse cells, whose cohesion, friction and dilation soften.
+const SOFTENS: [&str; 6] = [
+    "grid.cell=2 m",
+    "stages.0.steps=4",
+    "stages.1.tolerance=0.02",
+    "materials.clay.dilation=5 deg",
+    "materials.clay.softening={ cohesion = { residual = 0.5, strain = 0.1 }, \
+     friction = { residual = \"16 deg\", strain = 0.1, curve = \"linear\" }, \
+     dilation = { residual = \"0 deg\", strain = 0.05 }, band_width = \"1 m\" }",
+    "checks=[]",
+];
+
+/// GOAL: a slope whose c, φ and ψ soften is less safe than one that keeps them, and safer than one that has the residual ones from the start.
+#[test]
+fn a_slope_that_softens_lies_between_peak_and_residual() {
+    let factor = |more: &[&str]| {
+        let file = file("slope", &[&SOFTENS, more].concat());
+        let mut case = file.case().clone();
+        case.stages.truncate(2);
+        ran_case(&case).factor_of_safety(1)
+    };
+    let without = |more: &[&str]| {
+        let keeps = [&SOFTENS[..4], &SOFTENS[5..], more].concat();
+        let file = file("slope", &keeps);
+        let mut case = file.case().clone();
+        case.stages.truncate(2);
+        ran_case(&case).factor_of_safety(1)
+    };
+    let residual = [
+        "materials.clay.cohesion=10 kPa",
+        "materials.clay.friction=16 deg",
+        "materials.clay.dilation=0 deg",
+    ];
+    let (peak, softens, residual) = (without(&[]), factor(&[]), without(&residual));
+    println!("F {peak:?} at the peak, {softens:?} softening, {residual:?} residual");
+    assert!(softens[1] < 0.99 * peak[0] && softens[0] > 1.01 * residual[1]);
+}
+
+/// GOAL: what softening soil remembers is in checkpoints: a run-out that is taken up ends with the same files, and one on other threads with
+/// the same bits.
+#[test]
+fn a_slope_that_softens_is_taken_up_with_what_it_remembers() {
+    let steps = ["stages.2.steps=6", "output.figures=[]"];
+    let file = file("slope", &[&SOFTENS[..], &steps].concat());
+    let whole = folder("softening-whole");
+    let run = run_into((&file, file.case()), &whole, Start::Afresh, None);
+    let remembered = &run.body.particles.internal;
+    assert!(!remembered.is_empty() && run.summary.stages.len() == 3);
+    let expected = everything(&whole);
+    let taken: usize = run.summary.stages[0].steps + 3;
+    let stopped = folder("softening-stopped");
+    let early = run_into((&file, file.case()), &stopped, Start::Afresh, Some(taken));
+    assert!(early.summary.interrupted);
+    run_into((&file, file.case()), &stopped, Start::Resume, None);
+    assert_equal(&expected, &everything(&stopped), "after it was taken up");
+    for threads in [1, 3] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let again = pool.unwrap().install(|| ran_case(file.case()));
+        assert!(
+            again.run.body.particles == run.body.particles,
+            "{threads} threads"
+        );
+    }
+}
+
 #[test]
 fn layered_slope_is_safer_when_one_layer_alone_weakens() {
     let ran = ran(
@@ -240,6 +305,91 @@ fn layered_slope_is_safer_when_one_layer_alone_weakens() {
     between(all[0], 1.15, 1.4);
     assert!(all[1] < soft[0], "{all:?} {soft:?}");
     between(soft[1], 1.5, 2.0);
+}
+
+/// GOAL: a slope of clay that softens has one factor of safety on three meshes, 2 %, between those of residual and of intact strength;
+/// without the width of the band it falls with the cell.
+/// ORACLE: γH F/c_u of 5.379 to 5.412 by limit analysis; strains scaled by the width of the band (eq. 110).
+#[test]
+fn sensitive_slope_is_as_safe_on_three_meshes() {
+    let height = "grid.domain.y=[\"0 m\", \"15 m\"]";
+    let factor = |cell: &str, more: &[&str]| {
+        let cell = format!("grid.cell={cell}");
+        let ran = ran("sensitive_slope", &[&[&cell, height], more].concat());
+        assert_eq!(ran.outcomes(), [Completed, Completed]);
+        assert!(ran.meets_its_checks());
+        let [stands, fails] = ran.factor_of_safety(1);
+        0.5 * (stands + fails)
+    };
+    let factors = ["1 m", "0.625 m", "0.5 m"].map(|cell| factor(cell, &[]));
+    // Strains that hold on cells of the width of the band are those of the case there, and twice those of cells of 1 m.
+    let unscaled = factor("1 m", &["materials.clay.softening.band_width=1 m"]);
+    println!("{factors:?}, on cells of 1 m without scaling {unscaled}");
+    for factor in factors {
+        between(factor, 0.451, 1.494);
+        between(factor / factors[0], 0.98, 1.02);
+    }
+    assert!(unscaled > 1.03 * factors[2], "{unscaled}");
+}
+
+/// GOAL: the factor of a slope by Hoek and Brown lies between those of two Mohr–Coulomb soils that enclose its envelope.
+/// ORACLE: the envelope is concave: a tangent lies above it, and the chord from no normal stress to that of the height below it.
+#[test]
+fn rock_slope_lies_between_chord_and_tangent() {
+    let own = ran("rock_slope", &[]);
+    assert_eq!(own.outcomes(), [Completed, Completed]);
+    let rock = own.factor_of_safety(1);
+    let file = file("rock_slope", &[]);
+    let Strength::HoekBrown(hoek) = file.case().materials[0].strength else {
+        panic!("no rock")
+    };
+    // Normal and shear stress of the envelope, and its slope, by the minor stress.
+    let point = |minor: f64| {
+        let (ratio, exponent) = (hoek.ratio(), hoek.exponent());
+        let base = ratio * minor / hoek.intact_strength + hoek.cohesive_share();
+        let width = hoek.intact_strength * base.powf(exponent);
+        let steep = 1.0 + exponent * ratio * base.powf(exponent - 1.0);
+        let root = steep.sqrt();
+        [
+            minor + width / (steep + 1.0),
+            width * root / (steep + 1.0),
+            (steep - 1.0) / (2.0 * root),
+        ]
+    };
+    let factor = |cohesion: f64, tangent: f64| {
+        let mut case = file.case().clone();
+        case.materials[0].strength = Strength::MohrCoulomb {
+            cohesion,
+            friction_angle: tangent.atan(),
+            dilation_angle: 0.0,
+            flow: igimp_model::Flow::Dilation,
+            tension_cutoff: None,
+        };
+        ran_case(&case).factor_of_safety(1)
+    };
+    let [normal, shear, tangent] = point(40e3);
+    let above = factor(shear - normal * tangent, tangent);
+    let at = |stress: f64| {
+        let (mut low, mut high) = (
+            -hoek.cohesive_share() * hoek.intact_strength / hoek.ratio(),
+            stress + 1e6,
+        );
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if point(middle)[0] < stress {
+                low = middle
+            } else {
+                high = middle
+            }
+        }
+        point(high)[1]
+    };
+    let (foot, head) = (at(0.0), at(250e3));
+    let below = factor(foot, (head - foot) / 250e3);
+    println!(
+        "F {rock:?} of rock, {below:?} of the chord, {above:?} of the tangent at {normal:.0} Pa"
+    );
+    assert!(rock[0] > below[0] && rock[1] < above[1]);
 }
 
 #[test]

@@ -111,4 +111,52 @@ mod tests {
             "{error}"
         );
     }
+
+    const SAND: &str = "igimp = 1\n[materials.sand]\nmodel = \"mohr-coulomb\"\nyoung = \"20 MPa\"\npoisson = 0.3\n\
+                        cohesion = \"5 kPa\"\nfriction = \"35 deg\"\ndilation = \"8 deg\"\nunit_weight = \"18 kN/m3\"\n\
+                        softening = { friction = { residual = \"30 deg\", strain = 0.1 }, \
+                        dilation = { residual = \"0 deg\", strain = 0.1, curve = \"linear\" } }\n";
+
+    /// GOAL: curves over plastic strain are read with their keys, and what makes no curve is refused with a remedy.
+    #[test]
+    fn strengths_soften_along_their_curves() {
+        let file = MaterialsFile::parse("sand.toml", SAND, &[]).unwrap();
+        let curves = file.materials[0].softening.unwrap();
+        let dilation = curves.dilation.unwrap();
+        assert!(curves.cohesive.is_none() && curves.band_width.is_none());
+        assert!(dilation.residual.abs() < 1e-15 && (dilation.strain - 0.1).abs() < 1e-15);
+        assert!((curves.friction.unwrap().residual - 30_f64.to_radians()).abs() < 1e-12);
+        assert_eq!(
+            file.materials[0].law().unwrap().name(),
+            "softening Mohr-Coulomb"
+        );
+        let refused = |set: &str, words: &str| {
+            let error = MaterialsFile::parse("sand.toml", SAND, &[set.to_owned()]).unwrap_err();
+            assert!(error.to_string().contains(words), "{error}");
+        };
+        refused("materials.sand.flow=davis", "does not go with `softening`");
+        refused(
+            "materials.sand.softening={ band_width = \"1 m\" }",
+            "nothing of `sand` softens",
+        );
+        refused(
+            "materials.sand.friction={ depths = [\"0 m\", \"5 m\"], values = [\"35 deg\", \"30 deg\"] }",
+            "friction that softens has to be one angle",
+        );
+        refused("materials.sand.softening.friction.strain=0.0", "strain");
+        refused(
+            "materials.sand.softening.friction.residual=89.5 deg",
+            "a residual friction angle",
+        );
+        let clay = "igimp = 1\n[materials.clay]\nmodel = \"tresca\"\nyoung = \"20 MPa\"\npoisson = 0.3\ncu = \"50 kPa\"\n\
+                    unit_weight = \"18 kN/m3\"\nsoftening = { cu = { residual = RESIDUAL, strain = STRAIN } }\n";
+        let refused = |residual: &str, strain: &str, words: &str| {
+            let text = clay.replace("RESIDUAL", residual).replace("STRAIN", strain);
+            let error = MaterialsFile::parse("clay.toml", &text, &[]).unwrap_err();
+            assert!(error.to_string().contains(words), "{error}");
+        };
+        refused("0.0", "0.1", "soil by total stress has no strength left");
+        // c_u falls by 50 kPa × 0.9 over 0.003: 15 MPa, and 3/2 G is 11.5 MPa.
+        refused("0.1", "0.003", "snaps back within the point");
+    }
 }

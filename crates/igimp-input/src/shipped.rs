@@ -49,6 +49,8 @@ shipped! {
     "slope": "cut slope on rock: factor of safety, then run-out",
     "layered_slope": "clay slope on a soft layer: factors of safety of all layers and of one",
     "undrained_slope": "undrained slope under rising weight, held against limit analysis",
+    "sensitive_slope": "slope in clay that softens as it is sheared: factor of safety between intact and remoulded",
+    "rock_slope": "slope in a weak rock mass by Hoek and Brown: factor of safety",
     "vertical_cut": "vertical cut in undrained clay under rising weight, held against limit analysis",
     "nailed_cut": "vertical cut held by soil nails: tension in the nails, factor of safety",
     "bearing_capacity": "rough strip footing on undrained clay, held against Prandtl's solution",

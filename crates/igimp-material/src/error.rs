@@ -33,6 +33,14 @@ pub enum MaterialError {
         /// Name of the law.
         law: &'static str,
     },
+    /// The strength of a law falls faster with strain than elastic stress does: no stress follows the strain.
+    #[error(
+        "the stress of {law} snaps back within the point: strength falls faster than elastic stress does (a larger softening strain, smaller cells or stiffer soil)"
+    )]
+    SnapBack {
+        /// Name of the law.
+        law: &'static str,
+    },
     /// A law whose strength is not reduced by a factor.
     #[error("the strength of {law} is not reduced: {reason}")]
     NoReduction {

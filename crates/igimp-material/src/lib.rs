@@ -8,7 +8,8 @@
 //! |---|---|
 //! | linear Hencky elasticity | [`Elasticity`] |
 //! | the seam | [`ConstitutiveModel`], [`ReturnMap`], [`History`], [`Regime`] |
-//! | laws | [`HenckyElastic`], [`VonMises`], [`Tresca`], [`MohrCoulomb`], [`DruckerPrager`], [`ModifiedCamClay`] |
+//! | laws | [`HenckyElastic`], [`VonMises`], [`Tresca`], [`MohrCoulomb`], [`DruckerPrager`], [`HoekBrown`], [`ModifiedCamClay`] |
+//! | laws whose strength goes with plastic strain | [`Softening`], [`Curve`] |
 //! | soil whose strength and stiffness vary | [`Ratios`], [`ScaledLaw`] |
 //! | from principal space to tensors | [`lift_finite`], [`lift_small`], [`Lifted`], [`SpatialTangent`] |
 //! | what can go wrong | [`MaterialError`] |
@@ -58,11 +59,13 @@ mod drucker_prager;
 mod elasticity;
 mod error;
 mod hencky;
+mod hoek_brown;
 mod koiter;
 mod law;
 mod mohr_coulomb;
 mod pyramid;
 mod scaled;
+mod softening;
 mod spectral;
 mod surface;
 mod tresca;
@@ -73,12 +76,14 @@ pub use drucker_prager::{Cone, DruckerPrager};
 pub use elasticity::Elasticity;
 pub use error::MaterialError;
 pub use hencky::HenckyElastic;
+pub use hoek_brown::{HoekBrown, HoekBrownParameters};
 pub use law::{
     ConstitutiveModel, Dissipation, ElasticStiffness, History, INTERNAL_VARIABLES,
     InternalVariable, Regime, ReturnMap, Scaling, ShearStrength,
 };
 pub use mohr_coulomb::MohrCoulomb;
 pub use scaled::{Ratios, ScaledLaw};
+pub use softening::{Curve, Decay, FrictionalCurves, Softening};
 pub use spectral::eigen::principal_values;
 pub use spectral::lift::{
     Lifted, TangentKind, TrialStrain, elastic_left_cauchy_green, elastic_left_cauchy_green_of,

@@ -34,6 +34,7 @@ pub use igimp_schema::field::Field;
 pub use load::{Load, LoadKind, Plan};
 pub use material::profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
 pub use material::raster::Raster;
+pub use material::softening::{BAND_CELLS, Softens, StrengthCurves};
 pub use material::strength::{Flow, Parameter, ParameterValue, Strength};
 pub use material::{GivenLaw, Material};
 pub use plane::in_plane;

@@ -2,6 +2,7 @@
 
 pub(crate) mod profile;
 pub(crate) mod raster;
+pub(crate) mod softening;
 pub(crate) mod strength;
 
 use std::sync::Arc;
@@ -11,6 +12,7 @@ use igimp_material::{Elasticity, MaterialError};
 use igimp_seepage::Soil;
 
 use super::{Drainage, Profiles};
+use softening::StrengthCurves;
 use strength::Strength;
 
 /// A material. Where a property varies, its constant is the greatest value in the soil.
@@ -26,6 +28,8 @@ pub struct Material {
     pub poisson: f64,
     /// Strength.
     pub strength: Strength,
+    /// How it goes with plastic strain, if it does.
+    pub softening: Option<StrengthCurves>,
     /// Coefficient of earth pressure at rest K₀ \[-\], if the material states one.
     pub k0: Option<f64>,
     /// The parameters that vary from place to place.
@@ -93,11 +97,25 @@ impl Material {
     /// # Errors
     /// [`MaterialError::InvalidParameter`].
     pub fn law_on(&self, cell: f64) -> Result<SharedLaw, MaterialError> {
+        self.made((LEAST_COHESION * self.unit_weight * cell, cell))
+    }
+
+    /// The constitutive law on cells of a height \[m\], with the cohesion as it is given.
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`].
+    pub fn law_as_given(&self, cell: f64) -> Result<SharedLaw, MaterialError> {
+        self.made((0.0, cell))
+    }
+
+    fn made(&self, (least_cohesion, cell): (f64, f64)) -> Result<SharedLaw, MaterialError> {
         if let Some(GivenLaw(law)) = &self.given {
             return Ok(Arc::clone(law));
         }
         let elasticity = Elasticity::new(self.young, self.poisson)?;
-        let least = LEAST_COHESION * self.unit_weight * cell;
-        self.strength.law(elasticity, least)
+        match &self.softening {
+            Some(curves) => curves.law(&self.strength, elasticity, (least_cohesion, cell)),
+            None => self.strength.law(elasticity, least_cohesion),
+        }
     }
 }

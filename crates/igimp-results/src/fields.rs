@@ -258,6 +258,7 @@ mod tests {
             profiles: Profiles::default(),
             permeability: None,
             void_law: None,
+            softening: None,
             saturated: None,
             drainage: igimp_model::Drainage::Drained,
             given: None,

@@ -36,7 +36,7 @@ fn moduli(material: &Material, ratios: Ratios) -> [f64; 2] {
 /// of materials.
 pub(super) fn share_stiffness<const D: usize>(
     case: &Case<D>,
-    grid: &Grid<D>,
+    (grid, cell_height): (&Grid<D>, f64),
     (seeds, ratios): (&mut [ParticleSeed<D>], &mut [Ratios]),
     laws: &mut Vec<SharedLaw>,
 ) -> Result<(), CaseError> {
@@ -70,7 +70,7 @@ pub(super) fn share_stiffness<const D: usize>(
                 poisson: (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear)),
                 ..material.clone()
             };
-            laws.push(shared.law()?);
+            laws.push(shared.law_as_given(cell_height)?);
         }
     }
     for (seed, ratios) in std::iter::zip(seeds, ratios) {

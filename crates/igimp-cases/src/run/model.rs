@@ -103,7 +103,7 @@ impl<'c, const D: usize> Model<'c, D> {
         let mut ratios: Vec<Ratios> = seeds.iter().map(ratios).collect();
         if case.grid.mixed_cells == MixedCells::Mean {
             let parts = (&mut seeds[..], &mut ratios[..]);
-            super::mixed_cells::share_stiffness(case, &grid, parts, &mut model.laws)?;
+            super::mixed_cells::share_stiffness(case, (&grid, cell), parts, &mut model.laws)?;
         }
         if case.water.iter().any(|condition| condition.carried) {
             seeded.domain = seeds

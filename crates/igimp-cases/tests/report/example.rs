@@ -153,6 +153,7 @@ fn materials() -> Vec<Material> {
         profiles: Profiles::default(),
         permeability: None,
         void_law: None,
+        softening: None,
         saturated: None,
         drainage: Drainage::Drained,
         given: None,

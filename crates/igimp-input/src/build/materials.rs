@@ -2,13 +2,15 @@
 
 mod cam_clay;
 mod frictional;
+mod hoek_brown;
 mod plausible;
 pub(crate) mod profiles;
+mod softening;
 
 use std::sync::Arc;
 
 use igimp_assembly::VoidLaw;
-use igimp_model::{BodyPart, Drainage, Ground, Layer, Material, Profile, Profiles, Strength};
+use igimp_model::{BodyPart, Case, Drainage, Ground, Layer, Material, Profile, Profiles, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::materials::{self as keys, MaterialCommon, Model};
@@ -126,6 +128,8 @@ fn material<const D: usize>(
         (None, Some(Strength::ModifiedCamClay(own))) => cam_clay::stiffness(own),
         (None, _) => None,
     };
+    let varies = profile(friction.as_ref()).is_some();
+    let softening = softening::curves(name, &own.form, (strength, varies), problems);
     let drainage = drainage((common, &own.form), stiffness, strength, problems);
     let permeability = permeability(common, problems).ok()?;
     let material = Material {
@@ -139,6 +143,7 @@ fn material<const D: usize>(
         young: stiffness?[0],
         poisson: stiffness?[1],
         strength: strength?,
+        softening: softening.ok()?,
         k0: k0.ok()?,
         profiles: Profiles {
             strength: profile(cohesive.as_ref()),
@@ -156,6 +161,27 @@ fn material<const D: usize>(
     Some(material)
 }
 
+/// Refuses strength that softens so fast, on the cells of a case, that stress snaps back.
+pub(super) fn check_on_cells<const D: usize>(case: &Case<D>, problems: &mut Problems) {
+    let cell = case.grid.smallest_cell()[D - 1];
+    for material in &case.materials {
+        let Some(curves) = material.softening.filter(|own| own.band_width.is_some()) else {
+            continue;
+        };
+        if let Err(error) = material.law_on(cell) {
+            let message = format!(
+                "the material `{}` is not possible on cells of {} m, where its strains are times {}: {error}",
+                clip(&material.name, 40),
+                number(cell),
+                number(curves.strain_ratio(cell))
+            );
+            problems
+                .error(None, message)
+                .help("smaller cells, or a larger `band_width` or `strain` of its softening");
+        }
+    }
+}
+
 /// The keys of linear elasticity, if the model has them.
 pub(crate) fn linear_stiffness(model: &Model) -> Option<&keys::Stiffness> {
     match model {
@@ -164,6 +190,7 @@ pub(crate) fn linear_stiffness(model: &Model) -> Option<&keys::Stiffness> {
         Model::Tresca(own) => own.as_ref().ok().map(|own| &own.stiffness),
         Model::MohrCoulomb(own) => own.as_ref().ok().map(|own| &own.stiffness),
         Model::DruckerPrager(own) => own.as_ref().ok().map(|own| &own.stiffness),
+        Model::HoekBrown(own) => own.as_ref().ok().map(|own| &own.stiffness),
         Model::CamClay(_) => None,
     }
 }
@@ -218,6 +245,14 @@ fn resistance<const D: usize>(
             let own = own.as_ref().ok();
             (
                 own.and_then(|own| cam_clay::strength(own, problems)),
+                None,
+                None,
+            )
+        }
+        Model::HoekBrown(own) => {
+            let own = own.as_ref().ok();
+            (
+                own.and_then(|own| hoek_brown::strength(own, problems)),
                 None,
                 None,
             )

@@ -173,6 +173,7 @@ fn shear(
             for material in materials.iter().flatten() {
                 let what = match material.strength {
                     Strength::Elastic => "is elastic and has no strength",
+                    Strength::HoekBrown(_) => "is rock by Hoek and Brown and has no cohesion",
                     Strength::ModifiedCamClay(_) => "is modified Cam-clay and has no cohesion",
                     _ => continue,
                 };

@@ -13,6 +13,8 @@
 //! | `scaled` | laws at ratios of strength and stiffness |
 //! | `hardening` | laws with memory |
 //! | `memory` | the same as `returns` and `tangents` ask, of laws with memory and with elasticity that is not linear |
+//! | `hoek_brown` | the same of Hoek–Brown, with its envelope and its reduction |
+//! | `softening` | the same, and closed forms, of laws whose strength goes with plastic strain |
 //! | `utilisation` | the share of the strength that a stress mobilises |
 //! | `refusals` | what is not accepted, and the words for it |
 //!
@@ -23,6 +25,7 @@ mod catalogue;
 mod close_eigenvalues;
 mod flow_rule;
 mod hardening;
+mod hoek_brown;
 mod lifts;
 mod memory;
 mod random;
@@ -31,6 +34,7 @@ mod reduction;
 mod refusals;
 mod returns;
 mod scaled;
+mod softening;
 mod tangents;
 mod tensors;
 mod utilisation;

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use igimp_assembly::SharedLaw;
 use igimp_material::{
-    CamClayParameters, Cone, DruckerPrager, Elasticity, HenckyElastic, MaterialError,
-    ModifiedCamClay, MohrCoulomb, ShearStiffness, Tresca, VonMises,
+    CamClayParameters, Cone, DruckerPrager, Elasticity, HenckyElastic, HoekBrown,
+    HoekBrownParameters, MaterialError, ModifiedCamClay, MohrCoulomb, ShearStiffness, Tresca,
+    VonMises,
 };
 
 /// How plastic flow of frictional soil follows from its angle of dilation.
@@ -59,6 +60,8 @@ pub enum Strength {
     },
     /// Modified Cam-clay; its elasticity is of its own.
     ModifiedCamClay(CamClayParameters),
+    /// Hoek–Brown of 2002.
+    HoekBrown(HoekBrownParameters),
 }
 
 /// A parameter of a strength as it is printed.
@@ -97,6 +100,7 @@ impl Strength {
             Self::MohrCoulomb { .. } => "Mohr–Coulomb",
             Self::DruckerPrager { .. } => "Drucker–Prager",
             Self::ModifiedCamClay(_) => "modified Cam-clay",
+            Self::HoekBrown(_) => "Hoek–Brown",
         }
     }
 
@@ -148,6 +152,13 @@ impl Strength {
                     ParameterValue::Note,
                 ),
             ],
+            Self::HoekBrown(own) => vec![
+                parameter("σ_ci = ", ParameterValue::Stress(own.intact_strength)),
+                parameter("GSI = ", ParameterValue::Number(own.gsi)),
+                parameter("m_i = ", ParameterValue::Number(own.intact_ratio)),
+                parameter("D = ", ParameterValue::Number(own.disturbance)),
+                parameter("ψ = ", ParameterValue::Angle(own.dilation_angle)),
+            ],
             Self::ModifiedCamClay(own) => {
                 let number = |label, value| parameter(label, ParameterValue::Number(value));
                 let shear = match own.shear {
@@ -177,7 +188,8 @@ impl Strength {
             Self::VonMises { .. }
             | Self::Tresca { .. }
             | Self::MohrCoulomb { .. }
-            | Self::DruckerPrager { .. } => None,
+            | Self::DruckerPrager { .. }
+            | Self::HoekBrown(_) => None,
         }
     }
 
@@ -190,6 +202,7 @@ impl Strength {
                 ..
             }
             | Self::DruckerPrager { dilation_angle, .. } => Some(dilation_angle),
+            Self::HoekBrown(own) => Some(own.dilation_angle),
             _ => None,
         }
     }
@@ -267,6 +280,7 @@ impl Strength {
                 dilation_angle,
                 cone,
             )?),
+            Self::HoekBrown(parameters) => Arc::new(HoekBrown::new(elasticity, parameters)?),
             Self::ModifiedCamClay(parameters) => Arc::new(ModifiedCamClay::new(parameters)?),
         })
     }

@@ -48,14 +48,20 @@ fn material(material: &Material) -> Vec<String> {
         format!("{}{value}", parameter.label)
     };
     let parameters = material.strength.parameters().into_iter();
-    let strength = parameters.map(printed).collect::<Vec<_>>().join(", ");
+    let mut strength: Vec<String> = parameters.map(printed).collect();
+    strength.extend(
+        material
+            .softening
+            .iter()
+            .flat_map(|own| own.in_words(short)),
+    );
     vec![
         material.name.clone(),
         material.strength.name().to_owned(),
         or_constant(&own.unit_weight, material.unit_weight, 1e3),
         or_constant(&own.young, material.young, 1e6),
         short(material.poisson),
-        strength,
+        strength.join(", "),
         material.k0.map_or_else(|| NONE.to_owned(), short),
     ]
 }

@@ -42,6 +42,7 @@ variants! {
     "mohr-coulomb" => MohrCoulomb(MOHR_COULOMB: MohrCoulomb),
     "drucker-prager" => DruckerPrager(DRUCKER_PRAGER: DruckerPrager),
     "modified-cam-clay" => CamClay(CAM_CLAY: CamClay),
+    "hoek-brown" => HoekBrown(HOEK_BROWN: HoekBrown),
     after MATERIAL_COMMON: MaterialCommon;
 }
 
@@ -73,6 +74,48 @@ table! {
     UNDRAINED: Undrained, "Strength by total stress.";
     cu: apart(either(quantity(Stress, Positive), table(STRENGTH_PROFILE: StrengthProfile))), required "\"50 kPa\"",
         "undrained shear strength in plane strain";
+    softening: apart(table(UNDRAINED_SOFTENING: UndrainedSoftening)), optional "strength stays as soil is sheared",
+        "strength that goes with plastic strain";
+}
+
+table! {
+    UNDRAINED_SOFTENING: UndrainedSoftening, "An undrained strength that softens or hardens with plastic strain.";
+    cu: table(STRENGTH_CURVE: StrengthCurve), required "{ residual = 0.4, strain = 0.1 }", "undrained shear strength";
+    band_width: quantity(Length, Positive), optional "strains are as stated on any cells",
+        "width of the band of shear in which the strain was measured: strains of the law are times this over the size of a cell";
+}
+
+table! {
+    FRICTIONAL_SOFTENING: FrictionalSoftening, "Strength by effective stress that softens or hardens with plastic strain: one of the three at least.";
+    cohesion: table(STRENGTH_CURVE: StrengthCurve), optional "it stays", "cohesion, and with it the tension cut-off";
+    friction: table(ANGLE_CURVE: AngleCurve), optional "it stays", "friction angle; its tangent follows the curve";
+    dilation: table(ANGLE_CURVE: AngleCurve), optional "it stays",
+        "dilation angle, nowhere above the friction angle that is left; a residual of zero ends dilation";
+    band_width: quantity(Length, Positive), optional "strains are as stated on any cells",
+        "width of the band of shear in which the strains were measured: strains of the law are times this over the size of a cell";
+}
+
+table! {
+    STRENGTH_CURVE: StrengthCurve, "How a strength goes with plastic strain.";
+    residual: number(NotNegative), required "0.4", "what is left in the end over the initial value; above 1 it hardens";
+    strain: number(Positive), required "0.1",
+        "accumulated deviatoric plastic strain over which it goes; plane shear by gamma has gamma / 1.732";
+    curve: choice(Decay), default "\"exponential\"", "shape of the curve";
+}
+
+table! {
+    ANGLE_CURVE: AngleCurve, "How an angle goes with plastic strain.";
+    residual: quantity(Angle, NotNegative), required "\"15 deg\"", "the angle in the end";
+    strain: number(Positive), required "0.1",
+        "accumulated deviatoric plastic strain over which it goes; plane shear by gamma has gamma / 1.732";
+    curve: choice(Decay), default "\"exponential\"", "shape of the curve";
+}
+
+choices! {
+    /// Shape of a curve over plastic strain.
+    Decay;
+    Linear "linear", "on a straight line, which ends at `strain`";
+    Exponential "exponential", "63 % of the way is gone at `strain`";
 }
 
 table! {
@@ -81,6 +124,8 @@ table! {
     flow: apart(choice(Flow)), default "\"dilation\"", "how plastic flow follows from the angle of dilation";
     tension_cutoff: apart(quantity(Stress, NotNegative)), optional "the apex of the cone limits tension",
         "largest tensile stress; zero or missing where cohesion varies";
+    softening: apart(table(FRICTIONAL_SOFTENING: FrictionalSoftening)), optional "strength stays as soil is sheared",
+        "strength that goes with plastic strain";
     stiffness: part(STIFFNESS: Stiffness);
 }
 
@@ -128,6 +173,16 @@ table! {
         "preconsolidation pressure over p + q^2/(M^2 p) of the initial stress, 1 or more";
     reference_pressure: quantity(Stress, Positive), default "\"100 kPa\"",
         "pressure whose stiffness contact, ties of small cuts and estimates go by";
+}
+
+table! {
+    HOEK_BROWN: HoekBrown, "Elastic and perfectly plastic rock mass, Hoek-Brown of 2002.";
+    sci: quantity(Stress, Positive), required "\"30 MPa\"", "uniaxial compressive strength of intact rock";
+    gsi: number(Positive), required "45.0", "geological strength index, at most 100";
+    mi: number(Positive), required "10.0", "m_i of intact rock";
+    disturbance: number(NotNegative), default "0.0", "factor of disturbance D, from 0 of rock left whole to 1 of blasted slopes";
+    dilation: quantity(Angle, NotNegative), default "\"0 deg\"", "dilation angle, nowhere above the friction angle that acts";
+    stiffness: part(STIFFNESS: Stiffness);
 }
 
 choices! {

@@ -15,3 +15,4 @@ mod newton;
 mod newton_failures;
 mod one_dimension;
 mod reinforcement;
+mod softening;

@@ -31,6 +31,10 @@ pub(super) fn strength(
         test,
         StandardTest::TriaxialDrained | StandardTest::TriaxialUndrained
     );
+    if material.softening.is_some() {
+        // What it ends on depends on how far it was sheared.
+        return None;
+    }
     match (material.strength, test) {
         (_, StandardTest::Oedometer) => None,
         (Strength::Tresca { undrained_strength }, _) if is_triaxial => {
@@ -85,6 +89,14 @@ pub(super) fn strength(
             form(
                 6.0 * (p * sin + cohesion * cos) / (3.0 - sin),
                 "constant p, ψ = 0",
+            )
+        }
+        (Strength::HoekBrown(own), StandardTest::TriaxialDrained) => {
+            let (sci, side) = (own.intact_strength, request.stress[1] * volume);
+            let base = own.ratio() * side / sci + own.cohesive_share();
+            form(
+                sci * base.powf(own.exponent()) / volume,
+                "σ_ci (m_b σ_3/σ_ci + s)^a",
             )
         }
         (Strength::ModifiedCamClay(own), StandardTest::TriaxialDrained) => form(

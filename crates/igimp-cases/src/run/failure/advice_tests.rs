@@ -22,6 +22,7 @@ fn case(kind: StageKind) -> Case<2> {
         profiles: Profiles::default(),
         permeability: None,
         void_law: None,
+        softening: None,
         saturated: None,
         drainage: igimp_model::Drainage::Drained,
         given: None,

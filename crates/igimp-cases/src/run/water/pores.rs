@@ -64,6 +64,10 @@ pub(crate) fn dilatant<const D: usize>(case: &Case<D>) -> Vec<String> {
             return None;
         };
         let undrained = matches!(material.drainage, Drainage::Undrained { .. });
+        let ends = material.softening.and_then(|own| own.dilation);
+        if ends.is_some_and(|own| own.residual == 0.0) {
+            return None;
+        }
         (undrained && dilation_angle > 0.0).then(|| {
             format!(
                 "material \"{}\" is undrained and dilates by {}°: as it shears its pore pressure falls without end and its \

@@ -9,8 +9,8 @@ use igimp_schema::schema::materials::{
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::read::Either;
 
-use super::STRENGTH;
 use super::profiles::{Extent, Property, TABLES, Terms, property};
+use super::{STRENGTH, softening};
 
 /// What may be said of friction that varies.
 const FRICTION: Terms = Terms {
@@ -82,7 +82,7 @@ pub(super) fn never_fails(model: &Model, problems: &mut Problems) -> Option<()> 
         return Some(());
     };
     let dilation = own.dilation.as_ref().ok()?;
-    if **dilation > 0.0 {
+    if **dilation > 0.0 && !softening::ends_dilation(model) {
         problems
             .warning(
                 dilation.place,

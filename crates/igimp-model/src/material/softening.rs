@@ -1,0 +1,177 @@
+//! Strength that goes with plastic strain: its parameters, its laws on cells of a size, and how they are printed.
+
+use std::sync::Arc;
+
+use igimp_assembly::SharedLaw;
+use igimp_material::{Curve, Decay, Elasticity, FrictionalCurves, MaterialError, Softening};
+
+use super::strength::Strength;
+
+/// Cells across which a band of shear spreads its slip, by the work of sheared layers \[-\] (theory, eq. 110).
+pub const BAND_CELLS: f64 = 1.0;
+
+/// How a parameter of strength goes with plastic strain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Softens {
+    /// What is left of it in the end: a share of the initial value \[-\] of c_u and c, an angle \[rad\] of φ and ψ.
+    pub residual: f64,
+    /// Plastic strain over which it goes \[-\].
+    pub strain: f64,
+    /// Shape of the curve.
+    pub decay: Decay,
+}
+
+/// The parameters of a strength that go with plastic strain.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct StrengthCurves {
+    /// c_u or c.
+    pub cohesive: Option<Softens>,
+    /// φ.
+    pub friction: Option<Softens>,
+    /// ψ.
+    pub dilation: Option<Softens>,
+    /// Width of the bands of shear in which the strains of the curves were measured \[m\]; none: strains are those of the curves
+    /// on any cells.
+    pub band_width: Option<f64>,
+}
+
+impl StrengthCurves {
+    /// What strains of the curves are multiplied by on cells of a size \[m\]; 1 on none, and without a width.
+    pub fn strain_ratio(&self, cell: f64) -> f64 {
+        match self.band_width {
+            Some(width) if cell > 0.0 => width / (BAND_CELLS * cell),
+            _ => 1.0,
+        }
+    }
+
+    /// The law of a strength along these curves, on cells of a size \[m\], with the least cohesion of soil with friction \[Pa\].
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`], also of a strength that has no curves.
+    pub(super) fn law(
+        &self,
+        strength: &Strength,
+        elasticity: Elasticity,
+        (least_cohesion, cell): (f64, f64),
+    ) -> Result<SharedLaw, MaterialError> {
+        let ratio = self.strain_ratio(cell);
+        let along = |initial: f64, goes: Option<Softens>, residual: &dyn Fn(f64) -> f64| {
+            goes.map_or(Curve::constant(initial), |own| Curve {
+                initial,
+                residual: residual(own.residual),
+                strain: own.strain * ratio,
+                decay: own.decay,
+            })
+        };
+        let undrained = |cu: f64| along(cu, self.cohesive, &|share| share * cu);
+        Ok(match *strength {
+            Strength::VonMises { undrained_strength } => Arc::new(Softening::von_mises(
+                elasticity,
+                undrained(undrained_strength),
+            )?),
+            Strength::Tresca { undrained_strength } => Arc::new(Softening::tresca(
+                elasticity,
+                undrained(undrained_strength),
+            )?),
+            Strength::MohrCoulomb {
+                cohesion,
+                friction_angle,
+                dilation_angle,
+                tension_cutoff,
+                ..
+            } => {
+                let counted = |c: f64| c.max(least_cohesion);
+                let left = |share: f64| counted(share * cohesion);
+                let curves = FrictionalCurves {
+                    cohesion: along(counted(cohesion), self.cohesive, &left),
+                    friction_angle: along(friction_angle, self.friction, &|angle| angle),
+                    dilation_angle: along(dilation_angle, self.dilation, &|angle| angle),
+                };
+                Arc::new(Softening::mohr_coulomb(elasticity, curves, tension_cutoff)?)
+            }
+            _ => strength.law(elasticity, least_cohesion)?,
+        })
+    }
+
+    /// The curves in words, such as `c or c_u to 40 % on a line over a plastic strain of 0.05`, with angles as they are printed.
+    pub fn in_words(&self, number: impl Fn(f64) -> String) -> Vec<String> {
+        let share = |residual: f64| format!("{} %", number(100.0 * residual));
+        let angle = |residual: f64| format!("{}°", number(residual.to_degrees()));
+        let words = |symbol: &str, goes: Softens, residual: String| {
+            let shape = match goes.decay {
+                Decay::Linear => "on a line",
+                Decay::Exponential => "exponentially",
+            };
+            format!(
+                "{symbol} to {residual} {shape} over a plastic strain of {}",
+                number(goes.strain)
+            )
+        };
+        let mut all = Vec::new();
+        all.extend((self.cohesive).map(|own| words("c or c_u", own, share(own.residual))));
+        all.extend((self.friction).map(|own| words("φ", own, angle(own.residual))));
+        all.extend((self.dilation).map(|own| words("ψ", own, angle(own.residual))));
+        all.extend((self.band_width).map(|width| format!("in bands of {} m", number(width))));
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use igimp_material::{ConstitutiveModel, Principal};
+
+    /// GOAL: on cells of a size the law has its strains times the width of the band over that size (eq. 110), on none as they are stated;
+    /// residual cohesion is no less than the least one. ORACLE: laws made by hand.
+    #[test]
+    fn strains_go_with_the_width_over_the_cell() {
+        let elasticity = Elasticity::new(1e7, 0.3).unwrap();
+        let curves = StrengthCurves {
+            cohesive: Some(Softens {
+                residual: 0.4,
+                strain: 0.05,
+                decay: Decay::Linear,
+            }),
+            band_width: Some(0.3),
+            ..StrengthCurves::default()
+        };
+        let strength = Strength::Tresca {
+            undrained_strength: 50e3,
+        };
+        for (cell, ratio) in [(0.0, 1.0), (0.6, 0.5), (0.1, 3.0)] {
+            let made = Curve {
+                initial: 50e3,
+                residual: 20e3,
+                strain: 0.05 * ratio,
+                decay: Decay::Linear,
+            };
+            let made = Softening::tresca(elasticity, made).unwrap();
+            let law = curves.law(&strength, elasticity, (0.0, cell)).unwrap();
+            let strain: Principal = [0.02, 0.0, -0.02];
+            let history = law.initial_history(&[0.0; 3]);
+            let [one, other] = [
+                law.return_map(&strain, &history),
+                made.return_map(&strain, &history),
+            ]
+            .map(|answer| answer.unwrap().tau);
+            for a in 0..3 {
+                assert!((one[a] - other[a]).abs() < 1e-9 * 50e3, "{cell}");
+            }
+        }
+        let frictional = Strength::MohrCoulomb {
+            cohesion: 5e3,
+            friction_angle: 0.5,
+            dilation_angle: 0.0,
+            flow: crate::Flow::Dilation,
+            tension_cutoff: None,
+        };
+        let law = curves.law(&frictional, elasticity, (3e3, 0.0)).unwrap();
+        let mut far = law.initial_history(&[0.0; 3]);
+        far.internal[0] = 1.0;
+        let apex = 3e3 / 0.5_f64.tan();
+        assert!(law.yield_function(&[apex; 3], &far).abs() < 1e-9 * apex);
+        let words = curves.in_words(|number| number.to_string());
+        let expected = "c or c_u to 40 % on a line over a plastic strain of 0.05";
+        assert_eq!(words, [expected, "in bands of 0.3 m"]);
+    }
+}
