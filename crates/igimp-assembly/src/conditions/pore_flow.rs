@@ -40,13 +40,11 @@ impl VoidLaw {
     /// The permeability over that at the start, where the volume is `stretch` times that at the start \[-\].
     pub fn share(&self, stretch: f64) -> f64 {
         let void = ((1.0 + self.initial) * stretch - 1.0).max(LEAST_VOID_RATIO);
-        match self.index {
-            Some(index) => 10_f64.powf((void - self.initial) / index),
-            None => {
-                let carman = |e: f64| e.powi(3) / (1.0 + e);
-                carman(void) / carman(self.initial)
-            }
+        if let Some(index) = self.index {
+            return 10_f64.powf((void - self.initial) / index);
         }
+        let carman = |e: f64| e.powi(3) / (1.0 + e);
+        carman(void) / carman(self.initial)
     }
 }
 

@@ -167,6 +167,15 @@ impl<'c, const D: usize> Model<'c, D> {
         Ok(heights.fold(f64::INFINITY, f64::min))
     }
 
+    /// Least side of the cells \[m\].
+    ///
+    /// # Errors
+    /// As [`Self::grid`].
+    pub(crate) fn smallest_side(&self) -> Result<f64, CaseError> {
+        let sides = self.case.grid.smallest_cell().into_iter();
+        Ok(sides.fold(self.cell_height()?, f64::min))
+    }
+
     /// The method of the case on a geometry.
     pub(crate) fn method(&self, geometry: Geometry) -> Method {
         Method {

@@ -321,7 +321,8 @@ pub(crate) fn march_path<const D: usize>(
             Some(own) => (own.on_ground)(&before, &after, conditions)?,
             None => conditions,
         };
-        let flow = |own| model.flow(own, [after.time - before.time, flow_step.get()]);
+        let durations = [after.time - before.time, flow_step.get()];
+        let flow = |own| flow::of_step((model.case, model.laws.len()), own, durations);
         conditions
             .with_flow(path.flow.map(flow))?
             .with_unbalanced(path.held.as_ref().map(|forces| UnbalancedForces {

@@ -174,9 +174,7 @@ fn pace<const D: usize>(
     parts: usize,
 ) -> Result<MarchSettings, CaseError> {
     let settings = model.march_settings(parts);
-    let cell = model
-        .cell_height()?
-        .min((model.case.grid.smallest_cell().into_iter()).fold(f64::INFINITY, f64::min));
+    let cell = model.smallest_side()?;
     let crossing = cell / fastest_wave(model, state);
     let share = |time: f64| time / dynamic.duration;
     let record = dynamic.ground_motion.as_ref();

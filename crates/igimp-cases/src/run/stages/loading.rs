@@ -14,6 +14,7 @@ use crate::run::reinforcement;
 use crate::run::resume::Resumption;
 use crate::run::session::{Session, StageEnd, StagePath, march_path};
 use crate::run::state::{Controls, State};
+use crate::run::water::flow;
 
 /// The controls at the end of a stage that begins with `start`.
 pub(crate) fn target<const D: usize>(case: &Case<D>, stage: &Stage, start: &Controls) -> Controls {
@@ -92,7 +93,7 @@ pub(crate) fn release<const D: usize>(
         // What came before it may have changed the pressures at once.
         state.controls.flow_step = 0.0;
     }
-    let flow = stage.consolidation.as_ref();
+    let consolidation = stage.consolidation.as_ref();
     let from = resumption.map_or_else(|| state.controls.clone(), |left| left.from.clone());
     let to = target(model.case, stage, &from);
     let mut resistance = resumption.map_or(0.0, |left| left.resistance);
@@ -104,10 +105,15 @@ pub(crate) fn release<const D: usize>(
         to: &to,
         drag: &|_, _| 0.0,
         time: None,
-        flow,
+        flow: consolidation,
         method: model.method(stage.geometry),
-        settings: match flow {
-            Some(own) => model.flow_settings(own, stage.steps)?,
+        settings: match consolidation {
+            Some(own) => flow::steps(
+                model.case,
+                own,
+                model.march_settings(stage.steps),
+                model.smallest_side()?,
+            ),
             None => model.march_settings(stage.steps),
         },
         held,
@@ -138,7 +144,7 @@ pub(crate) fn release<const D: usize>(
     )?;
     match &ended {
         StageEnd::NotConverged(error)
-            if flow.is_none() && limit_load::is_sought(stage, summary, error) =>
+            if consolidation.is_none() && limit_load::is_sought(stage, summary, error) =>
         {
             limit_load::follow_on(session, state, (number, &from, &to), summary)
         }

@@ -5,66 +5,57 @@ use igimp_model::{Case, Consolidation, Drainage, Material};
 use igimp_results::summary::ConsolidationSummary;
 use igimp_solver::{MarchSettings, Pace, StepReport};
 
-use crate::error::CaseError;
-use crate::run::model::Model;
-
 /// The first step over the time in which pressure evens out across a cell \[-\].
 const FIRST_STEP: f64 = 0.02;
 
 /// How often a step may be cut in succession, at least: steps are chosen by their error.
 const CUTS: u32 = 12;
 
-impl<const D: usize> Model<'_, D> {
-    /// The flow of a step of a duration after one of another \[s\].
-    pub(crate) fn flow(
-        &self,
-        stage: &Consolidation,
-        [duration, before]: [f64; 2],
-    ) -> Consolidating<D> {
-        let materials = &self.case.materials;
-        let of_law = |law: usize| pore_flow(self.case, &materials[law % materials.len()]);
-        let corner = |own: &[f64; 3]| std::array::from_fn(|axis| own[axis]);
-        Consolidating {
-            duration,
-            before,
-            must_resolve: true,
-            soils: (0..self.laws.len()).map(of_law).collect(),
-            open_sides: stage.open_sides.clone(),
-            open_faces: stage.open_faces,
-            drains: (stage.drains.iter())
-                .map(|[lower, upper]| [corner(lower), corner(upper)])
-                .collect(),
-        }
+/// The flow of a step of a duration after one of another \[s\], for so many laws of the case.
+pub(crate) fn of_step<const D: usize>(
+    (case, laws): (&Case<D>, usize),
+    stage: &Consolidation,
+    [duration, before]: [f64; 2],
+) -> Consolidating<D> {
+    let materials = &case.materials;
+    let of_law = |law: usize| pore_flow(case, &materials[law % materials.len()]);
+    let corner = |own: &[f64; 3]| std::array::from_fn(|axis| own[axis]);
+    Consolidating {
+        duration,
+        before,
+        must_resolve: true,
+        soils: (0..laws).map(of_law).collect(),
+        open_sides: stage.open_sides.clone(),
+        open_faces: stage.open_faces,
+        drains: (stage.drains.iter())
+            .map(|[lower, upper]| [corner(lower), corner(upper)])
+            .collect(),
     }
+}
 
-    /// Sizes of the steps of a stage in which water flows: they land on equal parts of its duration, as many as the stage has steps.
-    ///
-    /// # Errors
-    /// As [`Self::grid`].
-    pub(crate) fn flow_settings(
-        &self,
-        stage: &Consolidation,
-        parts: usize,
-    ) -> Result<MarchSettings, CaseError> {
-        let settings = self.march_settings(parts);
-        let smallest = self.case.grid.smallest_cell().into_iter();
-        let cell = smallest.fold(self.cell_height()?, f64::min);
-        let fastest = fastest_consolidation(self.case);
-        let share = |time: f64| time / stage.duration;
-        let longest = (stage.longest_step.map_or(1.0, share)).min(1.0 / parts as f64);
-        Ok(MarchSettings {
-            cuts: settings.cuts.max(CUTS),
-            pace: Some(Pace {
-                first: share(FIRST_STEP * cell * cell / fastest).min(longest),
-                longest,
-            }),
-            ..settings
-        })
+/// Sizes of the steps of a stage in which water flows, from those of statics: they land on equal parts of its duration, as many as
+/// the stage has steps. The smallest cell has that side \[m\].
+pub(crate) fn steps<const D: usize>(
+    case: &Case<D>,
+    stage: &Consolidation,
+    settings: MarchSettings,
+    side: f64,
+) -> MarchSettings {
+    let share = |time: f64| time / stage.duration;
+    let evens_out = side * side / fastest_consolidation(case);
+    let longest = (stage.longest_step.map_or(1.0, share)).min(1.0 / settings.steps as f64);
+    MarchSettings {
+        cuts: settings.cuts.max(CUTS),
+        pace: Some(Pace {
+            first: share(FIRST_STEP * evens_out).min(longest),
+            longest,
+        }),
+        ..settings
     }
 }
 
 /// The largest coefficient of consolidation c_v = k/(m_v γ_w) of the coupled soils \[m²/s\].
-pub(crate) fn fastest_consolidation<const D: usize>(case: &Case<D>) -> f64 {
+fn fastest_consolidation<const D: usize>(case: &Case<D>) -> f64 {
     let of = |own: &Material| match (own.drainage, own.permeability) {
         (Drainage::Undrained { flows: true, .. }, Some(soil)) => {
             soil.along.max(soil.across) / case.water_unit_weight * own.constrained_modulus()
