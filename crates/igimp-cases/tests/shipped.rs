@@ -377,9 +377,9 @@ fn rock_slope_lies_between_chord_and_tangent() {
         for _ in 0..100 {
             let middle = 0.5 * (low + high);
             if point(middle)[0] < stress {
-                low = middle
+                low = middle;
             } else {
-                high = middle
+                high = middle;
             }
         }
         point(high)[1]

@@ -7,9 +7,7 @@ use igimp_assembly::{
     Constraints, Kinematics, Method, ParticleSeed, ParticleTrial, Particles, SharedLaw, Stencils,
     StepConditions, StepLoads, Trial,
 };
-use igimp_material::{
-    Curve, Decay, Elasticity, HenckyElastic, MohrCoulomb, Softening, Tresca, VonMises,
-};
+use igimp_material::{Elasticity, HenckyElastic, MohrCoulomb, Tresca, VonMises};
 use igimp_shape::{Axis, Grid};
 
 /// SplitMix64: a fixed stream of numbers.
@@ -107,19 +105,7 @@ pub fn laws() -> Vec<(&'static str, SharedLaw)> {
                     .unwrap(),
             ),
         ),
-        ("softening Tresca", Arc::new(softening(elasticity))),
     ]
-}
-
-/// Tresca that loses half its strength over a plastic strain of 20 %.
-fn softening(elasticity: Elasticity) -> Softening {
-    let cu = Curve {
-        initial: 1.0,
-        residual: 0.5,
-        strain: 0.2,
-        decay: Decay::Exponential,
-    };
-    Softening::tresca(elasticity, cu).unwrap()
 }
 
 /// The variants in both kinematics, and one with the ghost penalty.
