@@ -8,6 +8,7 @@ use nalgebra_sparse::CscMatrix;
 use nalgebra_sparse::pattern::SparsityPattern;
 
 use crate::border::Border;
+use crate::{LinearSolverError, check};
 
 /// The unknowns that one grid node contributes: consecutive rows and columns of the matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -132,6 +133,16 @@ impl Pattern {
             }
             Some(run)
         })
+    }
+
+    /// For each coupled pair of blocks (j, i), in the order of the lists of j, where the rows of j begin within a column of i:
+    /// with it the matrix is read by rows.
+    ///
+    /// # Errors
+    /// [`LinearSolverError::Empty`] and [`LinearSolverError::InvalidPattern`].
+    pub fn rows_within_columns(&self) -> Result<Vec<u32>, LinearSolverError> {
+        check::valid_pattern(self)?;
+        check::mirrored(self)
     }
 
     /// The pattern unknown by unknown, for solvers and tools that know no blocks: eight bytes for
