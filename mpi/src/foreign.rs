@@ -3,7 +3,10 @@
 //! Declared as in `mpi.h` of Open MPI 4.1, whose handles are pointers, and in the headers of PETSc 3.18 with real
 //! numbers in double precision and indices of 32 bits. All calls come from the main thread: nothing here can be sent to another.
 
-#![expect(unsafe_code, reason = "foreign functions; each block says why it is sound")]
+#![expect(
+    unsafe_code,
+    reason = "foreign functions; each block says why it is sound"
+)]
 
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::marker::PhantomData;
@@ -274,7 +277,11 @@ impl World {
         loop {
             let mut is_done = 0;
             // `numbers` is borrowed until the request is done.
-            call!(MPI_Test(&raw mut request, &raw mut is_done, ptr::null_mut()))?;
+            call!(MPI_Test(
+                &raw mut request,
+                &raw mut is_done,
+                ptr::null_mut()
+            ))?;
             if is_done != 0 {
                 return Ok(());
             }
@@ -294,7 +301,15 @@ impl World {
         for part in numbers.chunks_mut(MESSAGE / size_of::<T>()) {
             let (data, bytes) = (part.as_mut_ptr().cast(), size_of_val(part) as c_int);
             let ignored = ptr::null_mut();
-            call!(MPI_Recv(data, bytes, byte(), from as c_int, 0, comm(), ignored))?;
+            call!(MPI_Recv(
+                data,
+                bytes,
+                byte(),
+                from as c_int,
+                0,
+                comm(),
+                ignored
+            ))?;
         }
         Ok(())
     }
@@ -319,7 +334,12 @@ impl World {
     pub(crate) fn has_option(&self, name: &str) -> Outcome<bool> {
         let (name, mut is_set) = (text(name), 0);
         let null = ptr::null_mut();
-        call!(PetscOptionsHasName(null, ptr::null(), name.as_ptr(), &raw mut is_set))?;
+        call!(PetscOptionsHasName(
+            null,
+            ptr::null(),
+            name.as_ptr(),
+            &raw mut is_set
+        ))?;
         Ok(is_set != 0)
     }
 
@@ -334,7 +354,11 @@ impl World {
 
 fn set_option(name: &str, value: &str) -> Outcome<()> {
     let (name, value) = (text(name), text(value));
-    call!(PetscOptionsSetValue(ptr::null_mut(), name.as_ptr(), value.as_ptr()))
+    call!(PetscOptionsSetValue(
+        ptr::null_mut(),
+        name.as_ptr(),
+        value.as_ptr()
+    ))
 }
 
 /// Ends all ranks at once: the last resort, after an error of a [`World`] that was started.
@@ -375,7 +399,17 @@ impl Matrix {
         };
         let (starts, columns) = (starts.as_ptr(), columns.as_ptr());
         let (values, place) = (zeros.as_ptr(), &raw mut made.matrix);
-        call!(MatCreateMPIAIJWithArrays(comm(), own, own, all, all, starts, columns, values, place))?;
+        call!(MatCreateMPIAIJWithArrays(
+            comm(),
+            own,
+            own,
+            all,
+            all,
+            starts,
+            columns,
+            values,
+            place
+        ))?;
         call!(MatSetBlockSize(made.matrix, node))?;
         let (right, left) = (&raw mut made.solution, &raw mut made.rhs);
         call!(MatCreateVecs(made.matrix, right, left))?;
@@ -399,8 +433,16 @@ impl Matrix {
     }
 
     pub(crate) fn set_symmetry(&mut self, is_symmetric: bool, is_definite: bool) -> Outcome<()> {
-        call!(MatSetOption(self.matrix, SYMMETRIC, c_int::from(is_symmetric)))?;
-        call!(MatSetOption(self.matrix, POSITIVE_DEFINITE, c_int::from(is_definite)))
+        call!(MatSetOption(
+            self.matrix,
+            SYMMETRIC,
+            c_int::from(is_symmetric)
+        ))?;
+        call!(MatSetOption(
+            self.matrix,
+            POSITIVE_DEFINITE,
+            c_int::from(is_definite)
+        ))
     }
 
     /// Replaces the right-hand side of this rank.
@@ -489,7 +531,10 @@ impl Solver {
     /// Factorises with MUMPS, with integer parameters of it (`ICNTL`). The solver has its matrix by then.
     pub(crate) fn use_mumps(&mut self, parameters: &[(i32, i32)]) -> Outcome<()> {
         let package = text("mumps");
-        call!(PCFactorSetMatSolverType(self.preconditioner, package.as_ptr()))?;
+        call!(PCFactorSetMatSolverType(
+            self.preconditioner,
+            package.as_ptr()
+        ))?;
         call!(PCFactorSetUpMatSolverType(self.preconditioner))?;
         let mut factor = ptr::null_mut();
         call!(PCFactorGetMatrix(self.preconditioner, &raw mut factor))?;
@@ -526,7 +571,13 @@ impl Solver {
         most_iterations: i32,
     ) -> Outcome<End> {
         let (mut reason, mut iterations) = (0, 0);
-        call!(KSPSetTolerances(self.solver, relative, 0.0, DEFAULT, most_iterations))?;
+        call!(KSPSetTolerances(
+            self.solver,
+            relative,
+            0.0,
+            DEFAULT,
+            most_iterations
+        ))?;
         call!(KSPSolve(self.solver, matrix.rhs, matrix.solution))?;
         call!(KSPGetConvergedReason(self.solver, &raw mut reason))?;
         call!(KSPGetIterationNumber(self.solver, &raw mut iterations))?;

@@ -274,7 +274,12 @@ mod tests {
         for node in 0..nodes {
             let (len, free) = if node == 0 { (1, 0b10) } else { (2, 0b11) };
             let place = [node, 1, 0];
-            blocks.push(NodeBlock { first, len, free, place });
+            blocks.push(NodeBlock {
+                first,
+                len,
+                free,
+                place,
+            });
             first += len;
             let near = node.saturating_sub(1)..(node + 2).min(nodes);
             coupled.extend(near.map(|other| other as u32));
@@ -284,7 +289,9 @@ mod tests {
     }
 
     fn matrix(pattern: &Arc<Pattern>) -> TangentMatrix {
-        let values = (0..pattern.stored()).map(|k| (k as f64 + 1.0).sin()).collect();
+        let values = (0..pattern.stored())
+            .map(|k| (k as f64 + 1.0).sin())
+            .collect();
         TangentMatrix {
             pattern: Arc::clone(pattern),
             values,
@@ -339,7 +346,10 @@ mod tests {
         let row = starts[2 * node] as usize..starts[2 * node + 1] as usize;
         let filled: Vec<_> = row.filter(|&k| values[k] != 0.0).collect();
         assert_eq!(filled.len(), 1);
-        assert_eq!((columns[filled[0]], values[filled[0]]), (2 * node as i32, 7.0));
+        assert_eq!(
+            (columns[filled[0]], values[filled[0]]),
+            (2 * node as i32, 7.0)
+        );
     }
 
     /// GOAL: ranks have about the same number of entries.

@@ -44,11 +44,17 @@ fn main() -> ExitCode {
             return ExitCode::from(FAILED);
         }
     };
-    let done = if world.rank == 0 { lead(&world) } else { follow(&world) };
+    let done = if world.rank == 0 {
+        lead(&world)
+    } else {
+        follow(&world)
+    };
     match done.and_then(|code| world.finish().map(|()| code)) {
         Ok(code) => code,
         Err(error) => {
-            eprintln!("error: {error}\n  help: what was computed is kept; --resume goes on from the last checkpoint");
+            eprintln!(
+                "error: {error}\n  help: what was computed is kept; --resume goes on from the last checkpoint"
+            );
             // Others may wait for this rank for ever.
             foreign::abort(i32::from(FAILED));
             ExitCode::from(FAILED)
@@ -59,7 +65,10 @@ fn main() -> ExitCode {
 /// Any rank but the first: signals are for rank 0, which ends all.
 fn follow(world: &World) -> Result<ExitCode, ForeignError> {
     if let Err(error) = ctrlc::set_handler(|| {}) {
-        eprintln!("warning: rank {} ends at the first signal: {error}", world.rank);
+        eprintln!(
+            "warning: rank {} ends at the first signal: {error}",
+            world.rank
+        );
     }
     machines(world)?;
     Method::defaults(world)?;
@@ -121,7 +130,9 @@ fn run(words: &[OsString], ranks: Ranks) -> ExitCode {
             return ExitCode::SUCCESS;
         }
         _ => {
-            eprintln!("error: igimp-mpi knows `run` alone\n  help: igimp has the other commands\n\n{HELP}");
+            eprintln!(
+                "error: igimp-mpi knows `run` alone\n  help: igimp has the other commands\n\n{HELP}"
+            );
             return ExitCode::from(BAD_INPUT);
         }
     }
@@ -131,7 +142,9 @@ fn run(words: &[OsString], ranks: Ranks) -> ExitCode {
         make: Arc::new(move |case| Box::new(PetscSolver::new(&ranks, case))),
     };
     igimp::program(
-        [OsString::from("igimp")].into_iter().chain(words.iter().cloned()),
+        [OsString::from("igimp")]
+            .into_iter()
+            .chain(words.iter().cloned()),
         Some(&given),
     )
 }

@@ -35,13 +35,11 @@ impl Phases {
 
     /// A table; `whole` is the time of the run.
     fn table(&self, whole: Duration) -> String {
-        let names = [
-            "pattern",
-            "values",
-            "factors or grids",
-            "solutions",
-        ];
-        let mut text = format!("{:<34}{:>8}{:>12}{:>12}\n", "phase", "times", "s", "MiB sent");
+        let names = ["pattern", "values", "factors or grids", "solutions"];
+        let mut text = format!(
+            "{:<34}{:>8}{:>12}{:>12}\n",
+            "phase", "times", "s", "MiB sent"
+        );
         let mut rest = whole;
         for (name, (times, time, bytes)) in names.iter().zip(self.0) {
             rest = rest.saturating_sub(time);
@@ -49,7 +47,11 @@ impl Phases {
             let _ = writeln!(text, "{name:<34}{times:>8}{seconds:>12.3}{sent:>12.1}");
         }
         let rest = rest.as_secs_f64();
-        let _ = writeln!(text, "{:<34}{:>8}{rest:>12.3}{:>12}", "assembly, particles, files", "", "");
+        let _ = writeln!(
+            text,
+            "{:<34}{:>8}{rest:>12.3}{:>12}",
+            "assembly, particles, files", "", ""
+        );
         text
     }
 }
@@ -93,7 +95,11 @@ impl RankReport {
 /// What a run took, in tables.
 pub(crate) fn tables(phases: &Phases, ranks: &[RankReport], whole: Duration) -> String {
     let mut text = phases.table(whole);
-    let _ = writeln!(text, "{:<6}{:<28}{:>12}{:>20}", "rank", "computer", "peak MiB", "of it MUMPS, MB");
+    let _ = writeln!(
+        text,
+        "{:<6}{:<28}{:>12}{:>20}",
+        "rank", "computer", "peak MiB", "of it MUMPS, MB"
+    );
     for (rank, own) in ranks.iter().enumerate() {
         let (machine, peak, mumps) = (&own.machine, mebibytes(own.peak as f64), own.mumps);
         let _ = writeln!(text, "{rank:<6}{machine:<28}{peak:>12.0}{mumps:>20}");

@@ -124,10 +124,17 @@ impl PetscSolver {
     }
 
     /// The methods for a matrix, the one to begin with first, and the reason for it.
-    fn methods(&mut self, matrix: &TangentMatrix) -> Result<(Vec<Method>, Reason), LinearSolverError> {
+    fn methods(
+        &mut self,
+        matrix: &TangentMatrix,
+    ) -> Result<(Vec<Method>, Reason), LinearSolverError> {
         let symmetric = matrix.symmetric;
         if self.ranks.by_options {
-            let own = if symmetric { Method::OptionsSymmetric } else { Method::Options };
+            let own = if symmetric {
+                Method::OptionsSymmetric
+            } else {
+                Method::Options
+            };
             return Ok((vec![own], Reason::Asked));
         }
         let direct = if symmetric {
@@ -135,13 +142,21 @@ impl PetscSolver {
         } else {
             vec![Method::Lu]
         };
-        let iteration = if symmetric { Method::GamgSymmetric } else { Method::Gamg };
+        let iteration = if symmetric {
+            Method::GamgSymmetric
+        } else {
+            Method::Gamg
+        };
         if self.kind == SolverKind::Multigrid {
             return Ok(([vec![iteration], direct].concat(), Reason::Asked));
         }
         let in_space = self.layout.as_ref().is_some_and(|layout| layout.dims == 3);
         if !in_space || self.kind != SolverKind::Auto {
-            let reason = if in_space { Reason::Asked } else { Reason::Plane };
+            let reason = if in_space {
+                Reason::Asked
+            } else {
+                Reason::Plane
+            };
             return Ok((direct, reason));
         }
         let (factors, allowed) = (self.factors(matrix)?, self.allowed);
@@ -253,7 +268,11 @@ impl PetscSolver {
             });
         }
         let refined = refined?;
-        let refinements = if method.is_direct() { refined.refinements } else { iterations };
+        let refinements = if method.is_direct() {
+            refined.refinements
+        } else {
+            iterations
+        };
         self.effort.method = method.name();
         self.effort.solutions += 1;
         if !method.is_direct() {

@@ -21,7 +21,14 @@ pub(crate) fn run() -> Result<u8, Failure> {
         );
         return Ok(0);
     }
-    let lints = ["clippy", "--locked", "--all-targets", "--", "-D", "warnings"];
+    let lints = [
+        "clippy",
+        "--locked",
+        "--all-targets",
+        "--",
+        "-D",
+        "warnings",
+    ];
     let tests = ["test", "--locked"];
     for command in [&lints[..], &tests[..]] {
         let code = status(&mut with_manifest(MANIFEST, command, &target))?;

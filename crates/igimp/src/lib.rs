@@ -23,10 +23,7 @@ use crate::error::{Exit, ProgramError};
 
 /// Does what the words of a command line say, the first being the name of the program; its exit code is that of the
 /// program. Runs solve their linear systems with a given solver, if there is one.
-pub fn program(
-    words: impl IntoIterator<Item = OsString>,
-    given: Option<&GivenSolver>,
-) -> ExitCode {
+pub fn program(words: impl IntoIterator<Item = OsString>, given: Option<&GivenSolver>) -> ExitCode {
     let program = match CommandLine::try_parse_from(words) {
         Ok(program) => program,
         Err(error) => {

@@ -107,7 +107,11 @@ fn words(file: &Path, ranks: usize) -> Result<Words, ProgramError> {
     let mut program = std::env::current_exe().map_err(here)?;
     if ranks > 1 {
         let beside = program.with_file_name("igimp-mpi");
-        program = if beside.is_file() { beside } else { "igimp-mpi".into() };
+        program = if beside.is_file() {
+            beside
+        } else {
+            "igimp-mpi".into()
+        };
     }
     Ok(Words {
         program: quoted(&program.display().to_string()),

@@ -60,7 +60,15 @@ const FOREIGN: &str = "mpi/src/foreign.rs";
 /// `unsafe` outside the one file that calls foreign functions, and there without its reason.
 pub(super) fn unsafe_blocks(root: &Path) -> Result<Vec<String>, Failure> {
     let mut files = Vec::new();
-    for folder in ["crates", "mpi", "python", "validation", "benchmarks", "fuzz", "xtask"] {
+    for folder in [
+        "crates",
+        "mpi",
+        "python",
+        "validation",
+        "benchmarks",
+        "fuzz",
+        "xtask",
+    ] {
         rust_files(&root.join(folder), &mut files)?;
     }
     files.sort();
@@ -89,7 +97,10 @@ fn scan_unsafe(text: &str, is_allowed: bool) -> Vec<(usize, &'static str)> {
         }
         let above = lines[index.saturating_sub(4)..index].iter();
         if !is_allowed {
-            problems.push((index + 1, "unsafe has its place in mpi/src/foreign.rs alone"));
+            problems.push((
+                index + 1,
+                "unsafe has its place in mpi/src/foreign.rs alone",
+            ));
         } else if !above.clone().any(|line| line.contains("// SAFETY:")) {
             problems.push((index + 1, "unsafe without its reason"));
         }

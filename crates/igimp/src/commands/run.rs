@@ -44,7 +44,9 @@ pub(crate) fn run(
     output::writable(&folder)?;
     // A run that goes on makes a part of the steps only, and nobody knows what a given solver needs.
     let expectation = match start {
-        Start::Afresh if given.is_none() => in_any_dimension!(&case, case => Expectation::of(case)).ok(),
+        Start::Afresh if given.is_none() => {
+            in_any_dimension!(&case, case => Expectation::of(case)).ok()
+        }
         Start::Afresh | Start::Resume | Start::FromStage(_) => None,
     };
     let told = expectation.as_ref();
