@@ -17,11 +17,11 @@ CASE = Path(__file__).parents[1] / "cases" / "undrained_cut.toml"
 # Fitted to the runs of the book (docs/src/guide/mpi.md), per unknown and correction.
 ASSEMBLY = 2.2e-5  # s on one thread
 FACTORS = 2.0e-9  # s on one rank, times the square of the unknowns
-GRIDS = 2.0e-4  # s of a solution with smoothed aggregation in 25 iterations on one rank: elastic soil
-VALUES = 1930.0  # bytes that rank 0 sends
-HELD = 11.0e3  # bytes of particles, matrix and pattern on rank 0
-FACTOR_BYTES = 1390.0  # of all factors, times the unknowns to the power of 4/3 and over their cube root at 25 200
-# Share of the cores that factors and iterations use: an assumption, ranks to this power.
+GRIDS = 6.2e-5  # s of a solution of elastic soil by smoothed aggregation on one rank, 23 iterations (docs/src/solvers.md)
+VALUES = 616.0  # bytes that rank 0 sends
+HELD = 9.5e3  # bytes of particles, matrix and pattern on rank 0
+FACTOR_BYTES = 6.7e3  # of factors on one rank at 25 200 unknowns, growing with their power of 4/3
+# Assumptions: the share of the cores that is used is the ranks to this power, and factors grow with their root, to twice at most.
 EFFICIENCY = -0.25
 
 
@@ -68,7 +68,7 @@ def modelled(unknowns, ranks, cluster):
     sent = VALUES * unknowns * away / (cluster.bandwidth * 1e9 if computers > 1 else 5e9)
     sent += ranks * cluster.latency * 1e-6
     factors = FACTOR_BYTES * unknowns * (unknowns / 25200.0) ** (1 / 3)
-    share = factors / ranks * (1.3 if ranks > 1 else 1.0)
+    share = factors / ranks * min(math.sqrt(ranks), 2.0)
     gib = 1 << 30
     return (
         ASSEMBLY * unknowns / threads,

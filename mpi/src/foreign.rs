@@ -236,6 +236,10 @@ fn text(word: &str) -> CString {
     CString::new(word).unwrap_or_default()
 }
 
+#[expect(
+    clippy::unused_self,
+    reason = "that there is a `World` says that MPI and PETSc are initialised"
+)]
 impl World {
     /// Initialises both libraries; to be called once, on the main thread.
     pub(crate) fn start() -> Outcome<Self> {
@@ -370,7 +374,7 @@ pub(crate) fn abort(code: i32) {
 /// A matrix by ranges of rows, with vectors that fit it.
 #[derive(Debug)]
 pub(crate) struct Matrix {
-    matrix: Handle,
+    own: Handle,
     rhs: Handle,
     solution: Handle,
     /// Rows of this rank, and entries.
@@ -391,14 +395,14 @@ impl Matrix {
         let own = rows as c_int;
         let zeros = vec![0.0; columns.len()];
         let mut made = Self {
-            matrix: ptr::null_mut(),
+            own: ptr::null_mut(),
             rhs: ptr::null_mut(),
             solution: ptr::null_mut(),
             rows,
             entries: columns.len(),
         };
         let (starts, columns) = (starts.as_ptr(), columns.as_ptr());
-        let (values, place) = (zeros.as_ptr(), &raw mut made.matrix);
+        let (values, place) = (zeros.as_ptr(), &raw mut made.own);
         call!(MatCreateMPIAIJWithArrays(
             comm(),
             own,
@@ -410,9 +414,9 @@ impl Matrix {
             values,
             place
         ))?;
-        call!(MatSetBlockSize(made.matrix, node))?;
+        call!(MatSetBlockSize(made.own, node))?;
         let (right, left) = (&raw mut made.solution, &raw mut made.rhs);
-        call!(MatCreateVecs(made.matrix, right, left))?;
+        call!(MatCreateVecs(made.own, right, left))?;
         Ok(made)
     }
 
@@ -422,24 +426,20 @@ impl Matrix {
         self.write(coordinates)?;
         let mut space = ptr::null_mut();
         call!(MatNullSpaceCreateRigidBody(self.rhs, &raw mut space))?;
-        call!(MatSetNearNullSpace(self.matrix, space))?;
+        call!(MatSetNearNullSpace(self.own, space))?;
         call!(MatNullSpaceDestroy(&raw mut space))
     }
 
     /// Replaces the values of this rank, in the order of its rows.
     pub(crate) fn set_values(&mut self, values: &[f64]) -> Outcome<()> {
         assert_eq!(values.len(), self.entries, "one value for each entry");
-        call!(MatUpdateMPIAIJWithArray(self.matrix, values.as_ptr()))
+        call!(MatUpdateMPIAIJWithArray(self.own, values.as_ptr()))
     }
 
     pub(crate) fn set_symmetry(&mut self, is_symmetric: bool, is_definite: bool) -> Outcome<()> {
+        call!(MatSetOption(self.own, SYMMETRIC, c_int::from(is_symmetric)))?;
         call!(MatSetOption(
-            self.matrix,
-            SYMMETRIC,
-            c_int::from(is_symmetric)
-        ))?;
-        call!(MatSetOption(
-            self.matrix,
+            self.own,
             POSITIVE_DEFINITE,
             c_int::from(is_definite)
         ))
@@ -471,7 +471,7 @@ impl Drop for Matrix {
         // There is nobody left to tell of a failure, and objects that are null are left alone.
         let _ = call!(VecDestroy(&raw mut self.rhs));
         let _ = call!(VecDestroy(&raw mut self.solution));
-        let _ = call!(MatDestroy(&raw mut self.matrix));
+        let _ = call!(MatDestroy(&raw mut self.own));
     }
 }
 
@@ -486,7 +486,7 @@ pub(crate) struct End {
 /// A solver of PETSc with its preconditioner.
 #[derive(Debug)]
 pub(crate) struct Solver {
-    solver: Handle,
+    own: Handle,
     preconditioner: Handle,
     factor: Option<Handle>,
 }
@@ -495,15 +495,15 @@ impl Solver {
     /// A solver of a kind, with a prefix for its options.
     pub(crate) fn new(_: &World, prefix: &str, kind: &str, preconditioner: &str) -> Outcome<Self> {
         let mut made = Self {
-            solver: ptr::null_mut(),
+            own: ptr::null_mut(),
             preconditioner: ptr::null_mut(),
             factor: None,
         };
         let (prefix, kind, by) = (text(prefix), text(kind), text(preconditioner));
-        call!(KSPCreate(comm(), &raw mut made.solver))?;
-        call!(KSPSetOptionsPrefix(made.solver, prefix.as_ptr()))?;
-        call!(KSPSetType(made.solver, kind.as_ptr()))?;
-        call!(KSPGetPC(made.solver, &raw mut made.preconditioner))?;
+        call!(KSPCreate(comm(), &raw mut made.own))?;
+        call!(KSPSetOptionsPrefix(made.own, prefix.as_ptr()))?;
+        call!(KSPSetType(made.own, kind.as_ptr()))?;
+        call!(KSPGetPC(made.own, &raw mut made.preconditioner))?;
         if !preconditioner.is_empty() {
             call!(PCSetType(made.preconditioner, by.as_ptr()))?;
         }
@@ -511,21 +511,21 @@ impl Solver {
     }
 
     pub(crate) fn of(&mut self, matrix: &Matrix) -> Outcome<()> {
-        call!(KSPSetOperators(self.solver, matrix.matrix, matrix.matrix))
+        call!(KSPSetOperators(self.own, matrix.own, matrix.own))
     }
 
     /// Measures convergence by the residual itself, and gives GMRES so many vectors.
     pub(crate) fn by_residual(&mut self, vectors: i32) -> Outcome<()> {
-        call!(KSPSetNormType(self.solver, UNPRECONDITIONED))?;
-        call!(KSPGMRESSetRestart(self.solver, vectors))
+        call!(KSPSetNormType(self.own, UNPRECONDITIONED))?;
+        call!(KSPGMRESSetRestart(self.own, vectors))
     }
 
     pub(crate) fn precondition_right(&mut self) -> Outcome<()> {
-        call!(KSPSetPCSide(self.solver, RIGHT))
+        call!(KSPSetPCSide(self.own, RIGHT))
     }
 
     pub(crate) fn take_options(&mut self) -> Outcome<()> {
-        call!(KSPSetFromOptions(self.solver))
+        call!(KSPSetFromOptions(self.own))
     }
 
     /// Factorises with MUMPS, with integer parameters of it (`ICNTL`). The solver has its matrix by then.
@@ -548,7 +548,7 @@ impl Solver {
     /// Factorises, or makes the grids; `PCFailedReason`, zero where it did not fail.
     pub(crate) fn set_up(&mut self) -> Outcome<i32> {
         let mut reason = 0;
-        call!(KSPSetUp(self.solver))?;
+        call!(KSPSetUp(self.own))?;
         call!(PCGetFailedReason(self.preconditioner, &raw mut reason))?;
         Ok(reason)
     }
@@ -572,15 +572,15 @@ impl Solver {
     ) -> Outcome<End> {
         let (mut reason, mut iterations) = (0, 0);
         call!(KSPSetTolerances(
-            self.solver,
+            self.own,
             relative,
             0.0,
             DEFAULT,
             most_iterations
         ))?;
-        call!(KSPSolve(self.solver, matrix.rhs, matrix.solution))?;
-        call!(KSPGetConvergedReason(self.solver, &raw mut reason))?;
-        call!(KSPGetIterationNumber(self.solver, &raw mut iterations))?;
+        call!(KSPSolve(self.own, matrix.rhs, matrix.solution))?;
+        call!(KSPGetConvergedReason(self.own, &raw mut reason))?;
+        call!(KSPGetIterationNumber(self.own, &raw mut iterations))?;
         Ok(End {
             reason,
             iterations: iterations as usize,
@@ -591,6 +591,6 @@ impl Solver {
 impl Drop for Solver {
     fn drop(&mut self) {
         // There is nobody left to tell of a failure, and an object that is null is left alone.
-        let _ = call!(KSPDestroy(&raw mut self.solver));
+        let _ = call!(KSPDestroy(&raw mut self.own));
     }
 }

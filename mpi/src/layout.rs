@@ -182,15 +182,16 @@ impl Layout {
             let (height, first) = (pattern.height(other), pattern.first_value[other]);
             let offset = first + self.within[entry as usize] as usize;
             let (of_own, of_other) = (&self.components[old], &self.components[other]);
-            for column in 0..pattern.blocks[other].len {
-                let at = position * dims + of_other[column] as usize;
-                for row in 0..own {
-                    let value = matrix.values[offset + column * height + row];
-                    rows[of_own[row] as usize * width + at] = value;
+            let columns = of_other[..pattern.blocks[other].len].iter();
+            for (column, &component) in columns.enumerate() {
+                let at = position * dims + component as usize;
+                let values = &matrix.values[offset + column * height..][..own];
+                for (&row, &value) in of_own.iter().zip(values) {
+                    rows[row as usize * width + at] = value;
                 }
             }
             if other == old {
-                for component in (0..dims).filter(|&own_one| is_held(of_own, own, own_one)) {
+                for component in (0..dims).filter(|&own_one| is_held(*of_own, own, own_one)) {
                     rows[component * width + position * dims + component] = held;
                 }
             }
@@ -247,7 +248,7 @@ fn components(pattern: &Pattern, dims: usize) -> Vec<[u8; 3]> {
 }
 
 /// Whether a component of a node is no unknown.
-fn is_held(components: &[u8; 3], len: usize, component: usize) -> bool {
+fn is_held(components: [u8; 3], len: usize, component: usize) -> bool {
     let mut free = components[..len].iter();
     !free.any(|&own| own as usize == component)
 }
@@ -340,7 +341,7 @@ mod tests {
         let lines = [vec![0.0, 2.0, 6.0], vec![-1.0, 5.0]];
         let own = layout.of_rank(0, &lines);
         let node = (0..3).find(|&k| own.coordinates[2 * k] == 0.0).unwrap();
-        assert_eq!(own.coordinates[2 * node + 1], 5.0);
+        assert!((own.coordinates[2 * node + 1] - 5.0).abs() < 1e-12);
         let (starts, columns) = own.by_unknowns(2);
         let values = layout.values_of(0, &matrix(&pattern), 7.0);
         let row = starts[2 * node] as usize..starts[2 * node + 1] as usize;
