@@ -162,7 +162,8 @@ fn ranks_give_the_answer_of_the_serial_program() {
             "footing_3d",
             &[
                 "grid.cell=0.4 m",
-                "grid.domain={x=[\"0 m\", \"2.8 m\"], y=[\"0 m\", \"2.8 m\"], z=[\"0 m\", \"2.8 m\"]}",
+                "grid.domain={x=[\"0 m\", \"2.8 m\"], y=[\"0 m\", \"2.8 m\"], z=[\"0 m\", \"3.2 m\"]}",
+                "rigid.0.to=[\"0.75 m\", \"0.75 m\", \"3 m\"]",
                 "grid.zones={}",
                 "stages.0.steps=2",
                 "stages.0.bodies=[{body=\"footing\", z=\"-0.002 m\"}]",
