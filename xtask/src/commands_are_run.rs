@@ -36,7 +36,7 @@ const FILM: &str = "crates/igimp/tests/film.rs";
 const CASES: &str = "benchmarks/tests/cases.rs";
 
 #[rustfmt::skip]
-const PRINTED: [Printed; 40] = [
+const PRINTED: [Printed; 41] = [
     printed("cargo fmt --all --check", CI, "phase cargo fmt --all --check", ""),
     printed("cargo clippy --workspace --all-targets -- -D warnings", CI, "phase cargo clippy --workspace --all-targets -- -D warnings", ""),
     printed("cargo test --workspace", CI, "phase cargo test --workspace", ""),
@@ -48,6 +48,7 @@ const PRINTED: [Printed; 40] = [
     printed("cargo xtask book --open", CI, "phase cargo xtask book", "no browser"),
     printed("cargo xtask tidy", CI, "phase cargo xtask tidy", ""),
     printed("cargo xtask python", CI, "phase cargo xtask python", ""),
+    printed("cargo xtask mpi", CI, "phase cargo xtask mpi", "where PETSc and MPI are"),
     printed("cargo xtask film", FILM, "\"film\", \"results\", \"--pace\"", "the command that it draws with, on a coarse grid"),
     printed("cargo xtask fuzz", WEEKLY, "- run: cargo xtask fuzz", "once a week; on every change fuzz/tests/bounded.rs, with some ten thousand executions"),
     printed("cargo xtask campaign", CI, "phase cargo xtask campaign bodies --scenes 2", "two scenes for all parts"),

@@ -13,6 +13,7 @@ mod film;
 mod fuzz;
 mod mdbook;
 mod metadata;
+mod mpi;
 mod pages;
 mod process;
 mod python;
@@ -77,6 +78,10 @@ enum Task {
     /// Tools come from the package registry into `target/python`. Without Python 3.10, and where the
     /// registry cannot be reached, this says so and is done.
     Python(python::Arguments),
+    /// Build the program for several ranks and run its tests.
+    ///
+    /// Where PETSc and Open MPI are; elsewhere this says so and is done.
+    Mpi,
     /// Build the book in `docs/`, set its mathematics and check its links.
     ///
     /// mdBook is installed into `target/tools` unless it is there.
@@ -102,6 +107,7 @@ fn main() -> ExitCode {
         Task::Campaign { arguments } => campaign::run(&arguments),
         Task::Bench(arguments) => bench::run(&arguments),
         Task::Python(arguments) => python::run(&arguments),
+        Task::Mpi => mpi::run(),
         Task::Tidy => tidy::run(),
         Task::Film => film::run(),
         Task::Book { open } => book::book(open),

@@ -26,6 +26,15 @@ pub(crate) fn cargo() -> Command {
     program(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
+/// A command of cargo for a crate with a workspace of its own; what it builds goes with all other builds.
+pub(crate) fn with_manifest(manifest: &str, words: &[&str], target: &Path) -> Command {
+    let (command, rest) = words.split_first().unwrap_or((&"check", &[]));
+    let mut cargo = cargo();
+    cargo.args([command, "--manifest-path", manifest]);
+    cargo.args(rest).env("CARGO_TARGET_DIR", target);
+    cargo
+}
+
 /// Runs a program with the terminal as its own, and returns its exit code.
 pub(crate) fn status(command: &mut Command) -> Result<u8, Failure> {
     let status = command

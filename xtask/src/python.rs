@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 use crate::metadata::Metadata;
-use crate::process::{cargo, output, program, root, status};
+use crate::process::{output, program, root, status, with_manifest};
 
 /// The crate of the package, in a workspace of its own.
 pub(crate) const MANIFEST: &str = "python/Cargo.toml";
@@ -45,7 +45,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let target = Metadata::of_workspace()?.target;
     for command in [vec!["fmt", "--check"], clippy()] {
-        let code = status(with_manifest(&command, &target).current_dir(root()))?;
+        let code = status(&mut with_manifest(MANIFEST, &command, &target))?;
         if code != 0 {
             return Ok(code);
         }
@@ -124,15 +124,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8, Failure> {
 
 fn clippy() -> Vec<&'static str> {
     vec!["clippy", "--locked", "--", "-D", "warnings"]
-}
-
-/// A command of cargo for the crate; what it builds goes with all other builds.
-fn with_manifest(words: &[&str], target: &Path) -> std::process::Command {
-    let (command, rest) = words.split_first().unwrap_or((&"check", &[]));
-    let mut cargo = cargo();
-    cargo.args([command, "--manifest-path", MANIFEST]);
-    cargo.args(rest).env("CARGO_TARGET_DIR", target);
-    cargo
 }
 
 /// The programs of a virtual environment with all tools; why there is none.

@@ -171,7 +171,7 @@ fn a_solver_may_be_given() {
     let count = Arc::clone(&made);
     given.given_solver = Some(GivenSolver {
         name: "of the test",
-        make: Arc::new(move || {
+        make: Arc::new(move |_| {
             count.fetch_add(1, Ordering::Relaxed);
             SolverKind::Multifrontal.build()
         }),

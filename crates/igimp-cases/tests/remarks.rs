@@ -154,6 +154,25 @@ fn a_run_out_records_its_last_step() {
     assert!((recorded - at_rest).abs() < 1e-12, "{recorded} {at_rest}");
 }
 
+/// GOAL: where factors have no room it is told how many computers have it, and nothing where they have.
+/// ORACLE: by hand, the memory of several over what is allowed on one.
+#[test]
+fn computers_with_room_for_factors_are_counted() {
+    let on_several = |memory: &str| {
+        let set = [format!("solver.memory={memory}")];
+        let file = igimp_input::shipped::find("landslide_3d").unwrap();
+        let file = file.case_file(set).unwrap();
+        igimp_cases::estimate::estimate(file.case_in_space())
+            .unwrap()
+            .systems
+            .on_several
+    };
+    assert_eq!(on_several("4 GiB"), None);
+    let (bytes, computers) = on_several("1 MiB").unwrap();
+    let exact = bytes / 1_048_576.0;
+    assert!(exact > 2.0 && (exact..exact + 1.0).contains(&(computers as f64)));
+}
+
 // CASE: the weight of the shipped slope in space, with room for factors, with none by the case, and with none by the machine.
 // ORACLE: equilibrium, which no solver changes beyond the tolerance; the choice of the solver as the record of its stage has it.
 #[test]

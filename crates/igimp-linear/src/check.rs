@@ -94,10 +94,10 @@ pub(super) fn mirrored(pattern: &Pattern) -> Result<Vec<u32>, LinearSolverError>
 }
 
 /// Statistics of the values of a matrix, in memory that is used again.
-#[derive(Default)]
-pub(super) struct Inspection {
+#[derive(Debug, Default)]
+pub struct Inspection {
     /// Diagonal entries, by unknown.
-    pub(super) diagonal: Vec<f64>,
+    pub diagonal: Vec<f64>,
     /// Whether a row has an entry that is not zero.
     filled: Vec<bool>,
 }
@@ -105,7 +105,10 @@ pub(super) struct Inspection {
 impl Inspection {
     /// Checks that a matrix has finite values, as many as its pattern stores, and no zero row or
     /// column; takes its diagonal.
-    pub(super) fn inspect(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
+    ///
+    /// # Errors
+    /// [`LinearSolverError::WrongLength`], [`LinearSolverError::NonFinite`] and [`LinearSolverError::Singular`].
+    pub fn inspect(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
         let pattern = &*matrix.pattern;
         length("the matrix", matrix.values.len(), pattern.stored())?;
         self.diagonal.clear();

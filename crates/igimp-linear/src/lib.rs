@@ -41,6 +41,7 @@ pub use auto::AutoSolver;
 use auto::FACTOR_BYTES;
 pub use border::Border;
 pub use bordered::Bordered;
+pub use check::Inspection;
 pub use choice::{Forecast, LinearEffort, Reason};
 pub use error::LinearSolverError;
 pub use libraries::faer_cholesky::FaerCholesky;
@@ -51,7 +52,7 @@ pub use matrix::{CompressedColumns, NodeBlock, Pattern, SCALAR, TangentMatrix};
 pub use multifrontal::{MultifrontalCholesky, MultifrontalLu};
 pub use ordering::NestedDissection;
 pub use record::{Record, SolvedSystem};
-pub use refine::Accuracy;
+pub use refine::{Accuracy, Refined, Refinement};
 
 /// A solver for K x = b that reuses its symbolic work while the pattern of K stays the same.
 pub trait LinearSolver: Send {

@@ -8,6 +8,7 @@ use nalgebra_sparse::CscMatrix;
 use nalgebra_sparse::pattern::SparsityPattern;
 
 use crate::border::Border;
+use crate::{LinearSolverError, check};
 
 /// The bit in [`NodeBlock::free`] of an unknown beside displacement, which is the last of its node: pore pressure.
 pub const SCALAR: u8 = 1 << 3;
@@ -140,6 +141,16 @@ impl Pattern {
             }
             Some(run)
         })
+    }
+
+    /// For each coupled pair of blocks (j, i), in the order of the lists of j, where the rows of j begin within a column of i:
+    /// with it the matrix is read by rows.
+    ///
+    /// # Errors
+    /// [`LinearSolverError::Empty`] and [`LinearSolverError::InvalidPattern`].
+    pub fn rows_within_columns(&self) -> Result<Vec<u32>, LinearSolverError> {
+        check::valid_pattern(self)?;
+        check::mirrored(self)
     }
 
     /// The pattern unknown by unknown, for solvers and tools that know no blocks: eight bytes for

@@ -34,23 +34,29 @@ impl Default for Accuracy {
 }
 
 /// Vectors for refinement, kept from solve to solve.
-#[derive(Default)]
-pub(super) struct Refinement {
+#[derive(Debug, Default)]
+pub struct Refinement {
     correction: Vec<f64>,
     residual: Vec<f64>,
     candidate: Vec<f64>,
 }
 
 /// Outcome of [`Refinement::solve`].
-pub(super) struct Refined {
-    pub(super) relative_residual: f64,
-    pub(super) refinements: usize,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refined {
+    /// $`\max_i |b - K x|_i / \max_i |b|_i`$ \[-\], zero for a zero right-hand side.
+    pub relative_residual: f64,
+    /// Steps of refinement.
+    pub refinements: usize,
 }
 
 impl Refinement {
     /// Solves K x = b with `apply_inverse`, which replaces a vector by the approximate K⁻¹ times it,
     /// and refines x while that at least halves the residual.
-    pub(super) fn solve(
+    ///
+    /// # Errors
+    /// [`LinearSolverError::WrongLength`], [`LinearSolverError::NonFinite`] and [`LinearSolverError::Inaccurate`].
+    pub fn solve(
         &mut self,
         matrix: &TangentMatrix,
         rhs: &[f64],

@@ -183,6 +183,11 @@ impl AnyCase {
         in_any_dimension!(self, case => &case.output)
     }
 
+    /// Gives a linear solver, or none, in place of the one that the file names.
+    pub fn give_solver(&mut self, given: Option<&GivenSolver>) {
+        in_any_dimension!(self, case => case.given_solver = given.cloned());
+    }
+
     /// The output settings, to be changed.
     pub fn output_mut(&mut self) -> &mut Output {
         in_any_dimension!(self, case => &mut case.output)
@@ -280,14 +285,28 @@ pub struct FixedBox<const D: usize> {
     pub fix: [bool; D],
 }
 
-/// A linear solver of a program's own: a run makes one wherever it needs one. It is known by its name: a run is
-/// taken up again only with a solver of that name.
+/// A linear solver of a program's own: a run makes one wherever it needs one. Its solutions are checked as all are, so that
+/// a run that was stopped may go on with any other.
 #[derive(Clone)]
 pub struct GivenSolver {
     /// Name.
     pub name: &'static str,
     /// Makes one.
-    pub make: Arc<dyn Fn() -> Box<dyn LinearSolver> + Send + Sync>,
+    pub make: Arc<MakeSolver>,
+}
+
+/// Makes a solver for the systems of a case.
+pub type MakeSolver = dyn Fn(&OfCase<'_>) -> Box<dyn LinearSolver> + Send + Sync;
+
+/// The parts of a case that a given solver may go by.
+#[derive(Clone, Debug)]
+pub struct OfCase<'a> {
+    /// The method that the file asks for.
+    pub settings: &'a SolverSettings,
+    /// Memory allowed for factors on this computer \[bytes\].
+    pub factor_bytes: usize,
+    /// Coordinates of the lines of the grid along each axis \[m\], by the places of nodes in a pattern.
+    pub lines: Vec<Vec<f64>>,
 }
 
 impl fmt::Debug for GivenSolver {

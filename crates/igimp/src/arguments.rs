@@ -244,6 +244,9 @@ pub(crate) struct SweepArguments {
     /// Run none, and write what a scheduler needs to run those that are not done.
     #[arg(long, value_name = "SCHEDULER", conflicts_with_all = ["jobs", "overwrite", "list"])]
     pub(crate) to: Option<Scheduler>,
+    /// Ranks of a task, started by Slurm with igimp-mpi in place of igimp.
+    #[arg(long, value_name = "N", requires = "to", default_value = "1", value_parser = at_least_one)]
+    pub(crate) ranks: usize,
 }
 
 /// The scheduler that starts the tasks of a sweep.

@@ -17,6 +17,12 @@ pub(crate) fn to(
     sweep: &Sweep,
     arguments: &SweepArguments,
 ) -> Result<Exit, ProgramError> {
+    if arguments.ranks > 1 && scheduler != Scheduler::Slurm {
+        return Err(ProgramError::usage(
+            "only Slurm starts tasks of several ranks",
+            "--to slurm, or no --ranks",
+        ));
+    }
     let left = sweep.left()?;
     let threads = arguments.threads.unwrap_or(1);
     let Some(demand) = sweep.demand(&left, threads, Speed::measured()?)? else {
@@ -39,7 +45,7 @@ pub(crate) fn to(
     }
     // Whose the folder is stands there before many tasks begin at once.
     let _shared = sweep.enter(false, Replace::Finished)?;
-    let words = words(&arguments.file)?;
+    let words = words(&arguments.file, arguments.ranks)?;
     let (script, program) = match scheduler {
         Scheduler::Hyperqueue => (sweep.write_hyperqueue(&left, &demand, &words)?, "hq"),
         _ => (sweep.write_slurm(&left, &demand, &words)?, "sbatch"),
@@ -93,16 +99,25 @@ fn local(
 }
 
 /// The words of a task's command, from the folder where the program runs.
-fn words(file: &Path) -> Result<Words, ProgramError> {
+fn words(file: &Path, ranks: usize) -> Result<Words, ProgramError> {
     let here = |source| ProgramError::File {
         path: ".".into(),
         source,
     };
-    let program = std::env::current_exe().map_err(here)?;
+    let mut program = std::env::current_exe().map_err(here)?;
+    if ranks > 1 {
+        let beside = program.with_file_name("igimp-mpi");
+        program = if beside.is_file() {
+            beside
+        } else {
+            "igimp-mpi".into()
+        };
+    }
     Ok(Words {
         program: quoted(&program.display().to_string()),
         sweep: quoted(&file.display().to_string()),
         folder: std::env::current_dir().map_err(here)?,
+        ranks,
     })
 }
 

@@ -12,13 +12,14 @@ mod structure;
 use crate::failure::{FOUND, Failure};
 use crate::metadata::Metadata;
 use crate::process::root;
-use crate::python::MANIFEST;
+use crate::{mpi, python};
 
 /// Runs all checks; prints what is wrong, one line each.
 pub(crate) fn run() -> Result<u8, Failure> {
     let root = root();
     let metadata = Metadata::of_workspace()?;
-    let python = Metadata::of_manifest(MANIFEST)?;
+    let python = Metadata::of_manifest(python::MANIFEST)?;
+    let mpi = Metadata::of_manifest(mpi::MANIFEST)?;
     let allowed = deny::allowed_licences(&root.join("deny.toml"))?;
     let checks = [
         ("layers", layers::check(&metadata)),
@@ -29,6 +30,8 @@ pub(crate) fn run() -> Result<u8, Failure> {
             "licences of the Python package",
             licences::check(&python, &allowed),
         ),
+        ("licences of igimp-mpi", licences::check(&mpi, &allowed)),
+        ("unsafe", sources::unsafe_blocks(&root)?),
         ("links", links::check(&root)?),
         ("equations", equations::check(&metadata, &root)?),
     ];

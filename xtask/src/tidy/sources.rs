@@ -54,6 +54,60 @@ pub(super) fn check(metadata: &Metadata, root: &Path) -> Result<Vec<String>, Fai
     Ok(problems)
 }
 
+/// The one file that may hold `unsafe`.
+const FOREIGN: &str = "mpi/src/foreign.rs";
+
+/// `unsafe` outside the one file that calls foreign functions, and there without its reason.
+pub(super) fn unsafe_blocks(root: &Path) -> Result<Vec<String>, Failure> {
+    let mut files = Vec::new();
+    for folder in [
+        "crates",
+        "mpi",
+        "python",
+        "validation",
+        "benchmarks",
+        "fuzz",
+        "xtask",
+    ] {
+        rust_files(&root.join(folder), &mut files)?;
+    }
+    files.sort();
+    let mut problems = Vec::new();
+    for file in files {
+        let text = fs::read_to_string(&file).map_err(|error| {
+            Failure::input_output(format!("cannot read {}", file.display()), error)
+        })?;
+        let shown = file.strip_prefix(root).unwrap_or(&file);
+        for (line, problem) in scan_unsafe(&text, shown == Path::new(FOREIGN)) {
+            problems.push(format!("{}:{line}: {problem}", shown.display()));
+        }
+    }
+    Ok(problems)
+}
+
+/// Lines that open an `unsafe` block where none may be, or without a comment that says why it is sound.
+fn scan_unsafe(text: &str, is_allowed: bool) -> Vec<(usize, &'static str)> {
+    let opens = concat!("un", "safe {");
+    let lines: Vec<&str> = text.lines().collect();
+    let mut problems = Vec::new();
+    for (index, line) in lines.iter().enumerate() {
+        let code = line.split("//").next().unwrap_or(line);
+        if !code.contains(opens) {
+            continue;
+        }
+        let above = lines[index.saturating_sub(4)..index].iter();
+        if !is_allowed {
+            problems.push((
+                index + 1,
+                "unsafe has its place in mpi/src/foreign.rs alone",
+            ));
+        } else if !above.clone().any(|line| line.contains("// SAFETY:")) {
+            problems.push((index + 1, "unsafe without its reason"));
+        }
+    }
+    problems
+}
+
 /// Collects the `.rs` files below a folder, build output excepted.
 pub(super) fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Failure> {
     let failure = |error| Failure::input_output(format!("cannot read {}", folder.display()), error);
@@ -102,6 +156,14 @@ fn scan(text: &str, silent: bool) -> Vec<(usize, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn unsafe_has_its_place_and_its_reason() {
+        let call = concat!("let a = un", "safe { f() };");
+        assert_eq!(scan_unsafe(call, false).len(), 1);
+        assert_eq!(scan_unsafe(call, true).len(), 1);
+        assert!(scan_unsafe(&format!("// SAFETY: f does nothing.\n{call}"), true).is_empty());
+    }
 
     #[test]
     fn leftovers_are_found_as_whole_words() {

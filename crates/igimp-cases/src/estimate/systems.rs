@@ -9,7 +9,7 @@ use std::sync::Arc;
 use igimp_linear::{AutoSolver, Forecast, Pattern, Reason, SolverKind};
 use igimp_model::Case;
 
-use super::factor_memory::FactorMemory;
+use super::factor_memory::{FactorMemory, decides};
 use crate::error::CaseError;
 
 /// Factors in the plane, for each unknown and each doubling of the unknowns \[bytes\].
@@ -28,6 +28,8 @@ const SOLVE: f64 = 3e-7;
 const PER_OPERATION: f64 = 2.5e-11;
 /// A solution in space with factors \[s per byte of these\].
 const PER_BYTE: f64 = 2e-10;
+/// Memory of factors on several ranks (`igimp-mpi`) over that on one computer \[-\].
+const OF_RANKS: f64 = 1.3;
 /// Solution by iteration with multigrid, set-up included \[s per unknown\].
 const ITERATED: f64 = 6e-5;
 
@@ -42,6 +44,8 @@ pub struct Systems {
     pub bytes: f64,
     /// Additional memory where an iteration is abandoned for a factorisation \[bytes\]; zero where none is, or could be.
     pub fallback_bytes: f64,
+    /// Where factors have no room on this computer: their memory on several \[bytes\], and how many computers have it.
+    pub on_several: Option<(f64, usize)>,
     /// A factorisation and a solution on one thread of the reference computer \[s\].
     pub seconds: f64,
 }
@@ -63,6 +67,7 @@ impl Systems {
             allowed: None,
             bytes: share * PER_FILL * n * n.max(2.0).log2(),
             fallback_bytes: 0.0,
+            on_several: None,
             seconds: if iterated {
                 ITERATED * n * more
             } else {
@@ -98,6 +103,8 @@ impl Systems {
         let iterated = iterates && matches!(kind, SolverKind::Auto | SolverKind::Multigrid);
         let n = pattern.unknowns() as f64;
         let factors = factor_bytes as f64;
+        let on_ranks = OF_RANKS * factors;
+        let computers = (on_ranks / allowed.bytes.max(1) as f64).ceil() as usize;
         let mut words = method(kind, symmetric, iterated);
         if kind == SolverKind::Auto && reason != Reason::Asked {
             words = format!("{words}: {}", allowed.explain(&reason));
@@ -113,6 +120,7 @@ impl Systems {
                 factors
             },
             fallback_bytes: if iterated { fallback_bytes as f64 } else { 0.0 },
+            on_several: decides(&reason).then_some((on_ranks, computers)),
             seconds: if iterated {
                 ITERATED * n * if symmetric { 1.0 } else { UNSYMMETRIC }
             } else {

@@ -9,7 +9,7 @@ use igimp_assembly::{
 use igimp_geometry::seed::fill;
 use igimp_linear::LinearSolver;
 use igimp_material::Ratios;
-use igimp_model::{Case, Drainage, LoadKind, Material, MixedCells, Side};
+use igimp_model::{Case, Drainage, LoadKind, Material, MixedCells, OfCase, Side};
 use igimp_results::fields;
 use igimp_results::model_size::ModelSize;
 use igimp_shape::{Grid, ShapeError};
@@ -384,10 +384,22 @@ impl<'c, const D: usize> Model<'c, D> {
         }
     }
 
+    /// Coordinates of the lines of the undeformed grid along each axis \[m\]; none where there is no grid.
+    fn lines(&self) -> Vec<Vec<f64>> {
+        self.grid(0.0).map_or_else(
+            |_| Vec::new(),
+            |grid| (grid.axes.iter().map(|axis| axis.nodes().to_vec())).collect(),
+        )
+    }
+
     /// The case's linear solver, or the one that a program gave.
     pub fn solver(&self) -> Box<dyn LinearSolver> {
         match &self.case.given_solver {
-            Some(given) => (given.make)(),
+            Some(given) => (given.make)(&OfCase {
+                settings: &self.case.solver,
+                factor_bytes: self.factors.bytes,
+                lines: self.lines(),
+            }),
             None => self.case.solver.linear.build_within(self.factors.bytes),
         }
     }

@@ -149,7 +149,8 @@ impl<const D: usize> Session<'_, D> {
             ));
         }
         let own = &report.linear;
-        if D == 3 && own.solutions > 0 {
+        let is_told = D == 3 || self.model.case.given_solver.is_some();
+        if is_told && own.solutions > 0 {
             self.warn_of_memory(&stage.name, own);
             let linear = stage.linear.get_or_insert_default();
             own.method.clone_into(&mut linear.method);

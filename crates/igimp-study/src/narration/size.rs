@@ -52,6 +52,13 @@ pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Told, CaseErr
         row("solver", size.systems.method.clone()),
     ];
     rows.extend(allowed);
+    rows.extend(size.systems.on_several.map(|(bytes, computers)| {
+        let text = format!(
+            "where the iteration is slow: igimp-mpi on {computers} computers has room for {} of factors",
+            readable(bytes)
+        );
+        row("ranks", text)
+    }));
     rows.extend([
         row("memory", memory(size.bytes, size.most_bytes)),
         row(

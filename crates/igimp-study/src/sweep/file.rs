@@ -134,6 +134,7 @@ fn read(table: &DeTable<'_>, base: &Path) -> Result<Sweep, Problem> {
         keys,
         tasks,
         date: None,
+        given_solver: None,
     })
 }
 

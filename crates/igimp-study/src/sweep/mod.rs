@@ -33,7 +33,7 @@ use igimp_cases::estimate::room;
 use igimp_cases::run::{self, Account, AnyListener, Entered, Start, Target, run_any_entered};
 use igimp_cases::{CaseError, on_one_line};
 use igimp_input::{CaseFile, InputError, bytes};
-use igimp_model::AnyCase;
+use igimp_model::{AnyCase, GivenSolver};
 use igimp_report::ReportError;
 use igimp_results::ending::Ending;
 use igimp_results::folder::lock::Lock;
@@ -70,6 +70,8 @@ pub struct Sweep {
     pub tasks: Vec<Task>,
     /// Date and time for the reports of its tasks, as given by the caller.
     pub date: Option<String>,
+    /// A linear solver for all tasks, as given by the caller.
+    pub given_solver: Option<GivenSolver>,
 }
 
 /// One run of a study.
@@ -310,6 +312,7 @@ impl Sweep {
         let file = self.case_of(task)?;
         let mut case = file.any_case().clone();
         case.output_mut().folder.clone_from(&task.folder);
+        case.give_solver(self.given_solver.as_ref());
         let target = Target {
             origin: Origin::Part(self.file.clone(), format!("task {}", task.number)),
             replace,

@@ -25,6 +25,28 @@ pub struct Words {
     pub sweep: String,
     /// The folder where the tasks run.
     pub folder: PathBuf,
+    /// Ranks of a task; with more than one the program is `igimp-mpi`.
+    pub ranks: usize,
+}
+
+impl Words {
+    /// Lines for `sbatch` on where a task runs, and on how it is asked to end; and the words that start its program.
+    fn of_slurm(&self, threads: usize) -> [String; 3] {
+        let ranks = self.ranks;
+        if ranks == 1 {
+            return [
+                format!("--nodes=1 --ntasks=1 --cpus-per-task={threads}"),
+                format!("--signal=B:TERM@{NOTICE}"),
+                String::new(),
+            ];
+        }
+        // Without B the signal is for the ranks: the first ends the run, the others wait for it.
+        [
+            format!("--ntasks={ranks} --cpus-per-task={threads}"),
+            format!("--signal=TERM@{NOTICE}"),
+            "srun --mpi=pmix --cpu-bind=none --kill-on-bad-exit=1 ".to_owned(),
+        ]
+    }
 }
 
 /// A file for a scheduler.
@@ -64,18 +86,18 @@ impl Sweep {
         let mut text = String::from("#!/bin/sh\n");
         text += &self.head(demand);
         let minutes = demand.minutes();
+        let [place, signal, starter] = words.of_slurm(demand.threads);
         let _ = write!(
             text,
-            "#SBATCH --job-name={}\n#SBATCH --array={}\n#SBATCH --nodes=1 --ntasks=1 --cpus-per-task={}\n\
+            "#SBATCH --job-name={}\n#SBATCH --array={}\n#SBATCH {place}\n\
              #SBATCH --mem={}M\n#SBATCH --time={minutes}\n\
              # Before its time is up the task is asked to end, and saves what it has.\n\
-             #SBATCH --signal=B:TERM@{NOTICE}\n\
+             #SBATCH {signal}\n\
              # What a lost node ran is put into the queue again.\n#SBATCH --requeue --open-mode=append\n\
              #SBATCH --chdir={folder}\n#SBATCH --output={outputs}\n\
-             exec {} run {} --task $((${{1:-{}}} + SLURM_ARRAY_TASK_ID)) --resume --threads {} --quiet\n",
+             exec {starter}{} run {} --task $((${{1:-{}}} + SLURM_ARRAY_TASK_ID)) --resume --threads {} --quiet\n",
             self.name(),
             first.1,
-            demand.threads,
             demand.mebibytes(),
             words.program,
             words.sweep,
@@ -239,6 +261,21 @@ mod tests {
                 (2000, "500".to_owned())
             ]
         );
+    }
+
+    #[test]
+    fn several_ranks_are_started_and_asked_to_end_together() {
+        let words = |ranks| Words {
+            program: String::new(),
+            sweep: String::new(),
+            folder: PathBuf::new(),
+            ranks,
+        };
+        let [place, signal, starter] = words(4).of_slurm(2);
+        assert_eq!(place, "--ntasks=4 --cpus-per-task=2");
+        assert_eq!(signal, "--signal=TERM@120");
+        assert!(starter.starts_with("srun "), "{starter}");
+        assert_eq!(words(1).of_slurm(2)[2], "");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use igimp_cases::estimate::Expectation;
 use igimp_cases::estimate::room::refuse_beyond;
 use igimp_cases::estimate::watch::{exceeded, lacks_memory};
 use igimp_cases::run::{self as engine, Start, Target};
-use igimp_model::in_any_dimension;
+use igimp_model::{GivenSolver, in_any_dimension};
 use igimp_results::ending::Ending;
 use igimp_results::folder::overwrite_guard::Replace;
 use igimp_study::narration::verdict;
@@ -19,15 +19,19 @@ use crate::output::{self, quoted};
 use crate::progress::Progress;
 use crate::{clock, interrupt};
 
-pub(crate) fn run(arguments: &RunArguments) -> Result<Exit, ProgramError> {
+pub(crate) fn run(
+    arguments: &RunArguments,
+    given: Option<&GivenSolver>,
+) -> Result<Exit, ProgramError> {
     output::use_threads(arguments.threads);
     if let Some(number) = arguments.task {
-        return task(arguments, number);
+        return task(arguments, number, given);
     }
     let flag = interrupt::watch();
     let file = cases::read(&arguments.case, &arguments.settings())?;
     output::warn(&file.warnings());
     let mut case = file.any_case().clone();
+    case.give_solver(given);
     if let Some(out) = &arguments.out {
         case.output_mut().folder.clone_from(out);
     }
@@ -38,10 +42,12 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<Exit, ProgramError> {
     let folder = case.output().folder.clone();
     in_any_dimension!(&case, case => refuse_beyond(case))?;
     output::writable(&folder)?;
-    // A run that goes on makes a part of the steps only.
+    // A run that goes on makes a part of the steps only, and nobody knows what a given solver needs.
     let expectation = match start {
-        Start::Afresh => in_any_dimension!(&case, case => Expectation::of(case)).ok(),
-        Start::Resume | Start::FromStage(_) => None,
+        Start::Afresh if given.is_none() => {
+            in_any_dimension!(&case, case => Expectation::of(case)).ok()
+        }
+        Start::Afresh | Start::Resume | Start::FromStage(_) => None,
     };
     let told = expectation.as_ref();
     if let Some(lack) = told.and_then(|told| lacks_memory(told.bytes, told.most_bytes)) {
@@ -79,10 +85,15 @@ fn give_up(error: &ProgramError, folder: &Path, arguments: &RunArguments) -> Exi
 }
 
 /// One task of a sweep.
-fn task(arguments: &RunArguments, number: usize) -> Result<Exit, ProgramError> {
+fn task(
+    arguments: &RunArguments,
+    number: usize,
+    given: Option<&GivenSolver>,
+) -> Result<Exit, ProgramError> {
     let flag = interrupt::watch();
     let sweep = Sweep {
         date: clock::now()?,
+        given_solver: given.cloned(),
         ..Sweep::read_unchecked(&arguments.case)?
     };
     let task = sweep.task(number)?;

@@ -57,6 +57,27 @@ fn a_script_of_slurm_holds_what_is_left() {
     insta::assert_snapshot!("slurm_script", like(&script, &study));
 }
 
+/// GOAL: tasks of several ranks are started by Slurm with the program for them, and by nobody else.
+#[test]
+fn a_script_of_slurm_starts_several_ranks() {
+    let study = Study::new("to-ranks", [40, 40, 40, 40]);
+    let words = ["sweep", "study.toml", "--ranks", "4", "--to"];
+    let output = study.igimp(&[&words[..], &["hyperqueue"]].concat());
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("only Slurm starts tasks of several ranks"));
+    let output = study.igimp(&[&words[..], &["slurm"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let script = fs::read_to_string(study.path("out/slurm.sh")).unwrap();
+    for line in [
+        "#SBATCH --ntasks=4 --cpus-per-task=1",
+        "#SBATCH --signal=TERM@120",
+        "exec srun --mpi=pmix --cpu-bind=none --kill-on-bad-exit=1 ",
+        "igimp-mpi run study.toml --task ",
+    ] {
+        assert!(script.contains(line), "{line}\n{script}");
+    }
+}
+
 #[test]
 fn a_job_file_of_hyperqueue_holds_what_is_left() {
     let study = Study::new("to-hq", [40, 40, 40, 40]);

@@ -20,7 +20,7 @@ pub(crate) fn of_history<const D: usize>(case: &Case<D>, stages: usize) -> Strin
     sha256(format!("{history:?}").as_bytes())
 }
 
-/// A case without what concerns its output, the head of its report and the memory for factors alone.
+/// A case without what concerns its output, the head of its report, the memory for factors and a given solver alone.
 fn whole<const D: usize>(case: &Case<D>) -> Case<D> {
     Case {
         title_block: TitleBlock::default(),
@@ -37,6 +37,7 @@ fn whole<const D: usize>(case: &Case<D>) -> Case<D> {
             memory: None,
             ..case.solver
         },
+        given_solver: None,
         ..case.clone()
     }
 }
