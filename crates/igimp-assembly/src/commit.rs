@@ -6,7 +6,7 @@ use igimp_shape::Grid;
 use rayon::prelude::*;
 
 use crate::body::particles::{CHUNK, ParticleFields, Particles};
-use crate::contributions::consolidation::ExcessAfter;
+use crate::contributions::consolidation::PoresAfter;
 use crate::contributions::inertia::Motion;
 use crate::contributions::rigid::{RigidBody, seeded_too_close};
 use crate::equations::kinematics::ParticleTrial;
@@ -132,20 +132,15 @@ impl<const D: usize> Particles<D> {
         ways.len()
     }
 
-    /// Keeps the given pore pressure of an accepted step, by particle; an empty one is none \[force/length²\].
-    pub fn fill_pores(&mut self, pressure: &[f64]) {
+    /// Keeps what an accepted step leaves in the pores.
+    pub fn fill_pores(&mut self, pores: &PoresAfter) {
         let fields = self.fields_mut();
-        if pressure.is_empty() {
+        if pores.given.is_empty() {
             fields.pore_pressure.fill(0.0);
         } else {
-            fields.pore_pressure.copy_from_slice(pressure);
+            fields.pore_pressure.copy_from_slice(&pores.given);
         }
-    }
-
-    /// Keeps the excess pore pressures of an accepted step in which water flows.
-    pub fn flow_out(&mut self, after: &[ExcessAfter]) {
-        let fields = self.fields_mut();
-        for own in after {
+        for own in &pores.excess {
             fields.excess[own.particle] = own.excess;
             fields.excess_within_cell[own.particle] = own.within_cell;
             fields.water_rate[own.particle] = own.rate;

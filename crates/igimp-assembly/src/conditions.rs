@@ -124,6 +124,13 @@ impl<const D: usize> StepConditions<D> {
         Ok(self)
     }
 
+    /// The time that the step takes, zero in statics \[time\].
+    pub fn duration(&self) -> f64 {
+        let of_motion = self.time.map(|time| time.duration);
+        let of_flow = self.flow.as_ref().map(|flow| flow.duration);
+        of_motion.or(of_flow).unwrap_or(0.0)
+    }
+
     /// The same with water that flows out of soil while the step takes time.
     ///
     /// # Errors

@@ -33,7 +33,7 @@ pub use conditions::time_step::{TimeScheme, TimeStep};
 pub use conditions::unbalanced::UnbalancedForces;
 pub use conditions::walls::{AbsorbingWall, WallNode, Walls};
 pub use conditions::water::{PoreSite, PoreState, PoreWater, Water};
-pub use contributions::consolidation::{ExcessAfter, WaterMoved};
+pub use contributions::consolidation::{PoresAfter, WaterMoved};
 pub use contributions::inertia::Motion;
 pub use contributions::reinforcement::{Hold, Reinforcement, Segment, SegmentState, Station};
 pub use contributions::rigid::{

@@ -248,8 +248,7 @@ fn equilibrium<const D: usize>(
     let energy = system.energy(trial, &u)?;
     let motion = system.motion(&u);
     let contact = system.bodies_at(&u)?;
-    let (excess, water) = (system.excess_after(&u), system.water_moved(&u));
-    let pore_pressure = system.into_pore_pressure();
+    let pores = system.into_pores(&u);
     body.load_points = load_points;
     body.rigid = contact.bodies;
     body.reinforcement = reinforcement;
@@ -257,8 +256,7 @@ fn equilibrium<const D: usize>(
     if let Some(motion) = &motion {
         body.particles.accelerate(&stencils, motion);
     }
-    body.particles.fill_pores(&pore_pressure);
-    body.particles.flow_out(&excess);
+    body.particles.fill_pores(&pores);
     body.particles.push_out(&contact.push_out);
     times.commit = clock.elapsed();
     let report = StepReport {
@@ -274,11 +272,9 @@ fn equilibrium<const D: usize>(
         ghost_penalty: attempt.ghost_penalty,
         drag_share,
         work,
-        duration: (conditions.time.map(|time| time.duration))
-            .or(conditions.flow.as_ref().map(|flow| flow.duration))
-            .unwrap_or(0.0),
+        duration: conditions.duration(),
         energy,
-        water,
+        water: pores.water_moved,
         pace,
         external_work,
         gross_work,
@@ -319,13 +315,13 @@ fn pace_after<const D: usize>(
 ) -> Result<f64, StepFailure> {
     let (pace, is_too_long) = pace::after(system, trial, u, iterations);
     let conditions = system.conditions();
-    let of_motion = conditions.time.filter(|time| time.must_resolve);
-    let of_flow = conditions.flow.as_ref().filter(|flow| flow.must_resolve);
-    let duration = (of_motion.map(|time| time.duration)).or(of_flow.map(|flow| flow.duration));
-    match duration.filter(|_| is_too_long) {
-        Some(duration) => Err(StepFailure::TooLong { duration }),
-        None => Ok(pace),
+    let of_motion = conditions.time.is_some_and(|time| time.must_resolve);
+    let of_flow = (conditions.flow.as_ref()).is_some_and(|flow| flow.must_resolve);
+    let duration = conditions.duration();
+    if is_too_long && (of_motion || of_flow) {
+        return Err(StepFailure::TooLong { duration });
     }
+    Ok(pace)
 }
 
 /// Share of particles that returned to the yield surface \[-\].

@@ -10,7 +10,7 @@ use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::conditions::loads::{LoadPoint, finite_points};
 use crate::conditions::rigid_motion::{Drive, RigidMotion, rotations};
-use crate::contributions::consolidation::{Consolidation, ExcessAfter, WaterMoved, pressure_nodes};
+use crate::contributions::consolidation::{Consolidation, PoresAfter, pressure_nodes};
 use crate::contributions::couplings::Couplings;
 use crate::contributions::ghost::ghost_penalty;
 use crate::contributions::inertia::{Inertia, Motion};
@@ -488,19 +488,13 @@ impl<'a, const D: usize> System<'a, D> {
             .collect()
     }
 
-    /// Given pore pressure by particle, empty where there is none \[force/length²\].
-    pub fn into_pore_pressure(self) -> Vec<f64> {
-        self.pores.pressure
-    }
-
-    /// The excess pore pressures after a step with nodal values `u`, for [`Particles::flow_out`]; empty where no water flows.
-    pub fn excess_after(&self, u: &[[f64; D]]) -> Vec<ExcessAfter> {
-        self.consolidation.excess_after(u)
-    }
-
-    /// The water that a step with nodal values `u` moves; none where no water flows.
-    pub fn water_moved(&self, u: &[[f64; D]]) -> Option<WaterMoved> {
-        self.consolidation.water_moved(u)
+    /// What a step with nodal values `u` leaves in the pores when it is accepted, for [`Particles::fill_pores`].
+    pub fn into_pores(self, u: &[[f64; D]]) -> PoresAfter {
+        PoresAfter {
+            excess: self.consolidation.excess_after(u),
+            water_moved: self.consolidation.water_moved(u),
+            given: self.pores.pressure,
+        }
     }
 
     /// The reaction f_int − f_ext by node, zero at unknowns \[force\].

@@ -4,7 +4,8 @@ use igimp_model::check::Band;
 use igimp_results::fields::{Dimension, Scale};
 use igimp_results::mesh_study::MeshSummary;
 use igimp_results::summary::{
-    MaterialShare, MemberSummary, PoreSummary, StageOutcome, StageSummary, Summary,
+    ConsolidationSummary, MaterialShare, MemberSummary, PoreSummary, StageOutcome, StageSummary,
+    Summary,
 };
 use igimp_text::short;
 use serde::Serialize;
@@ -106,26 +107,14 @@ pub(super) fn headline(summary: &Summary) -> Vec<Number> {
             add("Excess pore pressure".to_owned(), value, note);
         }
     }
-    for stage in &summary.stages {
-        if let Some(own) = &stage.consolidation {
-            let name = several(
-                |stage| stage.consolidation.is_some(),
-                stage,
-                "Excess pressure dissipated",
-            );
-            let note = format!(
-                "mean of coupled soil {} of {} at most; water that left {} {}",
-                quantity(own.excess, "Pa"),
-                quantity(own.most_excess, "Pa"),
-                short(own.outflow),
-                if summary.size.is_in_space() {
-                    "m³"
-                } else {
-                    "m³/m"
-                }
-            );
-            add(name, format!("{} %", short(100.0 * own.dissipated())), note);
-        }
+    for (stage, own) in consolidated(summary) {
+        let name = several(
+            |stage| stage.consolidation.is_some(),
+            stage,
+            "Excess pressure dissipated",
+        );
+        let value = format!("{} %", short(100.0 * own.dissipated()));
+        add(name, value, dissipation_note(summary, own));
     }
     if !summary.checks.is_empty() {
         let met = summary.checks.iter().filter(|row| row.pass).count();
@@ -134,6 +123,27 @@ pub(super) fn headline(summary: &Summary) -> Vec<Number> {
         add("Checks met".to_owned(), value, note);
     }
     numbers
+}
+
+/// The stages in which water flowed.
+fn consolidated(summary: &Summary) -> impl Iterator<Item = (&StageSummary, &ConsolidationSummary)> {
+    let stages = summary.stages.iter();
+    stages.filter_map(|stage| Some((stage, stage.consolidation.as_ref()?)))
+}
+
+/// What stands below the share of excess pressure that is gone.
+fn dissipation_note(summary: &Summary, own: &ConsolidationSummary) -> String {
+    format!(
+        "mean of coupled soil {} of {} at most; water that left {} {}",
+        quantity(own.excess, "Pa"),
+        quantity(own.most_excess, "Pa"),
+        short(own.outflow),
+        if summary.size.is_in_space() {
+            "m³"
+        } else {
+            "m³/m"
+        }
+    )
 }
 
 /// A member of reinforcement at the end of a stage.

@@ -170,8 +170,11 @@ impl Column {
     }
 }
 
+/// A time, the degree of consolidation, and the excess pressure at the base over the first.
+type Row = (f64, f64, f64);
+
 /// Times c_v t/H², degrees of consolidation and excess pressures at the base over the first (Terzaghi's series).
-const TERZAGHI: [(f64, f64, f64); 9] = [
+const TERZAGHI: [Row; 9] = [
     (0.01, 0.112_838, 1.0),
     (0.05, 0.252_313, 0.996_869),
     (0.1, 0.356_823, 0.949_305),
@@ -222,7 +225,7 @@ fn terzaghi() {
 // at the base over the load.
 #[test]
 fn large_strain() {
-    let tables: [(f64, f64, &[(f64, f64, f64)]); 2] = [
+    let tables: [(f64, f64, &[Row]); 2] = [
         (
             0.1,
             0.912_765,

@@ -97,17 +97,27 @@ impl WaterMoved {
     }
 }
 
+/// What an accepted step leaves in the pores.
+#[derive(Clone, Debug, Default)]
+pub struct PoresAfter {
+    /// Given pore pressure by particle, empty where there is none \[force/length²\].
+    pub(crate) given: Vec<f64>,
+    /// Of the particles that water flows through.
+    pub(crate) excess: Vec<ExcessAfter>,
+    /// The water that the step moved; none where no water flows.
+    pub water_moved: Option<WaterMoved>,
+}
+
 /// Excess pore pressure of a particle after a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ExcessAfter {
-    /// The particle.
-    pub particle: usize,
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ExcessAfter {
+    pub(crate) particle: usize,
     /// Its excess pore pressure, compression positive \[force/length²\].
-    pub excess: f64,
+    pub(crate) excess: f64,
     /// By how much the pressure at the particle differs from that mean of its cells \[force/length²\].
-    pub within_cell: f64,
+    pub(crate) within_cell: f64,
     /// Rate at which its water by volume grew \[1/time\].
-    pub rate: f64,
+    pub(crate) rate: f64,
 }
 
 impl Share {
