@@ -71,7 +71,7 @@ shipped! {
     "rapid_drawdown": "dam of earth whose pool is drawn down: the factor of safety against time, beside its limits",
     "consolidation": "clay under a fill that settles as its water leaves, held against Terzaghi's series",
     "embankment_time": "embankment in two lifts on soft clay, in time: settlement, excess pressure, factors of safety",
-    "penetration_rate": "strip footing on clay pushed in an hour, half a year and fifty years, beside undrained and drained",
+    "penetration_rate": "strip footing on clay pushed in a minute, half a year and fifty years, beside undrained and drained",
     "excavation": "pit dug in two slices after the water was lowered",
     "embankment_lifts": "embankment filled in lifts on clay that grows stronger with depth, held against limit analysis",
     "footing_3d": "rough square footing on undrained clay in space, held against limit analysis",
