@@ -90,7 +90,7 @@ fn sheared(kappa: f64) -> History {
     history
 }
 
-/// GOAL: of a million random states and histories per law every answer is finite, on the surface of the strength that is left, and
+/// GOAL: of 20 000 random states and histories per family of laws every answer is finite, on the surface of the strength that is left, and
 /// dissipates; strain splits; κ grows by the plastic strain of the step; a returned state is not returned again.
 #[test]
 fn returns_are_admissible_and_dissipate() {
