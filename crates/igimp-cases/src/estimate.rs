@@ -28,7 +28,7 @@ pub use systems::Systems;
 use time::Time;
 
 /// Program, tables and buffers \[bytes\].
-const BASE: f64 = 2.2e7;
+const BASE: f64 = 2.4e7;
 /// State, trial and supports of a particle \[bytes\].
 const PER_PARTICLE: f64 = 2e3;
 /// The states that a search along the reduction of strength keeps \[bytes per particle\].
