@@ -787,6 +787,7 @@ fn clay_consolidates_under_a_fill() {
     let [whole, stopped] = ["consolidation-whole", "consolidation-stopped"].map(folder);
     let run = run_into((&file, file.case()), &whole, Start::Afresh, None);
     assert_done(&run.summary);
+    assert_eq!(run.summary.checks.len(), 2);
     assert!(run.summary.checks.iter().all(|check| check.pass));
     for stage in &run.summary.stages[2..] {
         let own = stage.consolidation.as_ref().unwrap();

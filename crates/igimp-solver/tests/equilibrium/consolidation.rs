@@ -89,22 +89,11 @@ impl Column {
 
     /// A step to a time as c_v t/H²; mobility is 1.
     fn to(&mut self, time: f64, stiffness: f64) {
-        let conditions = self
-            .conditions()
-            .with_flow(Some(Consolidating {
-                duration: (time - self.time) / self.modulus,
-                before: self.before,
-                must_resolve: false,
-                soils: vec![PoreFlow::Flows(Permeable {
-                    mobility: [[1.0]],
-                    stiffness,
-                    follows: None,
-                })],
-                open_sides: Vec::new(),
-                open_faces: self.open,
-                drains: Vec::new(),
-            }))
-            .unwrap();
+        let durations = [(time - self.time) / self.modulus, self.before];
+        let mut conditions = flow(self.conditions(), durations, stiffness);
+        if let Some(flow) = &mut conditions.flow {
+            flow.open_faces = self.open;
+        }
         let (report, _) = step(
             &mut self.body,
             &Method::igimp_bbar(),

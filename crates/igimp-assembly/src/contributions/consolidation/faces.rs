@@ -117,6 +117,18 @@ pub(crate) fn openings<const D: usize>(
             }
         }
     }
+    free_faces(grid, &cells, flow, near_body, &mut all);
+    Ok(all)
+}
+
+/// Adds the openings at free faces of soil and at open sides of the grid.
+fn free_faces<const D: usize>(
+    grid: &Grid<D>,
+    cells: &[Option<CellOfSoil<D>>],
+    flow: &Consolidating<D>,
+    near_body: &dyn Fn(&[f64; D], f64) -> bool,
+    all: &mut Vec<Opening>,
+) {
     for (index, cell) in cells.iter().enumerate() {
         let Some(cell) = cell.filter(|cell| cell.seeping > 0.0) else {
             continue;
@@ -136,19 +148,11 @@ pub(crate) fn openings<const D: usize>(
                     }
                 };
                 if is_open {
-                    face(
-                        grid,
-                        (place, &cell),
-                        (axis, is_upper),
-                        flow,
-                        near_body,
-                        &mut all,
-                    );
+                    face(grid, (place, &cell), (axis, is_upper), flow, near_body, all);
                 }
             }
         }
     }
-    Ok(all)
 }
 
 /// Whether the soil of a cell reaches its side.

@@ -84,7 +84,7 @@ fn changed<const D: usize>(
     for particle in 0..fields.x.len() {
         let body = model.seeded.body[fields.number[particle]];
         if own.dissipate {
-            fields.excess[particle] = 0.0;
+            let_water_out(&mut fields, particle);
         }
         let new = own.materials.iter().find(|(of, _)| *of == body);
         if let Some(&(_, material)) = new {
@@ -134,8 +134,15 @@ fn drain_as<const D: usize>(
         fields.pore_pressure[particle] = given;
     }
     if !matches!(drainage, Drainage::Undrained { .. }) {
-        fields.excess[particle] = 0.0;
+        let_water_out(fields, particle);
     }
+}
+
+/// Takes the excess pore pressure of a particle, and what flow had left of it within its cell and in time.
+fn let_water_out<const D: usize>(fields: &mut ParticleFields<D>, particle: usize) {
+    fields.excess[particle] = 0.0;
+    fields.excess_within_cell[particle] = 0.0;
+    fields.water_rate[particle] = 0.0;
 }
 
 /// Gives a particle weight, strength and stiffness of a material; its stress stays, of which `stretch` makes that which goes with
