@@ -1,14 +1,12 @@
 //! `cargo xtask campaign`: random slopes and footings under watch, in release mode.
 
 use crate::failure::Failure;
-use crate::process::{cargo, status};
+use crate::process::{released, status};
 
 /// Runs the campaign program and returns its exit code.
 pub(crate) fn run(arguments: &[String]) -> Result<u8, Failure> {
-    status(
-        cargo()
-            .args(["run", "--release", "--package", "igimp-validation"])
-            .args(["--bin", "campaign", "--"])
-            .args(arguments),
-    )
+    match released("release", "campaign")? {
+        Ok(mut campaign) => status(campaign.args(arguments)),
+        Err(code) => Ok(code),
+    }
 }

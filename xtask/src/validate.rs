@@ -1,18 +1,18 @@
 //! `cargo xtask validate`: the validation program in release mode, and what `--accept` changed.
 
 use crate::failure::Failure;
-use crate::process::{cargo, program, status};
+use crate::process::{program, released, status};
 
 /// Where the snapshots are.
 const SNAPSHOTS: &str = "validation/snapshots";
 
 /// Runs the validation program and returns its exit code.
 pub(crate) fn run(arguments: &[String]) -> Result<u8, Failure> {
-    let code = status(
-        cargo()
-            .args(["run", "--release", "--package", "igimp-validation", "--"])
-            .args(arguments),
-    )?;
+    let mut validation = match released("release", "igimp-validation")? {
+        Ok(program) => program,
+        Err(code) => return Ok(code),
+    };
+    let code = status(validation.args(arguments))?;
     if arguments
         .iter()
         .any(|argument| argument.starts_with("--accept"))

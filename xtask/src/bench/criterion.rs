@@ -8,7 +8,7 @@ use std::time::SystemTime;
 use super::estimate;
 use super::row::Row;
 use crate::failure::Failure;
-use crate::process::{cargo, status};
+use crate::process::{cargo_for_released, status};
 
 /// The programs of the benches, and the groups that each of them measures.
 const PROGRAMS: [(&str, &[&str]); 5] = [
@@ -53,8 +53,7 @@ pub(crate) fn run(
 ) -> Result<Result<Vec<Row>, u8>, Failure> {
     let folder = target.join("criterion");
     let before = stamps(&folder);
-    let mut bench = cargo();
-    bench.args(["bench", "--package", "igimp-benchmarks"]);
+    let mut bench = cargo_for_released("bench");
     for program in programs(filter) {
         bench.args(["--bench", program]);
     }

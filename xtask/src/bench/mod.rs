@@ -67,11 +67,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let cores = available_parallelism().map_or(1, NonZeroUsize::get);
     let threads = arguments.threads.map_or(cores.min(2), NonZeroUsize::get);
     let (filter, quick) = (arguments.filter.as_deref(), arguments.quick);
-    let surveys = survey::is_asked_for(filter);
-    if surveys {
-        let code = survey::build()?;
-        if code != 0 {
-            return Ok(code);
+    let mut surveys = None;
+    if survey::is_asked_for(filter) {
+        match survey::build()? {
+            Ok(program) => surveys = Some(program),
+            Err(code) => return Ok(code),
         }
     }
     let mut rows = Vec::new();
@@ -82,8 +82,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         }
     }
     let mut survey = Survey::default();
-    if surveys {
-        match survey::run(filter, quick, threads, &folder.join(SURVEY))? {
+    if let Some(program) = &mut surveys {
+        match survey::run(program, filter, quick, threads, &folder.join(SURVEY))? {
             Ok(found) => survey = found,
             Err(code) => return Ok(code),
         }

@@ -2,20 +2,11 @@
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 use super::row::{self, Row};
 use crate::failure::Failure;
-use crate::process::{cargo, status};
-
-/// How cargo finds the program, built as the benches are: what both need is compiled once.
-const PROGRAM: [&str; 6] = [
-    "--profile",
-    "bench",
-    "--package",
-    "igimp-benchmarks",
-    "--bin",
-    "survey",
-];
+use crate::process::{released, status};
 
 /// The parts of the survey.
 const PARTS: [&str; 6] = [
@@ -43,14 +34,15 @@ pub(crate) fn is_asked_for(filter: Option<&str>) -> bool {
     filter.is_none_or(|filter| PARTS.iter().any(|part| part.contains(filter)))
 }
 
-/// Builds the survey, so that what does not compile shows before minutes of measurement; returns
-/// the exit code.
-pub(crate) fn build() -> Result<u8, Failure> {
-    status(cargo().arg("build").args(PROGRAM))
+/// Builds the survey as the benches are, so that what does not compile shows before minutes of measurement; the program, or the exit
+/// code of a build that failed.
+pub(crate) fn build() -> Result<Result<Command, u8>, Failure> {
+    released("bench", "survey")
 }
 
 /// Runs the survey with a folder for its files, or returns the exit code of a run that failed.
 pub(crate) fn run(
+    survey: &mut Command,
     filter: Option<&str>,
     quick: bool,
     threads: usize,
@@ -62,17 +54,14 @@ pub(crate) fn run(
             Failure::input_output(format!("cannot remove {}", plot.display()), error)
         })?;
     }
-    let mut survey = cargo();
     survey
-        .arg("run")
-        .args(PROGRAM)
-        .args(["--", "--filter", filter.unwrap_or(""), "--folder"])
+        .args(["--filter", filter.unwrap_or(""), "--folder"])
         .arg(folder)
         .env("RAYON_NUM_THREADS", threads.to_string());
     if quick {
         survey.arg("--quick");
     }
-    let code = status(&mut survey)?;
+    let code = status(survey)?;
     if code != 0 {
         return Ok(Err(code));
     }
