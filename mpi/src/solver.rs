@@ -137,11 +137,16 @@ impl PetscSolver {
             };
             return Ok((vec![own], Reason::Asked));
         }
-        let direct = if symmetric {
-            vec![Method::Cholesky, Method::Ldlt]
-        } else {
-            vec![Method::Lu]
+        // Pore pressures make it quasi-definite.
+        let coupled = matrix.pattern.has_scalars();
+        let direct = match (symmetric, coupled) {
+            (true, false) => vec![Method::Cholesky, Method::Ldlt],
+            (true, true) => vec![Method::Ldlt, Method::Lu],
+            (false, _) => vec![Method::Lu],
         };
+        if coupled {
+            return Ok((direct, Reason::Coupled));
+        }
         let iteration = if symmetric {
             Method::GamgSymmetric
         } else {

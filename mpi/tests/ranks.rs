@@ -131,11 +131,11 @@ fn differences(a: &Path, b: &Path) -> [f64; 2] {
 }
 
 /// GOAL: one rank, two and four give the answer of the serial program in displacement and load, in the plane and in space, with
-/// symmetric tangents and others, rigid bodies in contact and a strength reduction.
+/// symmetric tangents and others, rigid bodies in contact, a strength reduction, and soil that consolidates.
 /// ORACLE: igimp's own factors, on one thread.
 #[test]
 fn ranks_give_the_answer_of_the_serial_program() {
-    let cases: [(&str, &[&str], &str); 6] = [
+    let cases: [(&str, &[&str], &str); 8] = [
         ("column", &["stages.0.steps=4"], "petsc-mumps-llt"),
         ("von_mises_slope", &["stages.0.steps=3"], "petsc-mumps-llt"),
         (
@@ -177,6 +177,24 @@ fn ranks_give_the_answer_of_the_serial_program() {
                 "stages=[{name=\"weight\", type=\"gravity\", steps=2}]",
             ],
             "petsc-mumps-llt",
+        ),
+        (
+            "consolidation",
+            &[
+                "stages.3.steps=1",
+                "stages.3.consolidation.duration=\"365.25 d\"",
+            ],
+            "petsc-mumps-ldlt",
+        ),
+        (
+            "penetration_rate",
+            &[
+                "curves=[]",
+                "stages=[{name=\"at rest\", type=\"k0\", drained=true, steps=1}, \
+                 {name=\"push\", type=\"displacement\", load=\"footing\", settlement=\"2 mm\", \
+                 consolidation={duration=\"180 d\"}, steps=2}]",
+            ],
+            "petsc-mumps-lu",
         ),
     ];
     let folder = folder("ranks");

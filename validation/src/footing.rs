@@ -160,20 +160,6 @@ fn pushes(level: Level) -> Vec<Push> {
                 &[stiff(), shared(), to(0.005, 20)],
             ),
             of(
-                "smooth_9",
-                "iGIMP + B-bar, smooth, bonded, B/h = 9",
-                Role::Shown,
-                9,
-                &[smooth()],
-            ),
-            of(
-                "rough_13",
-                "iGIMP + B-bar, rough, bonded, B/h = 13",
-                Role::Deep,
-                13,
-                &[to(1.0, 65)],
-            ),
-            of(
                 "small_strain_13",
                 "iGIMP + B-bar, rough, bonded, B/h = 13, E/s_u = 1e4",
                 Role::SmallStrain,
@@ -191,6 +177,20 @@ fn pushes(level: Level) -> Vec<Push> {
     }
     if level == Level::Full {
         pushes.extend([
+            of(
+                "smooth_9",
+                "iGIMP + B-bar, smooth, bonded, B/h = 9",
+                Role::Shown,
+                9,
+                &[smooth()],
+            ),
+            of(
+                "rough_13",
+                "iGIMP + B-bar, rough, bonded, B/h = 13",
+                Role::Deep,
+                13,
+                &[to(1.0, 65)],
+            ),
             of(
                 "impm_bbar_9",
                 "iMPM + B-bar, rough, bonded, B/h = 9",

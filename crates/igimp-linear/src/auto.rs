@@ -147,9 +147,6 @@ impl AutoSolver {
         symmetric: bool,
     ) -> Result<(State, Reason), LinearSolverError> {
         let unknowns = pattern.unknowns();
-        if pattern.has_scalars() {
-            return Ok((State::Factorised, Reason::Coupled));
-        }
         if self.in_single {
             return Ok(match &self.given_up {
                 Some(reason) => (State::Factorised, reason.clone()),
@@ -283,7 +280,7 @@ impl AutoSolver {
     /// Factorises by what suits the matrix.
     fn factorise(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
         self.state = State::Nothing;
-        let factorised = if matrix.symmetric && !matrix.pattern.has_scalars() {
+        let factorised = if matrix.symmetric {
             match self.engine.factor_cholesky(matrix) {
                 Err(LinearSolverError::NotPositiveDefinite { .. }) => self.engine.factor_lu(matrix),
                 other => other,

@@ -42,7 +42,7 @@ pub enum Reason {
     Asked,
     /// The system is that of a plane, or of a line.
     Plane,
-    /// Pore pressure is among the unknowns: the matrix is not positive definite.
+    /// Pore pressure is among the unknowns, for which a program that is given has no iteration.
     Coupled,
     /// There are too few nodes for a coarser grid.
     Small {

@@ -8,7 +8,7 @@
 //! | [`SolverKind::Auto`] | any | chooses among the next three by dimension, size and symmetry of K | default |
 //! | [`SolverKind::Multigrid`] | any, of a grid | conjugate gradients or generalised minimal residuals with geometric multigrid, own | large systems in space |
 //! | [`SolverKind::Single`] | any | multifrontal factors in single precision, and conjugate gradients or generalised minimal residuals with them, own | half the memory |
-//! | [`SolverKind::MultifrontalCholesky`] | symmetric positive definite | multifrontal Cholesky, own | fast |
+//! | [`SolverKind::MultifrontalCholesky`] | symmetric positive definite, or quasi-definite with scalars | multifrontal Cholesky with signs of pivots, own | fast |
 //! | [`SolverKind::Multifrontal`] | structurally symmetric | multifrontal LU, own | fast |
 //! | [`SolverKind::FaerCholesky`] | symmetric positive definite | supernodal Cholesky of `faer` | independent second, fast |
 //! | [`SolverKind::NalgebraCholesky`] | symmetric positive definite | `nalgebra-sparse` | independent second |
@@ -167,7 +167,8 @@ pub enum SolverKind {
     Single,
     /// Supernodal Cholesky factorisation of `faer`.
     FaerCholesky,
-    /// Multifrontal Cholesky factorisation for symmetric positive definite matrices.
+    /// Multifrontal Cholesky factorisation for symmetric positive definite matrices, and for quasi-definite ones with a scalar in
+    /// their nodes.
     MultifrontalCholesky,
     /// Multifrontal LU for structurally symmetric matrices.
     Multifrontal,

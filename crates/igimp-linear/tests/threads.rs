@@ -25,6 +25,7 @@ fn bits_do_not_depend_on_the_number_of_threads() {
         large(Body::plane(70, 60)),
         large(Body::plane(80, 80).slope()),
         large(Body::solid([11, 12, 10])),
+        large(Body::plane(60, 60).pressure()),
     ];
     for body in bodies {
         for (unsymmetric, kinds) in [

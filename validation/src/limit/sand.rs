@@ -102,7 +102,7 @@ pub(super) fn slides_along_its_face(study: &mut Study, level: Level) -> Result<(
     let (of_chosen, of_beside) = if is_full {
         (&PLACES[..], &PLACES[..3])
     } else {
-        (&PLACES[..3], &PLACES[2..3])
+        (&PLACES[2..3], &PLACES[2..3])
     };
     let at = |(run, friction), place, young| Sand {
         run,

@@ -17,7 +17,15 @@ use crate::runs::Computed;
 use crate::slopes::problems::Problem;
 
 /// Cases that take longest.
-const DEAR: [&str; 3] = ["dam_drawdown", "layered_slope", "landslide_3d"];
+const DEAR: [&str; 7] = [
+    "dam_drawdown",
+    "dam_seepage",
+    "embankment_lifts",
+    "excavation",
+    "landslide_3d",
+    "layered_slope",
+    "nailed_cut",
+];
 
 /// Cases whose stiffness is part of the answer: pores store by it, water leaves by it, and strain that softens goes with it.
 const STIFFNESS_COUNTS: [&str; 3] = ["rapid_drawdown", "embankment_time", "sensitive_slope"];

@@ -123,8 +123,10 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     }
     mesh_error::report(&mut study, &slopes)?;
     if level >= Level::Default {
-        effort::report(&mut study, &slopes)?;
         indifference::report(&mut study, &slopes.problems)?;
+    }
+    if level == Level::Full {
+        effort::report(&mut study, &slopes)?;
     }
     summary(&mut study, &slopes)?;
     let found = slopes.sought.iter().zip(&slopes.found);
@@ -153,11 +155,12 @@ fn sought(problems: &[Problem], level: Level) -> Vec<Sought> {
             if level >= Level::Default && slope.without_dilation.is_some() {
                 seek(variant(cells, Locking::SharedStrain, false));
             }
-            if level >= Level::Default && cells == slope.meshes[0] {
+            let is_coarse = cells == slope.meshes[0];
+            if level == Level::Full && is_coarse {
                 seek(variant(cells, Locking::BBar, true));
-                if slope.locks {
-                    seek(variant(cells, Locking::None, true));
-                }
+            }
+            if level >= Level::Default && is_coarse && slope.locks {
+                seek(variant(cells, Locking::None, true));
             }
         }
     }

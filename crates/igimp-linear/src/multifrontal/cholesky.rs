@@ -1,13 +1,17 @@
-//! Cholesky factorisation of a front with symmetric positive definite values.
+//! Cholesky factorisation of a front with symmetric values, positive definite or quasi-definite.
 //!
 //! J. W. H. Liu, *The multifrontal method for sparse matrix solution: theory and practice*, SIAM
 //! Review 34 (1992). With w pivots and r border unknowns the lower half of the front is
 //!
 //! ```text
 //!         w     r
-//!   w  [  A       ]    A → L₁ L₁ᵀ
-//!   r  [  L     C ]    L → L L₁⁻ᵀ,  C = contributions − L Lᵀ
+//!   w  [  A       ]    A → L₁ J L₁ᵀ
+//!   r  [  L     C ]    L → L L₁⁻ᵀ J,  C = contributions − L J Lᵀ
 //! ```
+//!
+//! J has the signs of the pivots: +1 for displacement and −1 for pore pressure, in any order of elimination (R. J. Vanderbei,
+//! *Symmetric quasidefinite matrices*, SIAM Journal on Optimization 5, 1995). A column of L has the sign of its pivot on the
+//! diagonal, and J is stored nowhere else.
 //!
 //! A keeps the room of a [`Layout`]; what is above its diagonal is never read. Of C only the lower half is worked out,
 //! a few columns at a time, and never stored as a whole.
@@ -30,12 +34,13 @@ use super::dense::panels::{
     solve_lower, solve_lower_transposed, subtract_product, subtract_transposed_product,
 };
 use super::dense::scalar::Scalar;
+use super::dense::signs::{self, Signs};
 use super::dense::tiles::{TILE, by_columns, tile_width};
 use super::extend_add::{Target, triangle_column};
 use super::kernel::{Contribution, Kernel, Room, Substitution};
 use super::scratch::make_room;
 use super::tree::plan::Plan;
-use crate::TangentMatrix;
+use crate::matrix::{NodeBlock, SCALAR, TangentMatrix};
 use crate::multifrontal::dense::layout::Shape;
 use crate::multifrontal::tree::front::{Extent, Front};
 
@@ -107,24 +112,29 @@ impl<T: Scalar> Kernel<T> for Cholesky<'_> {
             unknown: Some(plan.unknown_at(front.first + pivot)),
         };
         let mut lower = MatMut::from_column_major_slice_mut(lower, r, w);
+        let blocks = front.columns.clone();
+        let blocks = blocks.map(|rank| plan.pattern.blocks[plan.order[rank] as usize]);
+        let of_pressure =
+            |block: NodeBlock, k: usize| block.free & SCALAR != 0 && k + 1 == block.len;
+        let signed = blocks.clone().any(|block| block.free & SCALAR != 0);
         if layout.is_square() {
             let block = MatMut::from_column_major_slice_mut(pivots, w, w);
-            factor_block(block, large).map_err(not_positive)?;
+            factor_block(block, signed, large).map_err(not_positive)?;
             if r > 0 {
                 let factored = MatRef::from_column_major_slice(&*pivots, w, w);
                 divide(factored, lower.as_mut(), large);
             }
         } else {
-            factor_strides(layout, pivots, lower).map_err(not_positive)?;
+            factor_strides(layout, pivots, lower, signed).map_err(not_positive)?;
         }
-        for rank in front.columns.clone() {
-            let unknowns = plan.pattern.blocks[plan.order[rank] as usize];
-            for k in 0..unknowns.len {
+        for (rank, block) in front.columns.clone().zip(blocks) {
+            for k in 0..block.len {
                 let pivot = plan.position[rank] as usize - front.first + k;
-                let root = pivots[layout.offset(pivot) + pivot - layout.first_row(pivot)].wide();
-                let least = T::LEAST_PIVOT * self.diagonal[unknowns.first + k];
+                let root = signs::pivot(layout, pivots, pivot).wide();
+                let least = T::LEAST_PIVOT * self.diagonal[block.first + k].abs();
+                let has_its_sign = (root < 0.0) == of_pressure(block, k);
                 // Written so that what is not a number does not pass.
-                let is_sound = root * root > least;
+                let is_sound = has_its_sign && root * root > least;
                 if !is_sound {
                     return Err(not_positive(pivot));
                 }
@@ -140,7 +150,9 @@ impl<T: Scalar> Kernel<T> for Cholesky<'_> {
         large: bool,
     ) -> Result<(), LinearSolverError> {
         let (w, r) = (contribution.front.pivots, contribution.front.border);
-        let lower = &contribution.factors[Layout::lower(w).entries()..];
+        let own = Layout::lower(w);
+        let (pivots, lower) = contribution.factors.split_at(own.entries());
+        let signs = Signs::of(own, pivots, w);
         let lower = MatRef::from_column_major_slice(lower, r, w);
         let layout = Layout::lower(room.parent.pivots);
         let (pivots, below) = room.factors.split_at_mut(layout.entries());
@@ -156,6 +168,7 @@ impl<T: Scalar> Kernel<T> for Cholesky<'_> {
         let work = Work {
             contribution,
             lower,
+            signs: &signs,
             all_pivots: room.parent.pivots,
         };
         if large {
@@ -177,6 +190,7 @@ struct Work<'a, T> {
     contribution: Contribution<'a, T>,
     /// Factors below the pivots.
     lower: MatRef<'a, T>,
+    signs: &'a Signs,
     /// Pivots of the parent.
     all_pivots: usize,
 }
@@ -212,7 +226,12 @@ impl<T: Scalar> Work<'_, T> {
         let height = map.rows - columns.start;
         let tile = &mut tile[..height * columns.len()];
         let product = MatMut::from_column_major_slice_mut(tile, height, columns.len());
-        multiply_tile(product, Accum::Replace, self.lower, columns.start);
+        multiply_tile(
+            product,
+            Accum::Replace,
+            (self.lower, self.signs),
+            columns.start,
+        );
         for child in self.contribution.children {
             child.add_lower(tile, height, columns);
         }
@@ -228,9 +247,13 @@ impl<T: Scalar> Work<'_, T> {
     }
 }
 
-/// A → L in the lower half of a square block; the number of a pivot that is not positive otherwise.
-fn factor_block<T: Scalar>(block: MatMut<'_, T>, large: bool) -> Result<(), usize> {
+/// A → L in the lower half of a square block, with pivots of both signs if `signed`; the number of a pivot that is zero, or not
+/// positive, otherwise.
+fn factor_block<T: Scalar>(block: MatMut<'_, T>, signed: bool, large: bool) -> Result<(), usize> {
     let pivots = block.nrows();
+    if signed && (!large || pivots <= STRIDE) {
+        return signs::factor_block(block);
+    }
     if !large || pivots <= STRIDE {
         let scratch = cholesky_in_place_scratch::<T>(pivots, Par::Seq, Spec::default());
         let result = cholesky_in_place(
@@ -246,18 +269,20 @@ fn factor_block<T: Scalar>(block: MatMut<'_, T>, large: bool) -> Result<(), usiz
     }
     let (left, right) = block.split_at_col_mut(STRIDE);
     let (mut first, mut below) = left.split_at_row_mut(STRIDE);
-    factor_block(first.as_mut(), false)?;
+    factor_block(first.as_mut(), signed, false)?;
     divide(first.as_ref(), below.as_mut(), large);
     let (_, mut rest) = right.split_at_row_mut(STRIDE);
-    multiply(rest.as_mut(), Accum::Add, below.as_ref(), large);
-    factor_block(rest, large).map_err(|pivot| pivot + STRIDE)
+    let signs = Signs::of_block(first.as_ref());
+    multiply(rest.as_mut(), Accum::Add, (below.as_ref(), &signs), large);
+    factor_block(rest, signed, large).map_err(|pivot| pivot + STRIDE)
 }
 
-/// A → L and L → L L₁⁻ᵀ, stride by stride.
+/// A → L and L → L L₁⁻ᵀ J, stride by stride.
 fn factor_strides<T: Scalar>(
     layout: Layout,
     pivots: &mut [T],
     mut lower: MatMut<'_, T>,
+    signed: bool,
 ) -> Result<(), usize> {
     let mut rest = pivots;
     let rows = lower.ncols();
@@ -266,22 +291,24 @@ fn factor_strides<T: Scalar>(
         let (own, later) = std::mem::take(&mut rest).split_at_mut(height * columns);
         let own = MatMut::from_column_major_slice_mut(own, height, columns);
         let (mut block, mut below) = own.split_at_row_mut(columns);
-        factor_block(block.as_mut(), false).map_err(|pivot| pivot + first)?;
+        factor_block(block.as_mut(), signed, false).map_err(|pivot| pivot + first)?;
         divide(block.as_ref(), below.as_mut(), true);
         let (_, right) = lower.as_mut().split_at_col_mut(first);
         let (mut panel, mut right) = right.split_at_col_mut(columns);
         divide(block.as_ref(), panel.as_mut(), true);
+        let signs = Signs::of_block(block.as_ref());
         let below = below.as_ref();
         // The strides that follow, and the panels below them.
         let next = first + columns;
-        subtract(layout, next..rows, later, below, next);
+        subtract(layout, next..rows, later, (below, &signs), next);
         by_columns(true, right.as_mut(), &|column, tile: MatMut<'_, T>| {
-            let across = below.subrows(column, tile.ncols()).transpose();
+            let mut copy = Vec::new();
+            let across = signs.times(below.subrows(column, tile.ncols()), &mut copy);
             matmul(
                 tile,
                 Accum::Add,
                 panel.as_ref(),
-                across,
+                across.transpose(),
                 -T::near(1.0),
                 Par::Seq,
             );
@@ -291,12 +318,12 @@ fn factor_strides<T: Scalar>(
     Ok(())
 }
 
-/// Takes L Lᵀ off the strides of some columns; L begins with row `first`.
+/// Takes L J Lᵀ off the strides of some columns; L begins with row `first`.
 fn subtract<T: Scalar>(
     layout: Layout,
     columns: Range<usize>,
     strides: &mut [T],
-    lower: MatRef<'_, T>,
+    (lower, signs): (MatRef<'_, T>, &Signs),
     first: usize,
 ) {
     let height = first + lower.nrows() - columns.start;
@@ -304,25 +331,37 @@ fn subtract<T: Scalar>(
         let middle = columns.start + columns.len().div_ceil(STRIDE) / 2 * STRIDE;
         let at = layout.offset(middle) - layout.offset(columns.start);
         let (left, right) = strides.split_at_mut(at);
+        let lower = (lower, signs);
         rayon::join(
             || subtract(layout, columns.start..middle, left, lower, first),
             || subtract(layout, middle..columns.end, right, lower, first),
         );
     } else if !columns.is_empty() {
         let tile = MatMut::from_column_major_slice_mut(strides, height, columns.len());
-        multiply_tile(tile, Accum::Add, lower, columns.start - first);
+        multiply_tile(tile, Accum::Add, (lower, signs), columns.start - first);
     }
 }
 
-/// L → L L₁⁻ᵀ.
+/// L → L L₁⁻ᵀ J.
 fn divide<T: Scalar>(factored: MatRef<'_, T>, lower: MatMut<'_, T>, large: bool) {
-    by_columns(large, lower.transpose_mut(), &|_, tile: MatMut<'_, T>| {
-        solve_lower_triangular_in_place(factored, tile, Par::Seq);
-    });
+    let signs = Signs::of_block(factored);
+    by_columns(
+        large,
+        lower.transpose_mut(),
+        &|_, mut tile: MatMut<'_, T>| {
+            solve_lower_triangular_in_place(factored, tile.as_mut(), Par::Seq);
+            signs.apply(tile);
+        },
+    );
 }
 
-/// The lower half of C, to which L Lᵀ is taken off or with whose negative it is replaced.
-fn multiply<T: Scalar>(target: MatMut<'_, T>, accum: Accum, lower: MatRef<'_, T>, large: bool) {
+/// The lower half of C, to which L J Lᵀ is taken off or with whose negative it is replaced.
+fn multiply<T: Scalar>(
+    target: MatMut<'_, T>,
+    accum: Accum,
+    lower: (MatRef<'_, T>, &Signs),
+    large: bool,
+) {
     let rows = target.nrows();
     by_columns(large, target, &|first, tile: MatMut<'_, T>| {
         multiply_tile(tile.subrows_mut(first, rows - first), accum, lower, first);
@@ -330,15 +369,22 @@ fn multiply<T: Scalar>(target: MatMut<'_, T>, accum: Accum, lower: MatRef<'_, T>
 }
 
 /// The same for some columns of C, given from the diagonal on.
-fn multiply_tile<T: Scalar>(tile: MatMut<'_, T>, accum: Accum, lower: MatRef<'_, T>, first: usize) {
+fn multiply_tile<T: Scalar>(
+    tile: MatMut<'_, T>,
+    accum: Accum,
+    (lower, signs): (MatRef<'_, T>, &Signs),
+    first: usize,
+) {
     let (rows, columns) = (lower.nrows(), tile.ncols());
-    let across = lower.subrows(first, columns).transpose();
+    let own = lower.subrows(first, columns);
+    let mut copy = Vec::new();
+    let across = signs.times(own, &mut copy).transpose();
     let (square, below) = tile.split_at_row_mut(columns);
     triangular::matmul(
         square,
         BlockStructure::TriangularLower,
         accum,
-        across.transpose(),
+        own,
         BlockStructure::Rectangular,
         across,
         BlockStructure::Rectangular,
@@ -366,6 +412,11 @@ impl<T: Scalar> Substitution<T> for CholeskyFactors {
         solve_lower(layout, pivots, false, y);
         product.fill(T::default());
         subtract_product(lower, y, product, large);
+        for (pivot, value) in y.iter_mut().enumerate() {
+            if signs::pivot(layout, pivots, pivot) < T::default() {
+                *value = -*value;
+            }
+        }
     }
 
     fn backward(factors: &[T], y: &mut [T], border: &[T], large: bool) {

@@ -178,7 +178,7 @@ impl Engine {
         (self.single).solve(plan, scale, system, solution, &demand)
     }
 
-    /// Factorises a symmetric positive definite matrix.
+    /// Factorises a symmetric matrix, positive definite, or quasi-definite with pore pressures among its unknowns.
     pub(crate) fn factor_cholesky(
         &mut self,
         matrix: &TangentMatrix,
@@ -240,7 +240,12 @@ impl Engine {
             Some(Factorisation::General(general)) => return general.solve(matrix, rhs, solution),
             Some(Factorisation::Cholesky | Factorisation::Lu) => {}
         }
-        match self.solve_own(matrix, rhs, solution) {
+        let mut found = self.solve_own(matrix, rhs, solution);
+        if self.has_signs() && matches!(found, Err(LinearSolverError::Inaccurate { .. })) {
+            self.factor_lu(matrix)?;
+            found = self.solve_own(matrix, rhs, solution);
+        }
+        match found {
             Err(cause) if self.blames_pivots(&cause) => self.fall_back(matrix, cause)?,
             other => return other,
         }
@@ -248,6 +253,13 @@ impl Engine {
             Some(Factorisation::General(general)) => general.solve(matrix, rhs, solution),
             _ => Err(LinearSolverError::NotFactored),
         }
+    }
+
+    /// Whether the factors are symmetric with pivots of both signs, in an order that growth may make inaccurate.
+    fn has_signs(&self) -> bool {
+        let plan = self.plan.as_ref();
+        matches!(self.factored, Some(Factorisation::Cholesky))
+            && plan.is_some_and(|plan| plan.pattern.has_scalars())
     }
 
     /// Solves with the own factors.
@@ -258,6 +270,7 @@ impl Engine {
         solution: &mut [f64],
     ) -> Result<SolveReport, LinearSolverError> {
         let accuracy = self.wanted();
+        let has_signs = self.has_signs();
         let plan = self.plan.as_ref().ok_or(LinearSolverError::NotFactored)?;
         let (factors, scratch) = (&self.factors, &self.scratch);
         let (vectors, scale) = (&mut self.vectors, &self.scaling.scale[..]);
@@ -277,7 +290,8 @@ impl Engine {
         let refined = refined?;
         let (residual, refinements) = (refined.relative_residual, refined.refinements);
         if by_cholesky {
-            return Ok(SolveReport::new("multifrontal-llt", residual, refinements));
+            let name = ["multifrontal-llt", "multifrontal-ldlt"][usize::from(has_signs)];
+            return Ok(SolveReport::new(name, residual, refinements));
         }
         Ok(SolveReport {
             perturbed_pivots: factors.record.replaced,

@@ -85,7 +85,7 @@ impl Single {
             }
         };
         let method = Method {
-            by_gradients: system.matrix.symmetric,
+            by_gradients: system.matrix.symmetric && !system.matrix.pattern.has_scalars(),
             names: NAMES,
         };
         let report = preconditioned.solve(system, solution, demand, method, &mut apply);

@@ -13,8 +13,8 @@ use crate::{Pattern, TangentMatrix};
 #[derive(Default)]
 pub struct MultifrontalLu(Engine);
 
-/// Multifrontal Cholesky factorisation for symmetric positive definite matrices; reads one entry of
-/// each symmetric pair only.
+/// Multifrontal Cholesky factorisation for symmetric positive definite matrices, and for quasi-definite ones with scalars; reads one
+/// entry of each symmetric pair only.
 #[derive(Default)]
 pub struct MultifrontalCholesky(Engine);
 

@@ -3,42 +3,74 @@
 use std::sync::Arc;
 
 use super::super::{LinearSolverError, SolveReport, check};
-use super::boundary_nodes::BoundaryNodes;
-use super::hierarchy::{self, Preconditioner};
+use super::coupled::Coupled;
+use super::cycle::Cycle;
 use crate::krylov::preconditioned::{Demand, LinearSystem, Method, Preconditioned};
 use crate::{Pattern, TangentMatrix};
 
-/// Names of the methods.
+/// Names of the methods: of soil, and of soil and water.
 const NAMES: [&str; 2] = ["multigrid-cg", "multigrid-gmres"];
+const COUPLED_NAMES: [&str; 2] = ["coupled-multigrid-gmres"; 2];
 
 /// Grids and values of the matrix at hand.
 #[derive(Default)]
 pub(crate) struct Iteration {
     pattern: Option<Arc<Pattern>>,
-    grids: Option<Box<dyn Preconditioner>>,
-    skin: BoundaryNodes,
-    /// The residual after the skin was solved for.
-    rest: Vec<f64>,
+    blocks: Option<Blocks>,
     preconditioned: Preconditioned,
+}
+
+/// What a matrix is made of.
+enum Blocks {
+    Soil(Box<Cycle>),
+    SoilAndWater(Box<Coupled>),
+}
+
+impl Blocks {
+    fn new(pattern: &Arc<Pattern>) -> Result<Self, LinearSolverError> {
+        Ok(if pattern.has_scalars() {
+            Self::SoilAndWater(Box::new(Coupled::new(pattern)?))
+        } else {
+            Self::Soil(Box::new(Cycle::new(pattern)?))
+        })
+    }
+
+    fn levels(&self) -> usize {
+        match self {
+            Self::Soil(cycle) => cycle.levels(),
+            Self::SoilAndWater(coupled) => coupled.levels(),
+        }
+    }
+
+    fn unknowns(&self) -> usize {
+        match self {
+            Self::Soil(cycle) => cycle.unknowns(),
+            Self::SoilAndWater(coupled) => coupled.unknowns(),
+        }
+    }
 }
 
 impl Iteration {
     /// Makes the grids of a pattern, unless they are there. Whether there is more than one.
     pub(crate) fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<bool, LinearSolverError> {
         if !check::same_pattern(self.pattern.as_ref(), pattern) {
-            self.grids = None;
-            self.grids = Some(hierarchy::new(pattern)?);
+            self.blocks = None;
+            self.blocks = Some(Blocks::new(pattern)?);
             self.pattern = Some(Arc::clone(pattern));
         }
-        Ok(self.grids.as_ref().is_some_and(|grids| grids.levels() > 1))
+        Ok(self
+            .blocks
+            .as_ref()
+            .is_some_and(|blocks| blocks.levels() > 1))
     }
 
     /// Takes over the values of a matrix whose pattern was analysed.
     pub(crate) fn set(&mut self, matrix: &TangentMatrix, diagonal: &[f64]) {
-        if let Some(grids) = &mut self.grids {
-            grids.set(matrix, diagonal);
+        match &mut self.blocks {
+            None => {}
+            Some(Blocks::Soil(cycle)) => cycle.set(matrix, diagonal),
+            Some(Blocks::SoilAndWater(coupled)) => coupled.set(matrix),
         }
-        self.skin.set(matrix, diagonal);
     }
 
     /// Solves K x = b.
@@ -49,36 +81,23 @@ impl Iteration {
         solution: &mut [f64],
         demand: &Demand,
     ) -> Result<SolveReport, LinearSolverError> {
-        let Self {
-            grids: Some(grids),
-            skin,
-            rest,
-            preconditioned,
-            ..
-        } = self
-        else {
+        let Some(blocks) = &mut self.blocks else {
             return Err(LinearSolverError::NotFactored);
         };
-        check::length("the matrix", matrix.pattern.unknowns(), grids.unknowns())?;
-        let method = Method {
-            by_gradients: matrix.symmetric && !skin.is_indefinite,
-            names: NAMES,
+        check::length("the matrix", matrix.pattern.unknowns(), blocks.unknowns())?;
+        let (by_gradients, names) = match blocks {
+            Blocks::Soil(cycle) => (matrix.symmetric && !cycle.is_indefinite(), NAMES),
+            Blocks::SoilAndWater(_) => (false, COUPLED_NAMES),
         };
-        let mut apply = |r: &[f64], z: &mut [f64]| {
-            if !skin.is_there() {
-                grids.apply(r, z);
-                return;
-            }
-            rest.clear();
-            rest.extend_from_slice(r);
-            skin.before(matrix, rest);
-            grids.apply(rest, z);
-            skin.add(matrix, z);
-            if matrix.symmetric {
-                skin.after(matrix, r, z);
-            }
+        let method = Method {
+            by_gradients,
+            names,
+        };
+        let mut apply = |r: &[f64], z: &mut [f64]| match blocks {
+            Blocks::Soil(cycle) => cycle.apply(matrix, r, z),
+            Blocks::SoilAndWater(coupled) => coupled.apply(r, z),
         };
         let system = LinearSystem { matrix, rhs };
-        preconditioned.solve(system, solution, demand, method, &mut apply)
+        (self.preconditioned).solve(system, solution, demand, method, &mut apply)
     }
 }

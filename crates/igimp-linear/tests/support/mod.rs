@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use igimp_linear::{CompressedColumns, NodeBlock, Pattern, TangentMatrix};
+use igimp_linear::{CompressedColumns, NodeBlock, Pattern, SCALAR, TangentMatrix};
 
 /// Random numbers (Vigna's splitmix64), the same in every run.
 pub(crate) struct Random(pub(crate) u64);
@@ -39,6 +39,8 @@ pub(crate) struct Body {
     pub(crate) unsymmetric: f64,
     /// Whether only the part below the diagonal x + y of the box is filled.
     pub(crate) slope: bool,
+    /// Whether a node has a pore pressure too: the matrix is quasi-definite then.
+    pub(crate) pressure: bool,
     pub(crate) seed: u64,
 }
 
@@ -50,6 +52,7 @@ impl Body {
             particles: 3,
             unsymmetric: 0.0,
             slope: false,
+            pressure: false,
             seed: 7,
         }
     }
@@ -84,6 +87,13 @@ impl Body {
         }
     }
 
+    pub(crate) fn pressure(self) -> Self {
+        Self {
+            pressure: true,
+            ..self
+        }
+    }
+
     pub(crate) fn seed(self, seed: u64) -> Self {
         Self { seed, ..self }
     }
@@ -104,11 +114,13 @@ impl Body {
         let mut unknowns = 0;
         for (&node, slot) in &mut first {
             let place = self.place(node);
-            let len = if place[0] == 0 { 1 } else { self.dofs };
+            let moves = if place[0] == 0 { 1 } else { self.dofs };
+            let scalar = if self.pressure { SCALAR } else { 0 };
+            let len = moves + usize::from(self.pressure);
             blocks.push(NodeBlock {
                 first: unknowns,
                 len,
-                free: (1 << len) - 1,
+                free: ((1 << moves) - 1) | scalar,
                 place,
             });
             *slot = (unknowns, len);
@@ -138,6 +150,15 @@ impl Body {
             }
             for &unknown in &touched {
                 *couplings.entry((unknown, unknown)).or_default() += 0.05;
+            }
+        }
+        if self.pressure {
+            let pressures: BTreeSet<usize> =
+                blocks.iter().map(|own| own.first + own.len - 1).collect();
+            for ((column, row), value) in &mut couplings {
+                if pressures.contains(column) && pressures.contains(row) {
+                    *value = -*value;
+                }
             }
         }
         assemble(&couplings, unknowns, blocks, self.unsymmetric == 0.0)

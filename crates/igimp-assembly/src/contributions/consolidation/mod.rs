@@ -8,6 +8,7 @@
 mod faces;
 
 use igimp_shape::{Grid, Support, cell_parts};
+use rayon::prelude::*;
 
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
@@ -28,6 +29,9 @@ const OPEN: f64 = 1e3;
 
 /// The share of effective stress below which excess pore pressure needs no digits \[-\].
 const STRESS_SHARE: f64 = 0.05;
+
+/// Particles, neighbours as a rule, whose couplings are summed by one thread: the order of the sums does not depend on threads.
+const TOGETHER: usize = 256;
 
 /// Marks a node of the grid without a pressure, and a particle that water does not flow through.
 const NONE: u32 = u32::MAX;
@@ -66,6 +70,15 @@ struct Move {
     all: f64,
     /// What flows, and leaves at openings.
     flow: f64,
+}
+
+/// What some particles add to the forces of pressures and to their derivative.
+struct Pushes<const D: usize> {
+    /// By how much each particle grows \[length^D\].
+    grows: Vec<f64>,
+    /// The first pair of a pressure and a node that they touch, and by pair the force at the node that a unit of the pressure is.
+    first: usize,
+    coupling: Vec<[f64; D]>,
 }
 
 /// The soil of a pressure: sums over particles.
@@ -523,6 +536,43 @@ impl<const D: usize> Consolidation<D> {
         Some(moved)
     }
 
+    /// What a part of the particles adds at nodal values `u`; of the derivative if asked for.
+    fn pushes(&self, part: usize, u: &[[f64; D]], with_coupling: bool) -> Pushes<D> {
+        let first = part * TOGETHER;
+        let particles = first..self.seeping.len().min(first + TOGETHER);
+        let pairs = self.pairs_of[particles.clone()].iter().flatten();
+        let ends = pairs.fold([u32::MAX, 0], |[least, most], &pair| {
+            [least.min(pair), most.max(pair + 1)]
+        });
+        let touched = ends[1].saturating_sub(ends[0]) as usize;
+        let mut pushes = Pushes {
+            grows: Vec::with_capacity(particles.len()),
+            first: ends[0] as usize,
+            coupling: vec![[0.0; D]; if with_coupling { touched } else { 0 }],
+        };
+        for place in particles {
+            let (seeping, couples) = (&self.seeping[place], &self.couples[place]);
+            let (grows, volume, push) = self.stretched(seeping, couples, u);
+            pushes.grows.push(grows);
+            if !with_coupling {
+                continue;
+            }
+            let supports = self.supports_of(seeping);
+            let mut pairs = self.pairs_of[place].iter();
+            for (_, slope) in couples {
+                let slope = transpose_apply(&push, slope);
+                for (own, &pair) in supports.iter().zip(&mut pairs) {
+                    let share = -self.scale * volume * own.mean;
+                    let sum = &mut pushes.coupling[(pair - ends[0]) as usize];
+                    for a in 0..D {
+                        sum[a] += share * slope[a];
+                    }
+                }
+            }
+        }
+        pushes
+    }
+
     /// By how much nodal displacements `u` change the volume of a particle, and its volume then, with the gradient that pushes
     /// forward.
     #[inline]
@@ -576,26 +626,22 @@ impl<const D: usize> NodalForces<D> for Consolidation<D> {
             }
             f[self.first + row][0] -= scale * water;
         }
+        let parts = self.seeping.len().div_ceil(TOGETHER);
+        let with_coupling = blocks.is_some();
+        let parts: Vec<Pushes<D>> = (0..parts)
+            .into_par_iter()
+            .map(|part| self.pushes(part, u, with_coupling))
+            .collect();
         let mut coupling = vec![[0.0; D]; if blocks.is_some() { self.acts.len() } else { 0 }];
-        let particles = self.seeping.iter().zip(&self.couples).zip(&self.pairs_of);
-        for ((seeping, couples), pairs) in particles {
-            let (grows, volume, push) = self.stretched(seeping, couples, u);
-            let supports = self.supports_of(seeping);
-            for own in supports {
-                f[self.first + own.place as usize][0] -= scale * own.mean * grows;
+        for (seeping, part) in self.seeping.chunks(TOGETHER).zip(&parts) {
+            for (seeping, grows) in seeping.iter().zip(&part.grows) {
+                for own in self.supports_of(seeping) {
+                    f[self.first + own.place as usize][0] -= scale * own.mean * grows;
+                }
             }
-            if blocks.is_none() {
-                continue;
-            }
-            let mut pairs = pairs.iter();
-            for (_, slope) in couples {
-                let slope = transpose_apply(&push, slope);
-                for (own, &pair) in supports.iter().zip(&mut pairs) {
-                    let share = -scale * volume * own.mean;
-                    let sum = &mut coupling[pair as usize];
-                    for a in 0..D {
-                        sum[a] += share * slope[a];
-                    }
+            for (sum, own) in coupling.iter_mut().skip(part.first).zip(&part.coupling) {
+                for (sum, own) in sum.iter_mut().zip(own) {
+                    *sum += own;
                 }
             }
         }
