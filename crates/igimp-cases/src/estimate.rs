@@ -17,7 +17,8 @@ pub mod time;
 pub mod watch;
 
 use igimp_geometry::seed::fill;
-use igimp_model::{Case, LoadKind, ReductionPath, Side, StageKind, meshes};
+use igimp_linear::SCALAR;
+use igimp_model::{Case, Drainage, LoadKind, ReductionPath, Side, StageKind, meshes};
 use igimp_results::summary::Expected;
 use igimp_shape::{Scratch, supports};
 
@@ -78,10 +79,14 @@ pub struct Estimate {
 pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, CaseError> {
     let grid = case.grid.grid()?;
     let mut active = vec![false; grid.node_count()];
+    let mut pressed = vec![false; grid.node_count()];
+    let consolidates = case.stages.iter().any(|own| own.consolidation.is_some());
     let (mut scratch, mut list) = (Scratch::default(), Vec::new());
     let mut by_body = Vec::new();
     let mut couplings = (D == 3).then(|| Couplings::new(&grid));
     for body in &case.bodies {
+        let drainage = &case.materials[body.material].drainage;
+        let flows = consolidates && matches!(drainage, Drainage::Undrained { flows: true, .. });
         let seeds = fill(&grid, &*body.region, body.per_direction, 1.0, 0)?;
         for seed in &seeds {
             let basis = &*case.method.basis;
@@ -95,6 +100,7 @@ pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, CaseError> {
             )?;
             for support in &list {
                 active[support.node] = true;
+                pressed[support.node] |= flows;
             }
             if let Some(couplings) = &mut couplings {
                 couplings.add(&seed.x, &seed.half_length);
@@ -112,8 +118,9 @@ pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, CaseError> {
     let particles = stages.fold(count(&at_start), usize::max);
     let free: Vec<u8> = std::iter::zip(0.., &active)
         .map(|(node, &active)| {
+            let scalar = if pressed[node] { SCALAR } else { 0 };
             if active {
-                free(case, grid.node_position(node))
+                free(case, grid.node_position(node)) | scalar
             } else {
                 0
             }

@@ -130,12 +130,10 @@ impl Systems {
     }
 }
 
-/// Whether all tangents of a case are symmetric, and definite: pressures are not among their unknowns.
+/// Whether all tangents of a case are symmetric.
 fn is_symmetric<const D: usize>(case: &Case<D>) -> bool {
-    let consolidates = case.stages.iter().any(|own| own.consolidation.is_some());
-    !consolidates
-        && (case.materials.iter())
-            .all(|material| material.law().is_ok_and(|law| law.has_symmetric_tangent()))
+    (case.materials.iter())
+        .all(|material| material.law().is_ok_and(|law| law.has_symmetric_tangent()))
 }
 
 /// A method by its name.

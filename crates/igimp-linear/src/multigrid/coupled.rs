@@ -11,6 +11,9 @@ use std::sync::Arc;
 use super::cycle::Cycle;
 use crate::{LinearSolverError, NodeBlock, Pattern, SCALAR, TangentMatrix};
 
+/// Weight of the diagonal of Bᵀ D⁻¹ B \[-\]. A choice: 10 to 13 iterations to a residual of 1e-4 where 1 takes 13 to 20.
+const GIVES: f64 = 4.0;
+
 /// Soil and water of a matrix with scalars.
 pub(super) struct Coupled {
     soil: Part,
@@ -189,7 +192,7 @@ impl Coupled {
         let stiffness = self.soil.diagonal();
         for own in &mut self.couplings {
             own.value = matrix.values[own.entry as usize];
-            let gives = own.value * own.value / stiffness[own.displacement as usize].abs();
+            let gives = GIVES * own.value * own.value / stiffness[own.displacement as usize].abs();
             if gives.is_finite() {
                 let place = self.water.on_diagonal[own.pressure as usize];
                 self.water.matrix.values[place as usize] += gives;

@@ -10,7 +10,7 @@ use crate::{Pattern, TangentMatrix};
 
 /// Names of the methods: of soil, and of soil and water.
 const NAMES: [&str; 2] = ["multigrid-cg", "multigrid-gmres"];
-const COUPLED_NAMES: [&str; 2] = ["coupled-multigrid-gmres"; 2];
+const COUPLED_NAMES: [&str; 2] = ["multigrid-coupled-gmres"; 2];
 
 /// Grids and values of the matrix at hand.
 #[derive(Default)]

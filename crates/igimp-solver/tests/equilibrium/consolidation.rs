@@ -406,7 +406,7 @@ fn block(cells: [usize; 2], beyond: usize, height: f64) -> (Body<2>, Grid<2>, Co
 }
 
 /// A step of soil with mobility 1, from the duration and that of the step before.
-fn flow<const D: usize>(
+pub(crate) fn flow<const D: usize>(
     conditions: StepConditions<D>,
     [duration, before]: [f64; 2],
     stiffness: f64,
