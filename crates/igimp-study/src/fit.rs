@@ -17,7 +17,7 @@ use igimp_results::tables::rows::RowWriter;
 use thiserror::Error;
 
 use crate::element::{Measure, Request, TestError, Tested, test};
-use parameter::Parameter;
+use parameter::{Parameter, START};
 pub use parameter::{ParameterError, Vary};
 use problem::{Lost, Problem, Solved};
 pub use statistics::Known;
@@ -175,7 +175,7 @@ pub fn fit(source: &dyn Source, request: &FitRequest) -> Result<Fitted, FitError
             parameters: parameters.len(),
         });
     }
-    let start: Vec<f64> = parameters.iter().map(Parameter::start).collect();
+    let start = vec![START; parameters.len()];
     problem.residuals(&start)?;
     let values = |at: &[f64]| -> Vec<f64> {
         (parameters.iter().zip(at))
@@ -189,7 +189,7 @@ pub fn fit(source: &dyn Source, request: &FitRequest) -> Result<Fitted, FitError
             .collect::<Vec<_>>()
             .join(", "),
     };
-    let solved = problem.solved(start.clone());
+    let solved = problem.solved(start);
     let Solved { at, why, effort } = solved;
     if let Some(why) = why {
         return Err(not_converged(&at, &why));

@@ -115,6 +115,9 @@ impl std::str::FromStr for Vary {
     }
 }
 
+/// Where the search of every parameter begins.
+pub(super) const START: f64 = 1.0;
+
 /// How a parameter is scaled in the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Scale {
@@ -165,17 +168,11 @@ impl Parameter {
         })
     }
 
-    /// Where the search begins; values are of order one in it.
-    #[allow(clippy::unused_self)]
-    pub(super) fn start(&self) -> f64 {
-        1.0
-    }
-
     /// The value of a place in the search.
     pub(super) fn value(&self, x: f64) -> f64 {
         match self.scale {
-            Scale::Logarithm => self.first * (x - 1.0).exp(),
-            Scale::Width(width) => self.first + (x - 1.0) * width,
+            Scale::Logarithm => self.first * (x - START).exp(),
+            Scale::Width(width) => self.first + (x - START) * width,
         }
     }
 
@@ -190,8 +187,8 @@ impl Parameter {
     /// Bounds of the place.
     pub(super) fn limits(&self) -> Option<[f64; 2]> {
         let place = |value: f64| match self.scale {
-            Scale::Logarithm => 1.0 + (value / self.first).ln(),
-            Scale::Width(width) => 1.0 + (value - self.first) / width,
+            Scale::Logarithm => START + (value / self.first).ln(),
+            Scale::Width(width) => START + (value - self.first) / width,
         };
         self.bounds.map(|bounds| bounds.map(place))
     }

@@ -101,7 +101,7 @@ fn digits(value: f64, error: f64) -> String {
             .log10()
             .floor())
     .clamp(-size, 15.0 - size.max(0.0));
-    if places >= 0.0 && places <= 15.0 {
+    if (0.0..=15.0).contains(&places) {
         format!("{value:.*}", places as usize)
     } else {
         short(value)

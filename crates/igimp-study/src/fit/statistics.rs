@@ -189,7 +189,7 @@ fn within(t: f64, degrees: usize) -> f64 {
     let (sin, cos) = angle.sin_cos();
     let is_odd = degrees % 2 == 1;
     let (mut term, mut sum) = (if is_odd { cos } else { 1.0 }, 0.0);
-    let mut k = if is_odd { 1 } else { 0 };
+    let mut k = usize::from(is_odd);
     while k + 2 <= degrees {
         sum += term;
         k += 2;
