@@ -159,15 +159,7 @@ impl From<Lost> for FitError {
 /// # Errors
 /// [`FitError`]; a search that did not converge is one.
 pub fn fit(source: &dyn Source, request: &FitRequest) -> Result<Fitted, FitError> {
-    for (place, vary) in request.vary.iter().enumerate() {
-        if request.vary[..place].iter().any(|own| own.key == vary.key) {
-            let key = vary.key.clone();
-            return Err(ParameterError::Twice { key }.into());
-        }
-    }
-    let parameters = (request.vary.iter())
-        .map(|vary| Parameter::new(vary, source))
-        .collect::<Result<Vec<_>, _>>()?;
+    let parameters = parameters(&request.vary, source)?;
     let problem = Problem::new(source, &parameters, request);
     if problem.values() <= parameters.len() {
         return Err(FitError::TooFew {
@@ -233,6 +225,19 @@ pub fn fit(source: &dyn Source, request: &FitRequest) -> Result<Fitted, FitError
     };
     fitted.text = said::said(&material, &fitted, problem.values(), effort, has_kink);
     Ok(fitted)
+}
+
+/// The parameters of a request, each of which stands there once.
+fn parameters(vary: &[Vary], source: &dyn Source) -> Result<Vec<Parameter>, ParameterError> {
+    for (place, one) in vary.iter().enumerate() {
+        if vary[..place].iter().any(|own| own.key == one.key) {
+            let key = one.key.clone();
+            return Err(ParameterError::Twice { key });
+        }
+    }
+    (vary.iter())
+        .map(|vary| Parameter::new(vary, source))
+        .collect()
 }
 
 impl Fitted {

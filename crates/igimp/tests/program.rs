@@ -100,7 +100,16 @@ fn slips_on_the_command_line_are_bad_input() {
         &["fit", "a.toml", "--vary", "young=3", "--data", "a.csv"],
         &["fit", "a.toml", "--vary", "young", "--data", "none.csv"],
         &["element", "a.toml", "--data", "none.csv"],
-        &["fit", "a.toml", "--vary", "young", "--data", "a.csv", "--scatter", "q=2 m"],
+        &[
+            "fit",
+            "a.toml",
+            "--vary",
+            "young",
+            "--data",
+            "a.csv",
+            "--scatter",
+            "q=2 m",
+        ],
     ] {
         let output = folder.igimp(words);
         assert_eq!(code(&output), 2, "{words:?}: {}", stderr(&output));

@@ -61,16 +61,8 @@ pub(super) fn statistics(
     jacobian: &[Vec<f64>],
 ) -> Statistics {
     let rows = residuals.len();
-    let mut known = vec![Known::NotDetermined { with: Vec::new() }; at.len()];
-    let mut free = Vec::new();
     let norms: Vec<f64> = jacobian.iter().map(|column| norm(column)).collect();
-    for (place, own) in parameters.iter().enumerate() {
-        if let Some(upper) = bound(own, at[place]) {
-            known[place] = Known::AtBound { upper };
-        } else if norms[place] > UNTOUCHED * (rows as f64).sqrt() {
-            free.push(place);
-        }
-    }
+    let (known, free) = held(parameters, at, &norms, rows);
     let mut statistics = Statistics {
         known,
         correlated: Vec::new(),
@@ -131,6 +123,25 @@ pub(super) fn statistics(
     }
     statistics.correlated = correlated(&statistics.known, &free, &covariance);
     statistics
+}
+
+/// What is known before any inverse: parameters at bounds, and those that no residual depends on; and the places of the others.
+fn held(
+    parameters: &[Parameter],
+    at: &[f64],
+    norms: &[f64],
+    rows: usize,
+) -> (Vec<Known>, Vec<usize>) {
+    let mut known = vec![Known::NotDetermined { with: Vec::new() }; at.len()];
+    let mut free = Vec::new();
+    for (place, own) in parameters.iter().enumerate() {
+        if let Some(upper) = bound(own, at[place]) {
+            known[place] = Known::AtBound { upper };
+        } else if norms[place] > UNTOUCHED * (rows as f64).sqrt() {
+            free.push(place);
+        }
+    }
+    (known, free)
 }
 
 /// Pairs of parameters that are known, and not apart.
