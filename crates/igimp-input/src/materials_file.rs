@@ -8,6 +8,7 @@ use igimp_schema::diagnostic::Problems;
 use igimp_schema::overrides::apply;
 use igimp_schema::source::Source;
 use igimp_schema::syntax::parse;
+use igimp_schema::tree::Node;
 
 use crate::build::materials_alone;
 use crate::read::{CaseFile, InputError, invalid, text_of};
@@ -19,6 +20,10 @@ pub struct MaterialsFile {
     pub materials: Vec<Material>,
     /// Warnings, ready to print; empty when there are none.
     pub warnings: String,
+    /// What is written in the file, with the overrides.
+    tree: Node,
+    /// Name and text of the file, and the overrides.
+    origin: (String, String, Vec<String>),
 }
 
 /// Keys of a case: a file with one of them is read as a whole.
@@ -44,27 +49,52 @@ impl MaterialsFile {
         if problems.errors() > 0 {
             return Err(invalid(&problems, &sources));
         }
-        if OF_CASES.iter().any(|key| tree.get(key).is_some()) {
-            let file = CaseFile::parse(name, text, overrides)?;
-            return Ok(Self {
-                materials: file.any_case().materials().to_vec(),
-                warnings: file.warnings(),
-            });
-        }
+        let origin = (name.to_owned(), text.to_owned(), overrides.to_vec());
+        let is_case = OF_CASES.iter().any(|key| tree.get(key).is_some());
         for text in overrides {
             sources.push(Source::new("command line", text, true));
         }
         for index in 1..sources.len() {
             apply(&mut tree, &sources, index, &mut problems);
         }
+        if is_case {
+            let file = CaseFile::parse(name, text, overrides)?;
+            return Ok(Self {
+                materials: file.any_case().materials().to_vec(),
+                warnings: file.warnings(),
+                tree,
+                origin,
+            });
+        }
         let mut completed = complete_materials(&tree, &sources, &mut problems);
         match materials_alone(&mut completed, &mut problems) {
             Some(materials) if problems.errors() == 0 => Ok(Self {
                 materials,
                 warnings: problems.render(&sources),
+                tree,
+                origin,
             }),
             _ => Err(invalid(&problems, &sources)),
         }
+    }
+
+    /// The same file with more overrides.
+    ///
+    /// # Errors
+    /// [`InputError::Invalid`].
+    pub fn with(&self, more: Vec<String>) -> Result<Self, InputError> {
+        let (name, text, overrides) = &self.origin;
+        let overrides: Vec<String> = overrides.iter().cloned().chain(more).collect();
+        Self::parse(name, text, &overrides)
+    }
+
+    /// What is written of a key of a material, such as `softening.cu.residual`: a quantity as text, or a number. Nothing of tables and
+    /// lists, and of keys that are left out.
+    pub fn written(&self, material: &str, key: &str) -> Option<String> {
+        let own = self.tree.get("materials")?.get(material)?;
+        let node = key.split('.').try_fold(own, |table, key| table.get(key))?;
+        let number = || node.number().map(|number| number.to_string());
+        node.text().map(str::to_owned).or_else(number)
     }
 }
 

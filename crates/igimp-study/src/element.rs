@@ -1,8 +1,12 @@
 //! A law on its own: the test, its table, its pictures, and what is said of it.
 
 mod closed_form;
+mod compared;
+mod data;
+mod measure;
 mod path_file;
 mod pictures;
+mod stations;
 mod table;
 
 use std::fmt::Write as _;
@@ -16,8 +20,12 @@ use igimp_solver::element::{ElementError, ElementPath, ElementRun, ElementState,
 use igimp_text::short;
 use thiserror::Error;
 
+pub use compared::{Compared, Off};
+pub use data::{Data, DataError, Row, read_data};
 pub use igimp_solver::element::{Kinematics, StandardTest};
+pub use measure::Measure;
 pub use path_file::{PathFileError, read_path};
+use stations::Stations;
 pub use table::{name_of, of_name};
 
 /// What is driven.
@@ -40,6 +48,8 @@ pub struct Request {
     pub steps: usize,
     /// How strain is measured.
     pub kinematics: Kinematics,
+    /// Data of the laboratory, laid over it.
+    pub data: Option<Data>,
 }
 
 /// A test that was made.
@@ -51,6 +61,8 @@ pub struct Tested {
     pub table: Table,
     /// What is said of it, lines ready to print.
     pub text: String,
+    /// The data beside it.
+    pub compared: Option<Compared>,
     drive: Drive,
     title: String,
 }
@@ -64,6 +76,9 @@ pub enum TestError {
     /// The test cannot begin.
     #[error(transparent)]
     Element(#[from] ElementError),
+    /// The data are none of the test.
+    #[error(transparent)]
+    Data(#[from] DataError),
 }
 
 /// Drives a material; where its strength varies, the greatest counts.
@@ -72,43 +87,91 @@ pub enum TestError {
 /// [`TestError`]. A test that ends early is a result, and the text says where.
 pub fn test(material: &Material, request: &Request) -> Result<Tested, TestError> {
     let law = material.law()?;
-    let [axial, side] = request.stress;
-    let path = match &request.drive {
-        Drive::Standard(standard, strain) => standard.path(*strain),
-        Drive::Path(path) => path.clone(),
-    };
-    let test = ElementTest {
-        sigma: [-side, -axial, -side],
-        path,
-        steps: request.steps,
-        kinematics: request.kinematics,
-    };
-    let run = test.run(&*law)?;
+    let driven = driven(&*law, request)?;
+    let Driven {
+        run,
+        ways,
+        compared,
+    } = driven;
     let what = match &request.drive {
         Drive::Standard(standard, _) => name_of(*standard).replace('-', " "),
         Drive::Path(_) => "path".to_owned(),
     };
     let title = format!("{}: {}, {what}", material.name, material.strength.name());
+    let mut text = said(material, &*law, request, &run, &title);
+    if let Some(own) = &compared {
+        text.push_str(&own.said());
+    }
     Ok(Tested {
-        table: table::table(&run.states, &request.drive, law.internal_variables()),
-        text: said(material, &*law, request, &run, &title),
+        table: table::table(
+            (&run.states, &ways),
+            &request.drive,
+            law.internal_variables(),
+        ),
+        text,
         run,
+        compared,
         drive: request.drive.clone(),
         title,
     })
 }
 
+/// A law that was driven, with the ways of its states.
+pub(crate) struct Driven {
+    pub(crate) run: ElementRun,
+    ways: Vec<f64>,
+    pub(crate) compared: Option<Compared>,
+}
+
+/// Drives a law, with a stop at each measurement.
+pub(crate) fn driven(law: &dyn ConstitutiveModel, request: &Request) -> Result<Driven, TestError> {
+    let [axial, side] = request.stress;
+    let sigma = [-side, -axial, -side];
+    let path = match &request.drive {
+        Drive::Standard(standard, strain) => standard.path(*strain),
+        Drive::Path(path) => path.clone(),
+    };
+    let stops = match &request.data {
+        Some(data) => data.ways(&request.drive)?,
+        None => Vec::new(),
+    };
+    let stations = Stations::new(path, &sigma, request.steps, &stops);
+    let test = ElementTest {
+        sigma,
+        path: stations.path.clone(),
+        steps: stations.steps,
+        kinematics: request.kinematics,
+    };
+    let mut run = test.run(law)?;
+    run.failure = run.failure.map(|lost| stations.on_path(lost));
+    let compared = request.data.as_ref().map(|data| {
+        let states: Vec<_> = (stops.iter())
+            .map(|way| run.states.get(stations.state_at(*way)))
+            .collect();
+        Compared::new(data.clone(), &states, &run.states[0], &request.drive)
+    });
+    Ok(Driven {
+        run,
+        ways: stations.ways,
+        compared,
+    })
+}
+
 impl Tested {
-    /// Writes `element.csv` and the pictures into a folder that exists; their names.
+    /// Writes `element.csv`, `data.csv` where there are data, and the pictures into a folder that exists; their names.
     ///
     /// # Errors
     /// [`ReportError`] of what cannot be written.
     pub fn write(&self, folder: &Path) -> Result<Vec<String>, ReportError> {
         self.table.write_csv(folder)?;
         let mut names = vec!["element.csv".to_owned()];
-        for (name, plot) in pictures::plots(&self.run.states, &self.drive, &self.title) {
-            let path = folder.join(name);
-            plot.write(&path)?;
+        if let Some(compared) = &self.compared {
+            compared.table(&self.drive).write_csv(folder)?;
+            names.push("data.csv".to_owned());
+        }
+        let compared = self.compared.as_ref();
+        for (name, plot) in pictures::plots(&self.run.states, &self.drive, &self.title, compared) {
+            plot.write(&folder.join(&name))?;
             names.extend(["svg", "png"].map(|kind| format!("{name}.{kind}")));
         }
         Ok(names)
@@ -170,7 +233,9 @@ fn values(
     };
     let peak = largest(states, measure);
     let end = states.last().unwrap_or(peak);
-    let percent = |state: &ElementState| short(100.0 * table::driven_strain(state, &request.drive));
+    let strain = table::abscissa(&request.drive);
+    let percent =
+        |state: &ElementState| short(100.0 * strain.of(state, &states[0], &request.drive));
     let _ = writeln!(
         text,
         "  largest {symbol} {} kPa at {} % of {}",
@@ -246,6 +311,7 @@ mod tests {
                         stress: [100e3, 80e3],
                         steps: 300,
                         kinematics,
+                        data: None,
                     };
                     let tested = test(material, &request).unwrap();
                     assert!(tested.run.failure.is_none(), "{}", tested.text);

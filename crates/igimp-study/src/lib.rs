@@ -4,9 +4,11 @@
 //! |---|---|
 //! | [`sweep`] | many cases that differ in a few values |
 //! | [`element`] | a law on its own: test, table, pictures |
+//! | [`fit`] | parameters of a law from data of the laboratory |
 //! | [`narration`] | what is said of a case and of its run, as text |
 
 pub mod element;
+pub mod fit;
 pub mod narration;
 pub mod sweep;
 

@@ -6,7 +6,8 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use igimp_schema::quantity::{Dimension, Quantity};
-use igimp_study::element::{StandardTest, name_of};
+use igimp_study::element::{Measure, StandardTest, name_of};
+use igimp_study::fit::Vary;
 use igimp_text::{MemoryLimit, NoAmount};
 
 const EXIT_CODES: &str = "Exit codes: 0 done, references met; 1 a reference missed; 2 bad input; \
@@ -37,6 +38,8 @@ pub(crate) enum Command {
     Report(Report),
     /// Test the law of a material on its own, as in the laboratory.
     Element(ElementArguments),
+    /// Find parameters of a material from data of the laboratory, and how well each is known.
+    Fit(FitArguments),
     /// Look at a results folder in the browser.
     View(View),
     /// Make a film of the frames of a results folder.
@@ -183,10 +186,52 @@ pub(crate) struct ElementArguments {
     /// Linear strain and stress per initial area, in place of natural strain and Cauchy stress.
     #[arg(long)]
     pub(crate) small_strain: bool,
+    /// Data of the laboratory, drawn over the curves: a CSV file with the columns of element.csv that were measured.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) data: Option<PathBuf>,
     /// Replace a value of the file, as in materials.clay.cohesion="12 kPa" (may be repeated).
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
     /// Folder of the table and the pictures; results/element-MATERIAL-TEST when not given.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FitArguments {
+    /// Case file, or a file with `igimp = 1` and materials alone; its values are where the search begins.
+    pub(crate) file: PathBuf,
+    /// The material; needed where the file has several.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) material: Option<String>,
+    /// A parameter to find, a key of the material such as friction, or with bounds "friction=20 deg..40 deg" (may be repeated).
+    #[arg(long, value_name = "KEY", required = true)]
+    pub(crate) vary: Vec<Vary>,
+    /// Data of a test: a CSV file with the columns of element.csv that were measured (repeated for several tests).
+    #[arg(long, value_name = "FILE", required = true)]
+    pub(crate) data: Vec<PathBuf>,
+    /// The test of the data, or the CSV file of a path; once, or once for each data in their order.
+    #[arg(long, value_name = "TEST", default_value = "triaxial-drained")]
+    pub(crate) test: Vec<String>,
+    /// Initial axial stress, effective, compression positive; once, or once for each data.
+    #[arg(long, value_name = "STRESS", default_value = "100 kPa", value_parser = a_stress)]
+    pub(crate) stress: Vec<f64>,
+    /// Initial stress at the sides, effective; the axial one when not given; once, or once for each data.
+    #[arg(long, value_name = "STRESS", value_parser = a_stress)]
+    pub(crate) side_stress: Vec<f64>,
+    /// Standard deviation of what is measured, as in "q=2 kPa" (may be repeated); without it the same share of the largest value.
+    #[arg(long, value_name = "QUANTITY=VALUE", value_parser = a_scatter)]
+    pub(crate) scatter: Vec<(Measure, f64)>,
+    /// Steps of a test, or of a leg of a path; there is a stop at every measurement besides.
+    #[arg(long, value_name = "N", default_value = "200", value_parser = at_least_one)]
+    pub(crate) steps: usize,
+    /// Linear strain and stress per initial area, in place of natural strain and Cauchy stress.
+    #[arg(long)]
+    pub(crate) small_strain: bool,
+    /// Replace a value of the file, as in materials.clay.cohesion="12 kPa" (may be repeated).
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Folder of tables and pictures; results/fit-MATERIAL when not given.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 }
@@ -310,6 +355,17 @@ fn a_test() -> PossibleValuesParser {
 fn a_stress(text: &str) -> Result<f64, String> {
     Quantity::parse_as(text, Dimension::Stress)
         .map_err(|error| format!("{error}; {}", error.help(Some(Dimension::Stress))))
+}
+
+fn a_scatter(text: &str) -> Result<(Measure, f64), String> {
+    let form = || "expected a quantity and a positive value such as \"q=2 kPa\"".to_owned();
+    let (name, value) = text.split_once('=').ok_or_else(form)?;
+    let measure = Measure::of_name(name.trim()).ok_or_else(|| {
+        let names = Measure::ALL.map(Measure::name).join(", ");
+        format!("quantities are {names}")
+    })?;
+    let value = measure.value(value).filter(|value| *value > 0.0);
+    Ok((measure, value.ok_or_else(form)?))
 }
 
 fn a_percentage(text: &str) -> Result<f64, String> {

@@ -55,6 +55,7 @@ fn dispatch(command: &Command, given: Option<&GivenSolver>) -> Result<Exit, Prog
         Command::Run(arguments) => commands::run::run(arguments, given),
         Command::Report(arguments) => commands::report::report(arguments),
         Command::Element(arguments) => commands::element::element(arguments),
+        Command::Fit(arguments) => commands::fit::fit(arguments),
         Command::View(arguments) => commands::view::view(arguments),
         Command::Film(arguments) => commands::film::film(arguments),
         Command::Sweep(arguments) => commands::sweep::sweep(arguments),

@@ -69,6 +69,7 @@ fn help_is_as_agreed() {
         "run",
         "report",
         "element",
+        "fit",
         "view",
         "film",
         "sweep",
@@ -96,6 +97,19 @@ fn slips_on_the_command_line_are_bad_input() {
         &["run", "a.toml", "--resume", "--from-stage", "own weight"],
         &["run", "a.toml", "--task", "1", "--out", "x"],
         &["completions", "cmd.com"],
+        &["fit", "a.toml", "--vary", "young=3", "--data", "a.csv"],
+        &["fit", "a.toml", "--vary", "young", "--data", "none.csv"],
+        &["element", "a.toml", "--data", "none.csv"],
+        &[
+            "fit",
+            "a.toml",
+            "--vary",
+            "young",
+            "--data",
+            "a.csv",
+            "--scatter",
+            "q=2 m",
+        ],
     ] {
         let output = folder.igimp(words);
         assert_eq!(code(&output), 2, "{words:?}: {}", stderr(&output));

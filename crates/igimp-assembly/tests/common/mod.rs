@@ -7,7 +7,10 @@ use igimp_assembly::{
     Constraints, Kinematics, Method, ParticleSeed, ParticleTrial, Particles, SharedLaw, Stencils,
     StepConditions, StepLoads, Trial,
 };
-use igimp_material::{Elasticity, HenckyElastic, MohrCoulomb, Tresca, VonMises};
+use igimp_material::{
+    Curve, Decay, Elasticity, FrictionalCurves, HenckyElastic, HoekBrown, HoekBrownParameters,
+    MohrCoulomb, Softening, Tresca, VonMises,
+};
 use igimp_shape::{Axis, Grid};
 
 /// SplitMix64: a fixed stream of numbers.
@@ -82,6 +85,66 @@ pub fn displacements<const D: usize>(
 pub fn laws() -> Vec<(&'static str, SharedLaw)> {
     let elasticity = Elasticity::new(100.0, 0.3).unwrap();
     let angle = f64::to_radians;
+    let mut laws = perfectly_plastic(elasticity, angle);
+    laws.extend(changing(elasticity, angle));
+    laws
+}
+
+/// Laws whose strength goes with plastic strain, and the one whose surface is curved.
+fn changing(elasticity: Elasticity, angle: fn(f64) -> f64) -> Vec<(&'static str, SharedLaw)> {
+    let curve = |initial, residual, decay| Curve {
+        initial,
+        residual,
+        strain: 0.1,
+        decay,
+    };
+    let frictional = |residual: [f64; 3], cutoff| {
+        let curves = FrictionalCurves {
+            cohesion: curve(1.0, residual[0], Decay::Exponential),
+            friction_angle: curve(angle(25.0), angle(residual[1]), Decay::Exponential),
+            dilation_angle: curve(angle(5.0), angle(residual[2]), Decay::Exponential),
+        };
+        Arc::new(Softening::mohr_coulomb(elasticity, curves, cutoff).unwrap())
+    };
+    let rock = HoekBrownParameters {
+        intact_strength: 10.0,
+        gsi: 50.0,
+        intact_ratio: 10.0,
+        disturbance: 0.0,
+        dilation_angle: angle(5.0),
+    };
+    let linear = |initial, residual| curve(initial, residual, Decay::Linear);
+    let exponential = |initial, residual| curve(initial, residual, Decay::Exponential);
+    let von_mises = |curve| Arc::new(Softening::von_mises(elasticity, curve).unwrap());
+    let tresca = |curve| Arc::new(Softening::tresca(elasticity, curve).unwrap());
+    vec![
+        ("von Mises, softening", von_mises(exponential(1.0, 0.4))),
+        ("von Mises, hardening", von_mises(linear(0.6, 1.2))),
+        ("Tresca, softening", tresca(exponential(1.0, 0.4))),
+        ("Tresca, hardening", tresca(linear(0.6, 1.2))),
+        (
+            "Mohr-Coulomb, softening",
+            frictional([0.4, 20.0, 0.0], None),
+        ),
+        (
+            "Mohr-Coulomb, hardening",
+            frictional([1.5, 30.0, 10.0], None),
+        ),
+        (
+            "Mohr-Coulomb, softening, tension cut-off",
+            frictional([0.4, 20.0, 0.0], Some(0.5)),
+        ),
+        (
+            "Hoek-Brown",
+            Arc::new(HoekBrown::new(elasticity, rock).unwrap()),
+        ),
+    ]
+}
+
+fn perfectly_plastic(
+    elasticity: Elasticity,
+    angle: fn(f64) -> f64,
+) -> Vec<(&'static str, SharedLaw)> {
     vec![
         ("elastic", Arc::new(HenckyElastic::new(elasticity))),
         (

@@ -4,9 +4,10 @@ use std::path::Path;
 
 use igimp_results::ResultsError;
 use igimp_results::tables::rows;
-use igimp_schema::quantity::Quantity;
 use igimp_solver::element::{COMPONENTS, Control, ElementPath};
 use thiserror::Error;
+
+use super::measure::factor;
 
 /// The names of the components.
 const NAMES: [&str; COMPONENTS] = ["xx", "yy", "zz", "xy"];
@@ -102,18 +103,12 @@ fn column(header: &str) -> Option<(usize, Control, f64)> {
     let (name, unit) = header.trim().strip_suffix(']')?.split_once('[')?;
     let (kind, component) = name.trim().rsplit_once('_')?;
     let component = NAMES.iter().position(|own| *own == component)?;
-    let (control, scale) = match (kind, unit) {
-        ("strain", "%") => (Control::Strain, 0.01),
-        ("strain", "-") => (Control::Strain, 1.0),
-        ("stress", unit) => {
-            let one = Quantity::parse_as(
-                &format!("1 {unit}"),
-                igimp_schema::quantity::Dimension::Stress,
-            );
-            (Control::Stress, one.ok()?)
-        }
+    let control = match kind {
+        "strain" => Control::Strain,
+        "stress" => Control::Stress,
         _ => return None,
     };
+    let scale = factor(control == Control::Stress, unit)?;
     // Shear has the sign that it has inside.
     let sign = if component < 3 { -1.0 } else { 1.0 };
     Some((component, control, sign * scale))

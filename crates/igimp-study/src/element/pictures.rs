@@ -1,68 +1,145 @@
-//! The pictures of a test.
+//! The pictures of a test, with what was measured over what is computed.
 
 use igimp_figures::{CurvePlot, Series};
 use igimp_solver::element::ElementState;
 
 use super::Drive;
-use super::table::{driven_name, driven_strain, pore_pressure};
+use super::compared::Compared;
+use super::measure::{Measure, undrained};
+use super::table::{abscissa, driven, driven_name};
 
-/// Stress over strain, the path of stress, and volume or pore pressure over strain, by the names of their files.
+/// The states of a test and the data beside them.
+struct Drawn<'a> {
+    states: &'a [ElementState],
+    drive: &'a Drive,
+    title: &'a str,
+    compared: Option<&'a Compared>,
+}
+
+/// Stress over strain, the path of stress, and volume or pore pressure over strain, by the names of their files; then one for every
+/// quantity that was measured and stands in none of them.
 pub(super) fn plots(
     states: &[ElementState],
     drive: &Drive,
     title: &str,
-) -> Vec<(&'static str, CurvePlot)> {
+    compared: Option<&Compared>,
+) -> Vec<(String, CurvePlot)> {
+    let drawn = Drawn {
+        states,
+        drive,
+        title,
+        compared,
+    };
+    let strain = abscissa(drive);
     let x_label = format!("{} [%]", driven_name(drive));
-    let over_strain = |y_label: &str, y: &dyn Fn(&ElementState) -> f64| CurvePlot {
-        title: title.to_owned(),
-        x_label: x_label.clone(),
-        y_label: y_label.to_owned(),
-        series: vec![Series::line(
-            "",
-            states
-                .iter()
-                .map(|state| [100.0 * driven_strain(state, drive), y(state)])
-                .collect(),
-        )],
-        ..CurvePlot::default()
-    };
-    let (is_shear, undrained) = match drive {
-        Drive::Standard(test, _) => (test.is_shear(), test.is_undrained().then_some(*test)),
-        Drive::Path(_) => (false, None),
-    };
-    let stress = if is_shear {
-        over_strain("shear stress τ_{xy} [kPa]", &|state| {
-            state.sigma[0][1] / 1e3
-        })
+    let is_shear = matches!(drive, Drive::Standard(test, _) if test.is_shear());
+    let (stress, stress_label) = if is_shear {
+        (Measure::TauXy, "shear stress τ_{xy} [kPa]")
     } else {
-        over_strain("q [kPa]", &|state| state.q() / 1e3)
+        (Measure::Q, "q [kPa]")
     };
-    let path = CurvePlot {
-        title: title.to_owned(),
-        x_label: "p', compression positive [kPa]".to_owned(),
-        y_label: "q [kPa]".to_owned(),
-        series: vec![Series::line(
-            "",
-            states
-                .iter()
-                .map(|state| [state.p() / 1e3, state.q() / 1e3])
-                .collect(),
-        )],
-        ..CurvePlot::default()
-    };
-    let last = match undrained {
-        Some(test) => (
+    let (last, last_name, last_label) = match undrained(drive) {
+        Some(_) => (
+            Measure::PorePressure,
             "pore-pressure",
-            over_strain("pore pressure [kPa]", &|state| {
-                pore_pressure(state, &states[0], test) / 1e3
-            }),
+            "pore pressure [kPa]",
         ),
-        None => (
-            "volume",
-            over_strain("volumetric strain, compression positive [%]", &|state| {
-                100.0 * state.volumetric_strain()
-            }),
-        ),
+        None => (Measure::Volume, "volume", Measure::Volume.header()),
     };
-    vec![("stress-strain", stress), ("stress-path", path), last]
+    let path_label = "p', compression positive [kPa]";
+    let mut plots = vec![
+        (
+            "stress-strain".to_owned(),
+            drawn.plot((strain, &x_label), (stress, stress_label)),
+        ),
+        (
+            "stress-path".to_owned(),
+            drawn.plot((Measure::P, path_label), (Measure::Q, "q [kPa]")),
+        ),
+        (
+            last_name.to_owned(),
+            drawn.plot((strain, &x_label), (last, last_label)),
+        ),
+    ];
+    let shown = if driven(drive).is_some() {
+        [Some(stress), Some(last)]
+    } else {
+        [None, None]
+    };
+    let columns = compared.map_or(&[][..], |own| &own.data.columns);
+    for own in columns.iter().filter(|own| !shown.contains(&Some(**own))) {
+        let name = format!("measured-{}", own.name().replace([' ', '_'], "-"));
+        plots.push((name, drawn.measured(*own)));
+    }
+    plots
+}
+
+impl Drawn<'_> {
+    /// A quantity over another one, and the measurements of both.
+    fn plot(&self, (x, x_label): (Measure, &str), (y, y_label): (Measure, &str)) -> CurvePlot {
+        let first = &self.states[0];
+        let value = |own: Measure, state| own.printed(own.of(state, first, self.drive));
+        let curve = (self.states.iter())
+            .map(|state| [value(x, state), value(y, state)])
+            .collect();
+        let points = match (self.measured_of(x), self.measured_of(y)) {
+            (Some(of_x), Some(of_y)) => (of_x.into_iter().zip(of_y))
+                .map(|(along, up)| [x.printed(along), y.printed(up)])
+                .collect(),
+            _ => Vec::new(),
+        };
+        self.over(x_label, y_label, curve, points)
+    }
+
+    /// A measured quantity over the place on the way; computed values at the same places.
+    fn measured(&self, own: Measure) -> CurvePlot {
+        let Some(compared) = self.compared else {
+            return CurvePlot::default();
+        };
+        let is_own = |of: &Measure| *of == own;
+        let column = compared.data.columns.iter().position(is_own).unwrap_or(0);
+        let label = driven(self.drive).map_or("legs of the path [-]", Measure::header);
+        let at = |at: f64| driven(self.drive).map_or(at, |strain| strain.printed(at));
+        let rows = || compared.data.rows.iter().zip(&compared.computed);
+        let mut curve: Vec<[f64; 2]> = rows()
+            .map(|(row, computed)| [at(row.at), own.printed(computed[column])])
+            .collect();
+        curve.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let points = rows()
+            .map(|(row, _)| [at(row.at), own.printed(row.values[column])])
+            .collect();
+        self.over(label, own.header(), curve, points)
+    }
+
+    /// What was measured of a quantity, by rows.
+    fn measured_of(&self, own: Measure) -> Option<Vec<f64>> {
+        let data = &self.compared?.data;
+        if driven(self.drive) == Some(own) {
+            return Some(data.rows.iter().map(|row| row.at).collect());
+        }
+        let column = data.columns.iter().position(|of| *of == own)?;
+        Some(data.rows.iter().map(|row| row.values[column]).collect())
+    }
+
+    fn over(
+        &self,
+        x_label: &str,
+        y_label: &str,
+        curve: Vec<[f64; 2]>,
+        mut points: Vec<[f64; 2]>,
+    ) -> CurvePlot {
+        points.retain(|point| point.iter().all(|value| value.is_finite()));
+        let name = if points.is_empty() { "" } else { "computed" };
+        let mut series = vec![Series::line(name, curve)];
+        if !points.is_empty() {
+            series.push(Series::markers("measured", points));
+        }
+        CurvePlot {
+            title: self.title.to_owned(),
+            x_label: x_label.to_owned(),
+            y_label: y_label.to_owned(),
+            series,
+            ..CurvePlot::default()
+        }
+    }
 }

@@ -5,6 +5,10 @@ use igimp_results::tables::table::Table;
 use igimp_solver::element::{ElementState, StandardTest};
 
 use super::Drive;
+use super::measure::Measure;
+
+/// Header of the place on a path.
+const LEG: &str = "leg [-]";
 
 /// The name of a standard test, as the program takes it.
 pub fn name_of(test: StandardTest) -> &'static str {
@@ -26,13 +30,18 @@ pub fn of_name(name: &str) -> Option<StandardTest> {
         .find(|test| name_of(*test) == name)
 }
 
-/// The strain that a test drives, compression positive \[-\]; of a path the deviatoric one of natural strains.
-pub(super) fn driven_strain(state: &ElementState, drive: &Drive) -> f64 {
+/// The strain that a test drives; none of a path, on which legs are counted.
+pub(super) fn driven(drive: &Drive) -> Option<Measure> {
     match drive {
-        Drive::Standard(test, _) if test.is_shear() => state.strain[3],
-        Drive::Standard(..) => -state.strain[1],
-        Drive::Path(_) => deviatoric_strain(state),
+        Drive::Standard(test, _) if test.is_shear() => Some(Measure::StrainXy),
+        Drive::Standard(..) => Some(Measure::StrainYy),
+        Drive::Path(_) => None,
     }
+}
+
+/// The strain that curves are drawn over: that which is driven, of a path the deviatoric one.
+pub(super) fn abscissa(drive: &Drive) -> Measure {
+    driven(drive).unwrap_or(Measure::Deviatoric)
 }
 
 /// Its name.
@@ -44,46 +53,16 @@ pub(super) fn driven_name(drive: &Drive) -> &'static str {
     }
 }
 
-/// √(2/3 e:e) of the strain, with half of ∂u_x/∂Y as its shear \[-\].
-pub(super) fn deviatoric_strain(state: &ElementState) -> f64 {
-    let [x, y, z, shear] = state.strain;
-    let mean = (x + y + z) / 3.0;
-    let normal: f64 = [x, y, z].map(|strain| (strain - mean).powi(2)).iter().sum();
-    (2.0 / 3.0 * (normal + 0.5 * shear * shear)).sqrt()
-}
-
-/// Pore pressure that an undrained test makes, with total stress kept at the sides, or on top of a test in shear \[Pa\].
-pub(super) fn pore_pressure(state: &ElementState, first: &ElementState, test: StandardTest) -> f64 {
-    let kept = usize::from(test.is_shear());
-    state.sigma[kept][kept] - first.sigma[kept][kept]
-}
-
+/// A row a state; of a path with the number of legs that were followed.
 pub(super) fn table(
-    states: &[ElementState],
+    (states, ways): (&[ElementState], &[f64]),
     drive: &Drive,
     variables: &[InternalVariable],
 ) -> Table {
-    let undrained = match drive {
-        Drive::Standard(test, _) if test.is_undrained() => Some(*test),
-        _ => None,
-    };
-    let mut header: Vec<String> = [
-        "strain_xx, compression positive [%]",
-        "strain_yy, compression positive [%]",
-        "strain_zz, compression positive [%]",
-        "shear strain_xy [%]",
-        "volumetric strain, compression positive [%]",
-        "deviatoric strain [%]",
-        "sigma_xx effective, compression positive [kPa]",
-        "sigma_yy effective, compression positive [kPa]",
-        "sigma_zz effective, compression positive [kPa]",
-        "tau_xy [kPa]",
-        "p effective, compression positive [kPa]",
-        "q [kPa]",
-    ]
-    .map(str::to_owned)
-    .to_vec();
-    header.extend(undrained.map(|_| "pore pressure [kPa]".to_owned()));
+    let is_path = driven(drive).is_none();
+    let mut header: Vec<String> = Vec::new();
+    header.extend(is_path.then(|| LEG.to_owned()));
+    header.extend(Measure::of_test(drive).map(|own| own.header().to_owned()));
     header.push("plastic strain [-]".to_owned());
     header.push("regime".to_owned());
     header.extend(
@@ -93,24 +72,12 @@ pub(super) fn table(
     );
     let columns: Vec<&str> = header.iter().map(String::as_str).collect();
     let mut table = Table::new("element", &columns);
-    for state in states {
-        let [x, y, z, shear] = state.strain.map(|strain| 100.0 * strain);
-        let s = state.sigma.map(|row| row.map(|stress| stress / 1e3));
-        let mut row = vec![
-            0.0 - x,
-            0.0 - y,
-            0.0 - z,
-            shear,
-            100.0 * state.volumetric_strain(),
-            100.0 * deviatoric_strain(state),
-            0.0 - s[0][0],
-            0.0 - s[1][1],
-            0.0 - s[2][2],
-            s[0][1],
-            state.p() / 1e3,
-            state.q() / 1e3,
-        ];
-        row.extend(undrained.map(|test| pore_pressure(state, &states[0], test) / 1e3));
+    for (state, way) in states.iter().zip(ways) {
+        let mut row = Vec::new();
+        row.extend(is_path.then_some(*way));
+        row.extend(
+            Measure::of_test(drive).map(|own| own.printed(own.of(state, &states[0], drive))),
+        );
         row.push(state.history.eps_p_eq);
         row.push(f64::from(state.regime.code()));
         row.extend(state.history.internal.iter().take(variables.len()));

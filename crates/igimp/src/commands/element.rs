@@ -3,7 +3,9 @@
 use igimp_input::MaterialsFile;
 use igimp_model::Material;
 use igimp_report::pictures::file_name;
-use igimp_study::element::{Drive, Kinematics, Request, TestError, of_name, read_path, test};
+use igimp_study::element::{
+    Data, DataError, Drive, Kinematics, Request, TestError, of_name, read_data, read_path, test,
+};
 
 use crate::arguments::ElementArguments;
 use crate::error::{Exit, ProgramError};
@@ -13,8 +15,13 @@ pub(crate) fn element(arguments: &ElementArguments) -> Result<Exit, ProgramError
     let file = MaterialsFile::read(&arguments.file, &arguments.set)?;
     output::warn(&file.warnings);
     let material = chosen(&file.materials, arguments.material.as_deref())?;
+    let drive = drive(arguments)?;
+    let data = match &arguments.data {
+        Some(path) => Some(data(material, &drive, path)?),
+        None => None,
+    };
     let request = Request {
-        drive: drive(arguments)?,
+        drive,
         stress: [
             arguments.stress,
             arguments.side_stress.unwrap_or(arguments.stress),
@@ -25,6 +32,7 @@ pub(crate) fn element(arguments: &ElementArguments) -> Result<Exit, ProgramError
         } else {
             Kinematics::Finite
         },
+        data,
     };
     let tested = test(material, &request).map_err(|error| refused(&error))?;
     let folder = arguments.out.clone().unwrap_or_else(|| {
@@ -51,8 +59,28 @@ pub(crate) fn element(arguments: &ElementArguments) -> Result<Exit, ProgramError
     })
 }
 
+/// Data of a test of a material.
+pub(crate) fn data(
+    material: &Material,
+    drive: &Drive,
+    path: &std::path::Path,
+) -> Result<Data, ProgramError> {
+    let law = (material.law()).map_err(|error| refused(&TestError::Material(error)))?;
+    let variables: Vec<&str> = (law.internal_variables().iter())
+        .map(|own| own.name)
+        .collect();
+    read_data(path, drive, &variables).map_err(|error| unread(&error))
+}
+
+fn unread(error: &DataError) -> ProgramError {
+    ProgramError::usage(error.to_string(), error.help())
+}
+
 /// The material that is meant.
-fn chosen<'a>(materials: &'a [Material], name: Option<&str>) -> Result<&'a Material, ProgramError> {
+pub(crate) fn chosen<'a>(
+    materials: &'a [Material],
+    name: Option<&str>,
+) -> Result<&'a Material, ProgramError> {
     let all = || {
         let names = materials.iter().map(|own| own.name.as_str());
         format!("its materials are {}", names.collect::<Vec<_>>().join(", "))
@@ -74,9 +102,7 @@ fn chosen<'a>(materials: &'a [Material], name: Option<&str>) -> Result<&'a Mater
 
 fn drive(arguments: &ElementArguments) -> Result<Drive, ProgramError> {
     if let Some(path) = &arguments.path {
-        let read = read_path(path)
-            .map_err(|error| ProgramError::usage(error.to_string(), error.help()))?;
-        return Ok(Drive::Path(read));
+        return path_of(path);
     }
     let test = of_name(&arguments.test).ok_or_else(|| {
         ProgramError::usage(format!("there is no test {}", arguments.test), "see --help")
@@ -84,8 +110,18 @@ fn drive(arguments: &ElementArguments) -> Result<Drive, ProgramError> {
     Ok(Drive::Standard(test, arguments.strain))
 }
 
+/// A path from a file.
+pub(crate) fn path_of(path: &std::path::Path) -> Result<Drive, ProgramError> {
+    let read =
+        read_path(path).map_err(|error| ProgramError::usage(error.to_string(), error.help()))?;
+    Ok(Drive::Path(read))
+}
+
 /// A test that cannot begin.
-fn refused(error: &TestError) -> ProgramError {
+pub(crate) fn refused(error: &TestError) -> ProgramError {
+    if let TestError::Data(error) = error {
+        return unread(error);
+    }
     ProgramError::usage(
         igimp_cases::chain(error).trim_start_matches("error: "),
         "another initial stress: --stress \"100 kPa\" --side-stress \"60 kPa\", compression positive",

@@ -3,6 +3,7 @@
 pub(crate) mod cases;
 pub(crate) mod element;
 pub(crate) mod film;
+pub(crate) mod fit;
 pub(crate) mod pages;
 pub(crate) mod report;
 pub(crate) mod run;

@@ -1,0 +1,127 @@
+//! Data of the laboratory beside the test that was computed.
+
+use std::fmt::Write as _;
+
+use igimp_results::tables::table::Table;
+use igimp_solver::element::ElementState;
+use igimp_text::short;
+
+use super::Drive;
+use super::data::Data;
+use super::measure::Measure;
+use super::table::driven;
+
+/// Data, and what the test gives at the same places.
+#[derive(Clone, Debug)]
+pub struct Compared {
+    /// The data.
+    pub data: Data,
+    /// Values of each row by the columns of the data, in SI; not a number beyond the early end of a test.
+    pub computed: Vec<Vec<f64>>,
+}
+
+/// How far off a column is, in SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Off {
+    /// Values that were measured and computed.
+    pub values: usize,
+    /// Root mean square of computed less measured.
+    pub mean: f64,
+    /// The largest difference by its size, and its line.
+    pub largest: (f64, u64),
+}
+
+impl Compared {
+    /// Takes the states of the rows; none where the test ended before.
+    pub(super) fn new(
+        data: Data,
+        states: &[Option<&ElementState>],
+        first: &ElementState,
+        drive: &Drive,
+    ) -> Self {
+        let computed = (states.iter())
+            .map(|state| {
+                let value = |own: &Measure| state.map_or(f64::NAN, |at| own.of(at, first, drive));
+                data.columns.iter().map(value).collect()
+            })
+            .collect();
+        Self { data, computed }
+    }
+
+    /// Computed less measured of a column by lines, where both are known.
+    pub(crate) fn differences(&self, column: usize) -> impl Iterator<Item = (u64, f64)> {
+        (self.data.rows.iter().zip(&self.computed))
+            .map(move |(row, own)| (row.line, own[column] - row.values[column]))
+            .filter(|(_, difference)| difference.is_finite())
+    }
+
+    /// How far off a column is, if anything of it was measured and computed.
+    pub fn off(&self, column: usize) -> Option<Off> {
+        let (mut values, mut squares, mut largest) = (0, 0.0, (0.0, 0));
+        for (line, difference) in self.differences(column) {
+            values += 1;
+            squares += difference * difference;
+            if largest.1 == 0 || difference.abs() > f64::abs(largest.0) {
+                largest = (difference, line);
+            }
+        }
+        (values > 0).then(|| Off {
+            values,
+            mean: (squares / values as f64).sqrt(),
+            largest,
+        })
+    }
+
+    /// A line for each column.
+    pub(crate) fn said(&self) -> String {
+        let mut text = String::new();
+        for (column, own) in self.data.columns.iter().enumerate() {
+            let unit = own.unit();
+            match self.off(column) {
+                Some(off) => {
+                    let _ = writeln!(
+                        text,
+                        "  measured {}, {} values of {}: root mean square difference {} {unit}, largest {} {unit} in line {}",
+                        own.name(),
+                        off.values,
+                        self.data.name,
+                        short(own.printed(off.mean)),
+                        short(own.printed(off.largest.0)),
+                        off.largest.1,
+                    );
+                }
+                None => {
+                    let _ = writeln!(text, "  measured {}: beyond the early end", own.name());
+                }
+            }
+        }
+        text
+    }
+
+    /// A row a measurement: measured, computed, and their difference.
+    pub(super) fn table(&self, drive: &Drive) -> Table {
+        let mut header = vec![
+            "line".to_owned(),
+            driven(drive).map_or("leg [-]".to_owned(), |own| own.header().to_owned()),
+        ];
+        for own in &self.data.columns {
+            for what in ["measured", "computed", "computed less measured"] {
+                header.push(format!("{what}: {}", own.header()));
+            }
+        }
+        let columns: Vec<&str> = header.iter().map(String::as_str).collect();
+        let mut table = Table::new("data", &columns);
+        for (row, computed) in self.data.rows.iter().zip(&self.computed) {
+            let at = driven(drive).map_or(row.at, |own| own.printed(row.at));
+            let mut cells = vec![row.line as f64, at];
+            for ((own, measured), computed) in
+                self.data.columns.iter().zip(&row.values).zip(computed)
+            {
+                let values = [*measured, *computed, computed - measured];
+                cells.extend(values.map(|value| own.printed(value)));
+            }
+            table.push(cells);
+        }
+        table
+    }
+}

@@ -1,0 +1,282 @@
+//! Parameters of a law from data of the laboratory, by nonlinear least squares, and how well each is known (theory, eqs. 116 to 119).
+
+mod parameter;
+mod problem;
+mod said;
+mod statistics;
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+
+use igimp_input::{InputError, MaterialsFile};
+use igimp_model::Material;
+use igimp_report::ReportError;
+use igimp_results::ResultsError;
+use igimp_results::tables::rows::RowWriter;
+use thiserror::Error;
+
+use crate::element::{Measure, Request, TestError, Tested, test};
+use parameter::{Parameter, START};
+pub use parameter::{ParameterError, Vary};
+use problem::{Lost, Problem, Solved};
+pub use statistics::Known;
+use statistics::{Statistics, statistics};
+
+/// Where a material comes from: what is asked again at every trial.
+pub trait Source {
+    /// The material with values of some of its keys, written as in the file.
+    ///
+    /// # Errors
+    /// [`InputError`] of what the file does not allow.
+    fn material(&self, values: &[(String, String)]) -> Result<Material, InputError>;
+
+    /// What is written of a key in the file: a quantity as text, or a number.
+    fn written(&self, key: &str) -> Option<String>;
+}
+
+/// A material of a file.
+#[derive(Clone, Debug)]
+pub struct FileSource {
+    /// The file.
+    pub file: MaterialsFile,
+    /// The name of the material.
+    pub material: String,
+}
+
+impl Source for FileSource {
+    fn material(&self, values: &[(String, String)]) -> Result<Material, InputError> {
+        let name = said::quoted(&self.material);
+        let set = (values.iter())
+            .map(|(key, value)| format!("materials.{name}.{key}={value}"))
+            .collect();
+        let file = self.file.with(set)?;
+        let is_own = |own: &&Material| own.name == self.material;
+        let found = file.materials.iter().find(is_own).cloned();
+        Ok(found.expect("values of a material leave its name"))
+    }
+
+    fn written(&self, key: &str) -> Option<String> {
+        self.file.written(&self.material, key)
+    }
+}
+
+/// What is fitted to what.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FitRequest {
+    /// The parameters.
+    pub vary: Vec<Vary>,
+    /// Tests with their data.
+    pub tests: Vec<Request>,
+    /// Standard deviations of quantities that are stated, in SI. Of others it is in proportion to the largest value that was measured.
+    pub scatter: Vec<(Measure, f64)>,
+}
+
+/// A parameter that was sought.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// Its key within the material.
+    pub key: String,
+    /// The unit of its values, that of the file; empty of plain numbers.
+    pub unit: String,
+    /// Where the search began.
+    pub start: f64,
+    /// Where it ended.
+    pub value: f64,
+    /// How well it is known.
+    pub known: Known,
+}
+
+/// Parameters that were found.
+#[derive(Debug)]
+pub struct Fitted {
+    /// The parameters, in the order of the request.
+    pub parameters: Vec<Found>,
+    /// Pairs, by their places, whose correlation is above 0.9 by its size, and the correlation.
+    pub correlated: Vec<(usize, usize, f64)>,
+    /// Standard deviation of a residual, with one degree of freedom less for each parameter \[-\].
+    pub deviation: f64,
+    /// Each test with the values that were found.
+    pub tests: Vec<Tested>,
+    /// Lines ready to print.
+    pub text: String,
+    /// The parameters as TOML.
+    pub block: String,
+}
+
+/// Why there is no fit.
+#[derive(Debug, Error)]
+pub enum FitError {
+    /// A parameter cannot be varied.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// Too few data.
+    #[error(
+        "{values} values were measured, and {parameters} parameters are sought: nothing would say how well they are known"
+    )]
+    TooFew {
+        /// Values in the data.
+        values: usize,
+        /// Parameters.
+        parameters: usize,
+    },
+    /// The file does not allow the values at the start.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A test cannot begin.
+    #[error(transparent)]
+    Test(#[from] TestError),
+    /// A test cannot be followed at the start.
+    #[error("with the values of the file test {test} ends before its data do: {why}")]
+    Early {
+        /// Which, from 1.
+        test: usize,
+        /// Why.
+        why: String,
+    },
+    /// The search did not converge.
+    #[error("the search did not converge: {why}; it came to {at}")]
+    NotConverged {
+        /// Why.
+        why: String,
+        /// The values where it ended.
+        at: String,
+    },
+}
+
+impl From<Lost> for FitError {
+    fn from(lost: Lost) -> Self {
+        match lost {
+            Lost::Input(error) => Self::Input(error),
+            Lost::Test(error) => Self::Test(error),
+            Lost::Early { test, why } => Self::Early { test, why },
+        }
+    }
+}
+
+/// Finds parameters.
+///
+/// # Errors
+/// [`FitError`]; a search that did not converge is one.
+pub fn fit(source: &dyn Source, request: &FitRequest) -> Result<Fitted, FitError> {
+    let parameters = parameters(&request.vary, source)?;
+    let problem = Problem::new(source, &parameters, request);
+    if problem.values() <= parameters.len() {
+        return Err(FitError::TooFew {
+            values: problem.values(),
+            parameters: parameters.len(),
+        });
+    }
+    let start = vec![START; parameters.len()];
+    problem.residuals(&start)?;
+    let values = |at: &[f64]| -> Vec<f64> {
+        (parameters.iter().zip(at))
+            .map(|(own, x)| own.value(*x))
+            .collect()
+    };
+    let not_converged = |at: &[f64], why: &str| FitError::NotConverged {
+        why: why.to_owned(),
+        at: (parameters.iter().zip(values(at)))
+            .map(|(own, value)| format!("{} = {}", own.key, own.text(value)))
+            .collect::<Vec<_>>()
+            .join(", "),
+    };
+    let solved = problem.solved(start);
+    let Solved { at, why, effort } = solved;
+    if let Some(why) = why {
+        return Err(not_converged(&at, &why));
+    }
+    let residuals = problem.residuals(&at)?;
+    let Some(jacobian) = problem.jacobian(&at) else {
+        return Err(not_converged(
+            &at,
+            "the law refuses values beside those found",
+        ));
+    };
+    let Statistics {
+        known,
+        correlated,
+        deviation,
+        step,
+    } = statistics(&parameters, &at, &residuals, &jacobian);
+    let has_kink = problem
+        .is_minimum(&at, &residuals, &jacobian, &step)
+        .map_err(|why| not_converged(&at, why))?;
+    let found: Vec<Found> = (parameters.iter().zip(values(&at)).zip(known))
+        .map(|((own, value), known)| Found {
+            key: own.key.clone(),
+            unit: own.unit.clone(),
+            start: own.first,
+            value,
+            known,
+        })
+        .collect();
+    let material = problem.material(&at)?;
+    let tests = (request.tests.iter())
+        .map(|request| test(&material, request))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut fitted = Fitted {
+        block: said::block(&material.name, &found),
+        parameters: found,
+        correlated,
+        deviation,
+        tests,
+        text: String::new(),
+    };
+    fitted.text = said::said(&material, &fitted, problem.values(), effort, has_kink);
+    Ok(fitted)
+}
+
+/// The parameters of a request, each of which stands there once.
+fn parameters(vary: &[Vary], source: &dyn Source) -> Result<Vec<Parameter>, ParameterError> {
+    for (place, one) in vary.iter().enumerate() {
+        if vary[..place].iter().any(|own| own.key == one.key) {
+            let key = one.key.clone();
+            return Err(ParameterError::Twice { key });
+        }
+    }
+    (vary.iter())
+        .map(|vary| Parameter::new(vary, source))
+        .collect()
+}
+
+impl Fitted {
+    /// Writes `fit.csv` and `fit.toml`, and the table and pictures of every test into a folder of its own; their names.
+    ///
+    /// # Errors
+    /// [`ReportError`] of what cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<Vec<String>, ReportError> {
+        let header = [
+            "parameter",
+            "unit",
+            "start",
+            "value",
+            "standard error",
+            "lower end of 95 %",
+            "upper end of 95 %",
+            "known",
+        ]
+        .map(str::to_owned);
+        let mut rows = RowWriter::create(&folder.join("fit.csv"), &header)?;
+        for own in &self.parameters {
+            rows.push_text(&said::row(own))?;
+        }
+        let block = folder.join("fit.toml");
+        std::fs::write(&block, &self.block).map_err(|source| ResultsError::File {
+            path: block,
+            source,
+        })?;
+        let mut names = vec!["fit.csv".to_owned(), "fit.toml".to_owned()];
+        for (tested, at) in self.tests.iter().zip(1..) {
+            let name = format!("test-{at}");
+            let own = folder.join(&name);
+            std::fs::create_dir_all(&own).map_err(|source| ResultsError::File {
+                path: own.clone(),
+                source,
+            })?;
+            tested.write(&own)?;
+            names.push(format!("{name}/"));
+        }
+        Ok(names)
+    }
+}

@@ -1,0 +1,300 @@
+//! Residuals of all tests over the parameters, their derivative by differences, and the search for the least sum of squares.
+
+use igimp_input::InputError;
+use igimp_model::Material;
+use rmpfit::{MPConfig, MPError, MPFitter, MPPar, MPResult, MPSide, MPSuccess};
+
+use super::parameter::Parameter;
+use super::{FitRequest, Source};
+use crate::element::{Data, Measure, Request, TestError, driven};
+
+/// Step of the differences, of parameters of order one: an error of 1e-8 by curvature, and as much by the tolerance of a step.
+const DIFFERENCE: f64 = 1e-4;
+
+/// Residual of a trial that the law refuses, far above any that is one: the search turns back.
+const REFUSED: f64 = 1e8;
+
+/// First step of the search, over the parameters: beyond it a law may be one of another kind.
+const FIRST_STEP: f64 = 0.3;
+
+/// Share of the sum of squares that a further correction may still take away.
+const LEFT: f64 = 1e-6;
+
+/// A residual of round-off, over the largest value that was measured.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Why a trial gives no residuals.
+#[derive(Debug)]
+pub(super) enum Lost {
+    Input(InputError),
+    Test(TestError),
+    Early { test: usize, why: String },
+}
+
+/// The tests and the parameters.
+pub(super) struct Problem<'a> {
+    source: &'a dyn Source,
+    parameters: &'a [Parameter],
+    tests: &'a [Request],
+    /// What a residual is divided by: of each column of each test, in SI.
+    scales: Vec<Vec<f64>>,
+    values: usize,
+}
+
+/// Where a search ended, and why it is none; iterations and evaluations.
+pub(super) struct Solved {
+    pub(super) at: Vec<f64>,
+    pub(super) why: Option<String>,
+    pub(super) effort: [usize; 2],
+}
+
+impl<'a> Problem<'a> {
+    pub(super) fn new(
+        source: &'a dyn Source,
+        parameters: &'a [Parameter],
+        request: &'a FitRequest,
+    ) -> Self {
+        let data = || request.tests.iter().filter_map(|own| own.data.as_ref());
+        let scale = |own: &Measure| {
+            let stated = request.scatter.iter().find(|(of, _)| of == own);
+            stated.map_or_else(|| largest(data(), *own), |(_, scatter)| *scatter)
+        };
+        let measured = |data: &Data| -> usize {
+            let values = data.rows.iter().flat_map(|row| &row.values);
+            values.filter(|value| value.is_finite()).count()
+        };
+        Self {
+            source,
+            parameters,
+            tests: &request.tests,
+            scales: (request.tests.iter())
+                .map(|test| {
+                    let columns = test.data.iter().flat_map(|data| &data.columns);
+                    columns.map(scale).collect()
+                })
+                .collect(),
+            values: data().map(measured).sum(),
+        }
+    }
+
+    /// How many values were measured.
+    pub(super) fn values(&self) -> usize {
+        self.values
+    }
+
+    /// The material of a place in the search.
+    pub(super) fn material(&self, at: &[f64]) -> Result<Material, InputError> {
+        let values: Vec<(String, String)> = (self.parameters.iter().zip(at))
+            .map(|(own, x)| (own.key.clone(), own.text(own.value(*x))))
+            .collect();
+        self.source.material(&values)
+    }
+
+    /// Computed less measured, over the scale of the quantity (theory, eq. 116).
+    pub(super) fn residuals(&self, at: &[f64]) -> Result<Vec<f64>, Lost> {
+        let material = self.material(at).map_err(Lost::Input)?;
+        let law = material.law().map_err(|error| Lost::Test(error.into()))?;
+        let mut residuals = Vec::with_capacity(self.values);
+        for (place, (request, scales)) in self.tests.iter().zip(&self.scales).enumerate() {
+            let own = driven(&*law, request).map_err(Lost::Test)?;
+            let before = residuals.len();
+            let Some(compared) = own.compared else {
+                continue;
+            };
+            for (column, scale) in scales.iter().enumerate() {
+                let differences = compared.differences(column);
+                residuals.extend(differences.map(|(_, difference)| difference / scale));
+            }
+            let values = compared.data.rows.iter().flat_map(|row| &row.values);
+            let expected = values.filter(|value| value.is_finite()).count();
+            if residuals.len() - before != expected {
+                let why = own.run.failure.map(|lost| lost.to_string());
+                return Err(Lost::Early {
+                    test: place + 1,
+                    why: why.unwrap_or_else(|| "its stress is not a number".to_owned()),
+                });
+            }
+        }
+        Ok(residuals)
+    }
+
+    /// The derivative of the residuals, a column a parameter, by central differences; one-sided where one side is out of bounds or
+    /// refused. None where both are.
+    pub(super) fn jacobian(&self, at: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let here = self.residuals(at).ok()?;
+        let column = |(place, own): (usize, &Parameter)| {
+            let [low, high] = own.limits().unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+            let beside = |by: f64| {
+                let mut moved = at.to_vec();
+                moved[place] += by;
+                let is_within = (low..=high).contains(&moved[place]);
+                is_within.then(|| self.residuals(&moved).ok()).flatten()
+            };
+            let quotient = |plus: &[f64], minus: &[f64], by: f64| -> Vec<f64> {
+                plus.iter().zip(minus).map(|(p, m)| (p - m) / by).collect()
+            };
+            match (beside(DIFFERENCE), beside(-DIFFERENCE)) {
+                (Some(plus), Some(minus)) => Some(quotient(&plus, &minus, 2.0 * DIFFERENCE)),
+                (Some(plus), None) => Some(quotient(&plus, &here, DIFFERENCE)),
+                (None, Some(minus)) => Some(quotient(&here, &minus, DIFFERENCE)),
+                (None, None) => None,
+            }
+        };
+        self.parameters.iter().enumerate().map(column).collect()
+    }
+
+    /// The search, from a start at which all tests can be followed.
+    pub(super) fn solved(&self, start: Vec<f64>) -> Solved {
+        let mut at = start;
+        let limits = |own: &Parameter| {
+            let mut par = MPPar::new();
+            par.side = MPSide::User;
+            if let Some([low, high]) = own.limits() {
+                (par.limited_low, par.limited_up) = (true, true);
+                (par.limit_low, par.limit_up) = (low, high);
+            }
+            par
+        };
+        let config = MPConfig {
+            step_factor: FIRST_STEP,
+            ..MPConfig::new()
+        };
+        let parameters = self.parameters.iter().map(limits).collect();
+        let mut search = Search {
+            problem: self,
+            config,
+            parameters,
+        };
+        match search.mpfit(&mut at) {
+            Ok(status) => Solved {
+                why: unfinished(&status.success).map(str::to_owned),
+                effort: [status.n_iter, status.n_fev],
+                at,
+            },
+            Err(error) => Solved {
+                why: Some(refused(&error).to_owned()),
+                effort: [0; 2],
+                at,
+            },
+        }
+    }
+
+    /// Whether a place is a minimum on a kink of the sum of squares; a smooth one is no kink.
+    ///
+    /// # Errors
+    /// Why it is none: the correction that is left would make the sum less.
+    pub(super) fn is_minimum(
+        &self,
+        at: &[f64],
+        residuals: &[f64],
+        jacobian: &[Vec<f64>],
+        step: &[f64],
+    ) -> Result<bool, &'static str> {
+        let change = |row: usize| -> f64 {
+            (jacobian.iter().zip(step))
+                .map(|(column, by)| column[row] * by)
+                .sum()
+        };
+        let gain: f64 = (0..residuals.len()).map(|row| change(row).powi(2)).sum();
+        let sum: f64 = residuals.iter().map(|own| own * own).sum();
+        let floor = residuals.len() as f64 * ROUND_OFF * ROUND_OFF;
+        if gain <= LEFT * sum + floor {
+            return Ok(false);
+        }
+        for share in [1.0, 0.25, 0.0625, 0.015_625] {
+            let moved: Vec<f64> = at.iter().zip(step).map(|(x, by)| x + share * by).collect();
+            let less = self.residuals(&moved).is_ok_and(|own| {
+                let there: f64 = own.iter().map(|own| own * own).sum();
+                there < (1.0 - LEFT) * sum - floor
+            });
+            if less {
+                return Err("the sum of squares still falls where it ended");
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// The largest value of a quantity by its size in any of the data, one where all are zero.
+fn largest<'a>(data: impl Iterator<Item = &'a Data>, own: Measure) -> f64 {
+    let mut most = 0.0_f64;
+    for data in data {
+        let Some(column) = data.columns.iter().position(|of| *of == own) else {
+            continue;
+        };
+        let values = data.rows.iter().map(|row| row.values[column].abs());
+        most = values
+            .filter(|value| value.is_finite())
+            .fold(most, f64::max);
+    }
+    if most > 0.0 { most } else { 1.0 }
+}
+
+/// The problem as the library takes it.
+struct Search<'a> {
+    problem: &'a Problem<'a>,
+    config: MPConfig,
+    parameters: Vec<MPPar>,
+}
+
+impl MPFitter for Search<'_> {
+    fn eval(&mut self, params: &[f64], deviates: &mut [f64]) -> MPResult<()> {
+        match self.problem.residuals(params) {
+            Ok(residuals) => deviates.copy_from_slice(&residuals),
+            Err(_) => deviates.fill(REFUSED),
+        }
+        Ok(())
+    }
+
+    fn number_of_points(&self) -> usize {
+        self.problem.values
+    }
+
+    fn config(&self) -> &MPConfig {
+        &self.config
+    }
+
+    fn parameters(&self) -> &[MPPar] {
+        &self.parameters
+    }
+
+    fn jacobian(
+        &mut self,
+        params: &[f64],
+        deviates: &mut [f64],
+        derivs: &mut [Option<Vec<f64>>],
+    ) -> MPResult<()> {
+        self.eval(params, deviates)?;
+        let columns = self.problem.jacobian(params).ok_or(MPError::Eval)?;
+        for (own, column) in derivs.iter_mut().zip(columns) {
+            if let Some(own) = own {
+                *own = column;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Why the search has not ended at a minimum.
+fn unfinished(success: &MPSuccess) -> Option<&'static str> {
+    match success {
+        MPSuccess::Chi | MPSuccess::Par | MPSuccess::Both | MPSuccess::Dir => None,
+        MPSuccess::MaxIter => Some("its iterations are used up"),
+        MPSuccess::NotDone => Some("it was given up"),
+        MPSuccess::Ftol | MPSuccess::Xtol | MPSuccess::Gtol => {
+            Some("no step makes the sum of squares less, and no criterion is met")
+        }
+    }
+}
+
+/// Why the library gave up.
+fn refused(error: &MPError) -> &'static str {
+    match error {
+        MPError::Nan => "a residual is not a number",
+        MPError::Eval => "the law refuses values on either side",
+        MPError::InitBounds | MPError::Bounds => "the start is out of bounds",
+        MPError::DoF | MPError::Empty | MPError::NoFree | MPError::Input => {
+            "there are no data or no parameters"
+        }
+    }
+}

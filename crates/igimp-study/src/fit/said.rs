@@ -1,0 +1,172 @@
+//! What is said of parameters that were found: lines, rows and TOML.
+
+use std::fmt::Write as _;
+
+use igimp_model::Material;
+use igimp_text::short;
+
+use super::parameter::written;
+use super::{Fitted, Found, Known};
+
+/// The lines of a fit: iterations and evaluations are its effort.
+pub(super) fn said(
+    material: &Material,
+    fitted: &Fitted,
+    values: usize,
+    [iterations, evaluations]: [usize; 2],
+    has_kink: bool,
+) -> String {
+    let mut text = format!(
+        "{}: {}, {} from {}, {values} values\n  converged after {iterations} iterations, {evaluations} evaluations\n",
+        material.name,
+        material.strength.name(),
+        counted(fitted.parameters.len(), "parameter"),
+        counted(fitted.tests.len(), "test"),
+    );
+    if has_kink {
+        text.push_str("  the least sum of squares is at a kink, as where soil begins to yield at a measurement: errors are rough\n");
+    }
+    for own in &fitted.parameters {
+        let _ = writeln!(text, "  {}", line(own, &fitted.parameters));
+    }
+    for &(one, other, correlation) in &fitted.correlated {
+        let _ = writeln!(
+            text,
+            "  {} and {} are not told apart by these data: correlation {correlation:.4}",
+            fitted.parameters[one].key, fitted.parameters[other].key,
+        );
+    }
+    for (tested, at) in fitted.tests.iter().zip(1..) {
+        let what = tested.text.lines().next().unwrap_or_default();
+        let _ = writeln!(text, "  test {at}, {what}");
+        for line in tested.compared.iter().flat_map(|own| lines(&own.said())) {
+            let _ = writeln!(text, "  {line}");
+        }
+    }
+    let _ = write!(text, "\n{}", fitted.block);
+    text
+}
+
+fn lines(text: &str) -> Vec<String> {
+    text.lines().map(str::to_owned).collect()
+}
+
+fn counted(count: usize, what: &str) -> String {
+    let more = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{more}")
+}
+
+/// A line for a parameter.
+fn line(own: &Found, all: &[Found]) -> String {
+    let Found {
+        key, unit, value, ..
+    } = own;
+    match &own.known {
+        Known::Well {
+            error,
+            interval: [low, high],
+        } => format!(
+            "{key} = {} {unit}, standard error {} {unit}, with 95 % from {} to {} {unit}",
+            digits(*value, *error),
+            short(*error),
+            digits(*low, *error),
+            digits(*high, *error),
+        ),
+        Known::AtBound { upper } => format!(
+            "{key} = {} {unit}: at its {} bound, which decides on it and not the data",
+            short(*value),
+            if *upper { "upper" } else { "lower" },
+        ),
+        Known::NotDetermined { with } if with.is_empty() => {
+            format!("{key}: not determined, these data do not depend on it")
+        }
+        Known::NotDetermined { with } => {
+            let others: Vec<&str> = with.iter().map(|&k| all[k].key.as_str()).collect();
+            let others = others.join(" and ");
+            format!("{key}: not determined, {key} and {others} are not told apart by these data")
+        }
+    }
+    .replace(" ,", ",")
+    .trim_end()
+    .to_owned()
+}
+
+/// A value with the digits that its error leaves, and one more.
+fn digits(value: f64, error: f64) -> String {
+    let size = value.abs().max(f64::MIN_POSITIVE).log10().floor();
+    let places = (1.0
+        - error
+            .max(1e-12 * value.abs())
+            .max(f64::MIN_POSITIVE)
+            .log10()
+            .floor())
+    .clamp(-size, 15.0 - size.max(0.0));
+    if (0.0..=15.0).contains(&places) {
+        format!("{value:.*}", places as usize)
+    } else {
+        short(value)
+    }
+}
+
+/// The row of a parameter in `fit.csv`.
+pub(super) fn row(own: &Found) -> Vec<String> {
+    let number = |value: f64| format!("{value:.9e}");
+    let mut row = vec![own.key.clone(), own.unit.clone(), number(own.start)];
+    let (values, known) = match &own.known {
+        Known::Well {
+            error,
+            interval: [low, high],
+        } => (
+            [own.value, *error, *low, *high].map(number),
+            "standard error",
+        ),
+        Known::AtBound { upper } => {
+            let known = if *upper {
+                "at its upper bound"
+            } else {
+                "at its lower bound"
+            };
+            let none = String::new;
+            ([number(own.value), none(), none(), none()], known)
+        }
+        Known::NotDetermined { .. } => ([(); 4].map(|()| String::new()), "not determined"),
+    };
+    row.extend(values);
+    row.push(known.to_owned());
+    row
+}
+
+/// The values as a block of a case file; what is not determined is left out.
+pub(super) fn block(material: &str, found: &[Found]) -> String {
+    let mut text = format!("[materials.{}]\n", quoted(material));
+    for own in found {
+        let key = &own.key;
+        let value = match &own.known {
+            Known::NotDetermined { .. } => {
+                let _ = writeln!(text, "# {key} is not determined");
+                continue;
+            }
+            Known::Well { error, .. } => digits(own.value, error / 100.0),
+            Known::AtBound { .. } => own.value.to_string(),
+        };
+        let number = value.parse().unwrap_or(own.value);
+        let value = written(number, &own.unit);
+        let value = if own.unit.is_empty() {
+            value
+        } else {
+            format!("\"{value}\"")
+        };
+        let _ = writeln!(text, "{key} = {value}");
+    }
+    text
+}
+
+/// A name as a key of TOML.
+pub(super) fn quoted(name: &str) -> String {
+    let is_bare = |own: char| own.is_ascii_alphanumeric() || matches!(own, '_' | '-');
+    if !name.is_empty() && name.chars().all(is_bare) {
+        name.to_owned()
+    } else {
+        format!("{name:?}")
+    }
+}
