@@ -7,6 +7,7 @@
 
 mod basis;
 mod boundary;
+mod coarse;
 mod conditions;
 mod curve;
 mod error;

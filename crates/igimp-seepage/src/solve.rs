@@ -4,6 +4,7 @@ use igimp_linear::{SolverKind, TangentMatrix};
 use igimp_shape::Grid;
 
 use crate::boundary::{At, Held, reach};
+use crate::coarse;
 use crate::conditions::{Conditions, FreeWater, InGround, Named, OnFaces};
 use crate::curve::{Curve, Relative};
 use crate::error::SeepageError;
@@ -19,13 +20,15 @@ const ALL_OVER_ONE: f64 = 0.1;
 /// Share of what heads could drive through a cell that counts as flow \[-\]: below it round-off would decide.
 const AT_REST: f64 = 0.1;
 /// The same for flows on the way to the one that is asked for \[-\].
-const ON_THE_WAY: f64 = 1e-3;
+pub(crate) const ON_THE_WAY: f64 = 1e-3;
 /// From one fall of permeability to the next \[-\].
 const FACTOR: f64 = 3.0;
 /// Falls of permeability that are put between others, at most.
 const INSERTED: usize = 12;
 /// Corrections for one fall of permeability.
 const CORRECTIONS: usize = 30;
+/// Cells with soil up to which a flow is sought from a constant head.
+const FEW: usize = 1000;
 /// Corrections in time that are taken whole.
 const FREE: usize = 15;
 /// Halvings of a correction.
@@ -44,12 +47,8 @@ pub fn solve<const D: usize>(
     free: FreeWater<'_, D>,
 ) -> Result<Seepage<D>, SeepageError> {
     let mut search = Search::of(grid, bodies, conditions, free)?;
-    let start = start_of(&search.system).ok_or(SeepageError::NoHead)?;
-    search.heads = vec![start; search.system.nodes.len()];
-    let heights = &grid.axes[D - 1];
+    search.find((bodies, free), TOLERANCE, FEW)?;
     let relative = relative_of(grid, conditions);
-    let path = path(&relative, heights.end() - heights.start(), conditions);
-    search.follow(&path)?;
     let (residual, flows) = search.system.assemble(&search.heads, &relative, None);
     let dry = if conditions.confined {
         None
@@ -151,19 +150,49 @@ impl<'a, const D: usize> Search<'a, D> {
         })
     }
 
-    /// Goes from flow to flow; where one is not found, with one more between it and the one before.
-    fn follow(&mut self, path: &[Relative]) -> Result<(), SeepageError> {
+    /// Finds the flow: from a coarser grid where more than `few` cells hold soil, else from a constant head. A start that does
+    /// not lead there is left for the other.
+    pub(crate) fn find(
+        &mut self,
+        (bodies, free): (&[SeepageBody<'_, D>], FreeWater<'_, D>),
+        tolerance: f64,
+        few: usize,
+    ) -> Result<(), SeepageError> {
+        let (grid, conditions) = (self.system.grid, self.system.conditions);
+        let constant = start_of(&self.system).ok_or(SeepageError::NoHead)?;
+        let relative = relative_of(grid, conditions);
+        if self.system.cells.len() > few
+            && !conditions.confined
+            && let Some((heads, before)) = coarse::start(&self.system, bodies, free, few)
+        {
+            self.heads = heads;
+            if self.follow(&[relative], Some(before), tolerance).is_ok() {
+                return Ok(());
+            }
+        }
+        self.heads = vec![constant; self.system.nodes.len()];
+        let heights = &grid.axes[D - 1];
+        let path = path(&relative, heights.end() - heights.start(), conditions);
+        self.follow(&path, None, tolerance)
+    }
+
+    /// Goes from flow to flow, to a tolerance in the end; where one is not found, with one more between it and the one before.
+    fn follow(
+        &mut self,
+        path: &[Relative],
+        mut found: Option<Relative>,
+        tolerance: f64,
+    ) -> Result<(), SeepageError> {
         let Some(asked) = path.last() else {
             return Ok(());
         };
         let mut left: Vec<Relative> = path.iter().rev().copied().collect();
-        let mut found: Option<Relative> = None;
         let mut inserted = 0;
         while let Some(next) = left.last().copied() {
             let kept = self.heads.clone();
             let is_last = left.len() == 1;
             match (
-                self.balance(&next, if is_last { TOLERANCE } else { ON_THE_WAY }, None),
+                self.balance(&next, if is_last { tolerance } else { ON_THE_WAY }, None),
                 found,
             ) {
                 (Ok(_), _) => {
@@ -231,6 +260,42 @@ impl<'a, const D: usize> Search<'a, D> {
         }
     }
 
+    /// Takes as much of a correction as lessens the imbalance, or all of it where it is free; what then holds.
+    fn correct(
+        &mut self,
+        (step, before): (&[f64], f64),
+        is_free: bool,
+        relative: &Relative,
+        storing: Option<&Storing<'_>>,
+    ) -> Balanced {
+        let kept = self.heads.clone();
+        let moved = |share: f64| {
+            let pairs = std::iter::zip(&kept, step);
+            let mut heads: Vec<f64> = pairs.map(|(head, own)| head - share * own).collect();
+            if let Some(storing) = storing.filter(|_| !relative.confined) {
+                let width = relative.width;
+                storing.storage.stop_at_surface(&kept, &mut heads, width);
+            }
+            heads
+        };
+        let is_less = |own: &[f64], share: f64| norm(own) < (1.0 - 1e-2 * share) * before;
+        // All of it is mostly taken: its tangent is made at once.
+        self.heads = moved(1.0);
+        let whole = self.linearised(relative, storing);
+        if is_free || is_less(&whole.residual, 1.0) {
+            return whole;
+        }
+        let mut share = 1.0;
+        for _ in 0..HALVINGS {
+            share *= 0.5;
+            self.heads = moved(share);
+            if is_less(&self.residual(&self.heads, relative, storing), share) {
+                break;
+            }
+        }
+        self.linearised(relative, storing)
+    }
+
     /// Corrects the heads until water balances.
     pub(crate) fn balance(
         &mut self,
@@ -254,26 +319,10 @@ impl<'a, const D: usize> Search<'a, D> {
             self.solver
                 .solve(&self.matrix, &found.residual, &mut step)?;
             self.corrections += 1;
+            // Between full pores and empty ones a correction may have to go uphill.
+            let is_free = storing.is_some() && correction < FREE;
             let before = norm(&found.residual);
-            let mut share = 1.0;
-            for halving in 0..=HALVINGS {
-                let pairs = std::iter::zip(&self.heads, &step);
-                let mut heads: Vec<f64> = pairs.map(|(head, own)| head - share * own).collect();
-                if let Some(storing) = storing.filter(|_| !relative.confined) {
-                    storing
-                        .storage
-                        .stop_at_surface(&self.heads, &mut heads, relative.width);
-                }
-                let own = self.residual(&heads, relative, storing);
-                // Between full pores and empty ones a correction may have to go uphill.
-                let is_free = storing.is_some() && correction < FREE;
-                if norm(&own) < (1.0 - 1e-2 * share) * before || halving == HALVINGS || is_free {
-                    self.heads = heads;
-                    break;
-                }
-                share *= 0.5;
-            }
-            found = self.linearised(relative, storing);
+            found = self.correct((&step, before), is_free, relative, storing);
         }
         Err(SeepageError::NotFound {
             corrections: self.corrections,

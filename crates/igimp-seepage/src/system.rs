@@ -198,8 +198,12 @@ impl<'a, const D: usize> System<'a, D> {
         let [lower, upper] = ends_of(self.grid, own.place);
         let heads = &heads[..1 << D];
         let lowest = heads.iter().copied().fold(f64::INFINITY, f64::min);
-        let is_full = relative.confined || lowest - upper[D - 1] > 0.5 * relative.width;
-        gauss([lower, upper], if is_full { &TWO } else { &FOUR }, soil)
+        let highest = heads.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let beyond = 0.5 * relative.width;
+        let is_full = relative.confined || lowest - upper[D - 1] > beyond;
+        let is_dry = self.curve(soil) == Curve::Ramp && highest - lower[D - 1] < -beyond;
+        let along: &[(f64, f64)] = if is_full || is_dry { &TWO } else { &FOUR };
+        gauss([lower, upper], along, soil)
     }
 
     /// What share of its permeability soil has at a point, and the slope of that.
