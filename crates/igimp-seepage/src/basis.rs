@@ -92,6 +92,7 @@ pub(crate) fn gauss<const D: usize>(
                 soil,
                 body_soil: soil,
                 region: None,
+                scale: 1.0,
             }
         })
         .collect()

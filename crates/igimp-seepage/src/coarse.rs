@@ -32,7 +32,9 @@ pub(crate) fn start<const D: usize>(
         ..stated.clone()
     };
     let mut search = Search::of(&grid, bodies, &conditions, free).ok()?;
-    search.find((bodies, free), ON_THE_WAY * ON_THE_WAY, few).ok()?;
+    search
+        .find((bodies, free), ON_THE_WAY * ON_THE_WAY, few)
+        .ok()?;
     let heads = by_node(&search.system, &search.heads);
     let at = |&node: &usize| interpolated(&grid, &heads, &fine.node_position(node));
     let own = system.nodes.iter().map(at).collect();
@@ -71,6 +73,7 @@ mod tests {
         let bodies = [SeepageBody {
             region: &region,
             soil: 0,
+            scale: None,
         }];
         [100, usize::MAX].map(|few| {
             let mut search = Search::of(&grid, &bodies, conditions, &|_| None).unwrap();

@@ -24,6 +24,6 @@ pub use conditions::{Conditions, Extent, FreeWater, InGround, Named, OnFaces, So
 pub use curve::Curve;
 pub use error::SeepageError;
 pub use field::{Discharge, Seepage};
-pub use ground::SeepageBody;
+pub use ground::{Scale, SeepageBody};
 pub use solve::solve;
 pub use transient::{Course, History, Transient, WaterBalance, march};

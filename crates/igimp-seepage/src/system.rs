@@ -49,9 +49,9 @@ pub(crate) struct System<'a, const D: usize> {
     pub(crate) grid: &'a Grid<D>,
     pub(crate) cells: Vec<Cell<D>>,
     pub(crate) conditions: &'a Conditions<D>,
-    /// By soil, then of cells that several soils share.
+    /// By soil, then of cells that several soils share or whose soil varies.
     tensors: Vec<[[f64; D]; D]>,
-    /// By cell: the tensor of the soils that share it.
+    /// By cell: the tensor of the soils that share it, or of one that varies.
     shared: Vec<Option<usize>>,
     pub(crate) held: Vec<Held<D>>,
     /// In time, by facet: the flow that its gradient drives out as a step begins \[m/s\]; none: that of the heads sought.
@@ -140,7 +140,12 @@ impl<'a, const D: usize> System<'a, D> {
         let mut tensors: Vec<_> = conditions.soils.iter().map(Soil::tensor).collect();
         let shared = (cells.iter())
             .map(|cell| {
-                let own = layers::laminate(&cell.points, &tensors)?;
+                let points = if cell.whole.is_some() {
+                    &cell.samples
+                } else {
+                    &cell.points
+                };
+                let own = layers::laminate(points, &tensors)?;
                 tensors.push(own);
                 Some(tensors.len() - 1)
             })
