@@ -352,30 +352,7 @@ fn permeability<const D: usize>(
         }
         Either::Second(own) => own,
     };
-    let curve = match (&own.gardner, &own.van_genuchten) {
-        (Some(_), Some(second)) => {
-            problems
-                .error(second.place, "both `gardner` and `van_genuchten` are given")
-                .help("keep the curve that was measured");
-            return Err(Wrong);
-        }
-        (Some(height), None) => Curve::Gardner {
-            alpha: 1.0 / **height,
-        },
-        (None, Some(own)) => {
-            if *own.n <= 1.0 {
-                problems
-                    .error(own.n.place, "n of van Genuchten's curve has to be above 1")
-                    .help("clay has about 1.1 to 1.4, sand 2 to 3");
-                return Err(Wrong);
-            }
-            Curve::VanGenuchten {
-                alpha: 1.0 / *own.height,
-                n: *own.n,
-            }
-        }
-        (None, None) => Curve::Ramp,
-    };
+    let curve = curve(own, problems)?;
     if let (Some(index), None) = (&own.c_k, &own.void_ratio) {
         problems
             .error(
@@ -422,6 +399,34 @@ fn permeability<const D: usize>(
         profile,
         void_law,
     }))
+}
+
+/// What soil keeps of its permeability above the free surface.
+fn curve(own: &keys::Permeability, problems: &mut Problems) -> Result<Curve, Wrong> {
+    match (&own.gardner, &own.van_genuchten) {
+        (Some(_), Some(second)) => {
+            problems
+                .error(second.place, "both `gardner` and `van_genuchten` are given")
+                .help("keep the curve that was measured");
+            Err(Wrong)
+        }
+        (Some(height), None) => Ok(Curve::Gardner {
+            alpha: 1.0 / **height,
+        }),
+        (None, Some(own)) => {
+            if *own.n <= 1.0 {
+                problems
+                    .error(own.n.place, "n of van Genuchten's curve has to be above 1")
+                    .help("clay has about 1.1 to 1.4, sand 2 to 3");
+                return Err(Wrong);
+            }
+            Ok(Curve::VanGenuchten {
+                alpha: 1.0 / *own.height,
+                n: *own.n,
+            })
+        }
+        (None, None) => Ok(Curve::Ramp),
+    }
 }
 
 /// The unit weight below a water table, if the material states one.

@@ -62,7 +62,7 @@ impl<const D: usize> Flows<D> {
             match &own.in_time {
                 Some(in_time) => left.push((index, own, in_time)),
                 None => {
-                    found.by_condition[index] = Some(Arc::new(solved(case, index, own, &varied)?))
+                    found.by_condition[index] = Some(Arc::new(solved(case, index, own, &varied)?));
                 }
             }
         }
