@@ -6,7 +6,7 @@
 use igimp_geometry::region::Region;
 use igimp_shape::Grid;
 
-use crate::basis::{FOUR, gauss};
+use crate::basis::{FOUR, Point, gauss};
 use crate::conditions::{Conditions, InGround};
 
 /// Sub-boxes of a cut cell along each axis, in the plane and in space.
@@ -17,20 +17,6 @@ const SLAB: f64 = 1e-6;
 const SMALL: f64 = 1e-4;
 /// Cells filled to this share are whole \[-\].
 const WHOLE: f64 = 1.0 - 1e-9;
-
-/// A point of the ground with the volume that it stands for.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Point<const D: usize> {
-    pub(crate) x: [f64; D],
-    pub(crate) volume: f64,
-    pub(crate) soil: usize,
-    /// The soil of its body, whose pores store water whatever a region does to the permeability.
-    pub(crate) body_soil: usize,
-    /// The region that acts there.
-    pub(crate) region: Option<usize>,
-    /// Permeability over that of its soil \[-\].
-    pub(crate) scale: f64,
-}
 
 /// A piece of a face of the ground.
 #[derive(Clone, Copy, Debug)]

@@ -7,7 +7,6 @@
 
 mod basis;
 mod boundary;
-mod coarse;
 mod conditions;
 mod curve;
 mod error;
@@ -15,6 +14,7 @@ mod field;
 mod ground;
 mod layers;
 mod lines;
+mod search;
 mod solve;
 mod storage;
 mod system;

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use igimp_linear::{NodeBlock, Pattern, TangentMatrix};
 use igimp_shape::Grid;
 
-use crate::basis::{Basis, CORNERS, FOUR, HIGH, TWO, apply, dot, gauss, nodes_of};
+use crate::basis::{Basis, CORNERS, FOUR, HIGH, Point, TWO, apply, dot, gauss, nodes_of};
 use crate::boundary::{At, Held, held};
 use crate::conditions::{Conditions, FreeWater, InGround, Soil};
 use crate::curve::{Curve, Relative};
 use crate::error::SeepageError;
-use crate::ground::{Cell, Facet, Point, ends_of};
+use crate::ground::{Cell, Facet, ends_of};
 use crate::layers;
 
 /// Factor of Nitsche's method: penalty on heads over k / h \[-\].
