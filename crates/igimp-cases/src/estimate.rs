@@ -10,6 +10,7 @@
 
 mod couplings;
 pub mod factor_memory;
+mod flows;
 pub mod room;
 pub mod speed;
 mod systems;
@@ -24,6 +25,7 @@ use igimp_shape::{Scratch, supports};
 
 use crate::error::CaseError;
 use couplings::Couplings;
+pub use flows::Flows;
 use speed::Speed;
 pub use systems::Systems;
 use time::Time;
@@ -62,6 +64,8 @@ pub struct Estimate {
     pub unknowns: usize,
     /// How its linear systems will be solved.
     pub systems: Systems,
+    /// What flows of water take that are computed.
+    pub flows: Flows,
     /// Memory of a particle, and of an unknown with its share of what the linear solver keeps \[bytes\].
     pub per_item: [f64; 2],
     /// Memory on the threads of the current pool \[bytes\].
@@ -136,9 +140,13 @@ pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, CaseError> {
     } else {
         [PER_PARTICLE, PER_UNKNOWN]
     };
+    let nodes = active.iter().filter(|own| **own).count();
+    let flows = Flows::of(case, nodes);
     let solving = particle * particles as f64 + unknown * unknowns as f64 + systems.bytes;
-    let memory = |solving| memory(case, particles, solving);
+    // Flows are found before the first step, and their equations are gone then.
+    let memory = |solving: f64| memory(case, particles, solving.max(flows.bytes));
     Ok(Estimate {
+        flows,
         particles,
         cells: grid.cell_count(),
         unknowns,

@@ -2,10 +2,22 @@
 
 use igimp_shape::Grid;
 
-use crate::ground::Point;
-
 /// Corners of a cell, at most.
 pub(crate) const CORNERS: usize = 8;
+
+/// A point of the ground with the volume that it stands for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Point<const D: usize> {
+    pub(crate) x: [f64; D],
+    pub(crate) volume: f64,
+    pub(crate) soil: usize,
+    /// The soil of its body, whose pores store water whatever a region does to the permeability.
+    pub(crate) body_soil: usize,
+    /// The region that acts there.
+    pub(crate) region: Option<usize>,
+    /// Permeability over that of its soil \[-\].
+    pub(crate) scale: f64,
+}
 
 /// The basis of a cell at a point.
 #[derive(Clone, Copy, Debug)]
@@ -92,6 +104,7 @@ pub(crate) fn gauss<const D: usize>(
                 soil,
                 body_soil: soil,
                 region: None,
+                scale: 1.0,
             }
         })
         .collect()

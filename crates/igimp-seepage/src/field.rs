@@ -65,12 +65,10 @@ impl<const D: usize> Seepage<D> {
         corrections: usize,
     ) -> Self {
         let grid = system.grid.clone();
-        let mut all = vec![f64::NAN; grid.node_count()];
-        for (&node, &head) in std::iter::zip(&system.nodes, heads) {
-            all[node] = head;
+        let mut is_ground = vec![false; grid.node_count()];
+        for &node in &system.nodes {
+            is_ground[node] = true;
         }
-        let is_ground: Vec<bool> = all.iter().map(|head| !head.is_nan()).collect();
-        extend(&grid, &mut all);
         let through = Through::of(system, heads, &relative);
         let sum = |own: &[f64]| own.iter().sum::<f64>();
         let (inflow, outflow) = (sum(&flows.inwards), sum(&flows.outwards));
@@ -78,7 +76,7 @@ impl<const D: usize> Seepage<D> {
             .iter()
             .fold(0.0, |most: f64, own| most.max(own.abs()));
         Self {
-            heads: all,
+            heads: by_node(system, heads),
             is_ground,
             filled: through.filled,
             velocities: through.velocities,
@@ -99,17 +97,7 @@ impl<const D: usize> Seepage<D> {
 
     /// The head at a point \[m\]; beyond the grid that of its nearest place.
     pub fn head(&self, x: &[f64; D]) -> f64 {
-        let (lower, upper) = self.grid.bounds();
-        let x = std::array::from_fn(|axis| x[axis].max(lower[axis]).min(upper[axis]));
-        let Some(place) = self.grid.cell_at(&x) else {
-            return f64::NAN;
-        };
-        let basis = Basis::at(ends_of(&self.grid, place), &x);
-        let mut own = [0.0; CORNERS];
-        for (k, node) in nodes_of(&self.grid, place).enumerate() {
-            own[k] = self.heads[node];
-        }
-        basis.head(&own)
+        interpolated(&self.grid, &self.heads, x)
     }
 
     /// The pressure head ψ = h − z at a point \[m\], negative above the free surface.
@@ -140,6 +128,31 @@ impl<const D: usize> Seepage<D> {
         }
         None
     }
+}
+
+/// Heads by node of the grid \[m\]; beyond the ground those of the nearest soil.
+pub(crate) fn by_node<const D: usize>(system: &System<'_, D>, heads: &[f64]) -> Vec<f64> {
+    let mut all = vec![f64::NAN; system.grid.node_count()];
+    for (&node, &head) in std::iter::zip(&system.nodes, heads) {
+        all[node] = head;
+    }
+    extend(system.grid, &mut all);
+    all
+}
+
+/// The head at a point from those of nodes \[m\]; beyond the grid that of its nearest place.
+pub(crate) fn interpolated<const D: usize>(grid: &Grid<D>, heads: &[f64], x: &[f64; D]) -> f64 {
+    let (lower, upper) = grid.bounds();
+    let x = std::array::from_fn(|axis| x[axis].max(lower[axis]).min(upper[axis]));
+    let Some(place) = grid.cell_at(&x) else {
+        return f64::NAN;
+    };
+    let basis = Basis::at(ends_of(grid, place), &x);
+    let mut own = [0.0; CORNERS];
+    for (k, node) in nodes_of(grid, place).enumerate() {
+        own[k] = heads[node];
+    }
+    basis.head(&own)
 }
 
 /// What passes through cells.

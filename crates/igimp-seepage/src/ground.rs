@@ -6,6 +6,7 @@
 use igimp_geometry::region::Region;
 use igimp_shape::Grid;
 
+use crate::basis::{FOUR, Point, gauss};
 use crate::conditions::{Conditions, InGround};
 
 /// Sub-boxes of a cut cell along each axis, in the plane and in space.
@@ -16,18 +17,6 @@ const SLAB: f64 = 1e-6;
 const SMALL: f64 = 1e-4;
 /// Cells filled to this share are whole \[-\].
 const WHOLE: f64 = 1.0 - 1e-9;
-
-/// A point of the ground with the volume that it stands for.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Point<const D: usize> {
-    pub(crate) x: [f64; D],
-    pub(crate) volume: f64,
-    pub(crate) soil: usize,
-    /// The soil of its body, whose pores store water whatever a region does to the permeability.
-    pub(crate) body_soil: usize,
-    /// The region that acts there.
-    pub(crate) region: Option<usize>,
-}
 
 /// A piece of a face of the ground.
 #[derive(Clone, Copy, Debug)]
@@ -48,16 +37,38 @@ pub(crate) struct Cell<const D: usize> {
     /// The soil that fills all of it; none: `points` say.
     pub(crate) whole: Option<usize>,
     pub(crate) points: Vec<Point<D>>,
+    /// Where the permeability of a whole cell is taken that varies within it; none: it does not.
+    pub(crate) samples: Vec<Point<D>>,
     pub(crate) facets: Vec<Facet<D>>,
 }
 
+/// Permeability at a place over that of its soil \[-\].
+pub type Scale<'a, const D: usize> = &'a (dyn Fn(&[f64; D]) -> f64 + Sync);
+
 /// A body as water sees it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct SeepageBody<'a, const D: usize> {
     /// What it fills.
     pub region: &'a dyn Region<D>,
     /// Its soil, by index.
     pub soil: usize,
+    /// How its permeability varies from place to place; none: it does not.
+    pub scale: Option<Scale<'a, D>>,
+}
+
+impl<const D: usize> std::fmt::Debug for SeepageBody<'_, D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("SeepageBody")
+            .field("region", &self.region)
+            .field("soil", &self.soil)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<const D: usize> SeepageBody<'_, D> {
+    fn scale_at(&self, x: &[f64; D]) -> f64 {
+        self.scale.map_or(1.0, |scale| scale(x))
+    }
 }
 
 /// The ground: the bodies that are there.
@@ -77,10 +88,11 @@ impl<'a, const D: usize> Bodies<'a, D> {
             volume: 0.0,
             moment: [0.0; D],
             soil: 0,
+            body: 0,
             bodies: 0,
         };
         let mut most = 0.0;
-        for body in self.bodies {
+        for (index, body) in self.bodies.iter().enumerate() {
             let part = body.region.within(lower, upper);
             if part.volume > 0.0 {
                 found.volume += part.volume;
@@ -89,7 +101,7 @@ impl<'a, const D: usize> Bodies<'a, D> {
                     found.moment[axis] += part.volume * part.centroid[axis];
                 }
                 if part.volume > most {
-                    (most, found.soil) = (part.volume, body.soil);
+                    (most, found.soil, found.body) = (part.volume, body.soil, index);
                 }
             }
         }
@@ -172,7 +184,10 @@ impl<'a, const D: usize> Bodies<'a, D> {
 struct Filling<const D: usize> {
     volume: f64,
     moment: [f64; D],
+    /// The soil of the body that has most of it, and that body.
     soil: usize,
+    body: usize,
+    /// How many bodies have some.
     bodies: usize,
 }
 
@@ -230,8 +245,16 @@ pub(crate) fn cells<const D: usize>(
             filled: filled.min(1.0),
             whole: is_whole.then_some(filling.soil),
             points: Vec::new(),
+            samples: Vec::new(),
             facets: Vec::new(),
         };
+        let body = &bodies.bodies[filling.body];
+        if is_whole && body.scale.is_some() {
+            own.samples = gauss([lower, upper], &FOUR, filling.soil);
+            for point in &mut own.samples {
+                point.scale = body.scale_at(&point.x);
+            }
+        }
         if !is_whole || !is_inner {
             subdivide(bodies, conditions, [lower, upper], &mut own, is_inner);
         }
@@ -278,6 +301,11 @@ fn subdivide<const D: usize>(
                         soil,
                         body_soil: body.soil,
                         region,
+                        scale: if soil == body.soil {
+                            body.scale_at(&part.centroid)
+                        } else {
+                            1.0
+                        },
                     });
                 }
             }

@@ -14,6 +14,7 @@ mod field;
 mod ground;
 mod layers;
 mod lines;
+mod search;
 mod solve;
 mod storage;
 mod system;
@@ -23,6 +24,6 @@ pub use conditions::{Conditions, Extent, FreeWater, InGround, Named, OnFaces, So
 pub use curve::Curve;
 pub use error::SeepageError;
 pub use field::{Discharge, Seepage};
-pub use ground::SeepageBody;
+pub use ground::{Scale, SeepageBody};
 pub use solve::solve;
 pub use transient::{Course, History, Transient, WaterBalance, march};

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use igimp_linear::{NodeBlock, Pattern, TangentMatrix};
 use igimp_shape::Grid;
 
-use crate::basis::{Basis, CORNERS, FOUR, HIGH, TWO, apply, dot, gauss, nodes_of};
+use crate::basis::{Basis, CORNERS, FOUR, HIGH, Point, TWO, apply, dot, gauss, nodes_of};
 use crate::boundary::{At, Held, held};
 use crate::conditions::{Conditions, FreeWater, InGround, Soil};
 use crate::curve::{Curve, Relative};
 use crate::error::SeepageError;
-use crate::ground::{Cell, Facet, Point, ends_of};
+use crate::ground::{Cell, Facet, ends_of};
 use crate::layers;
 
 /// Factor of Nitsche's method: penalty on heads over k / h \[-\].
@@ -49,9 +49,9 @@ pub(crate) struct System<'a, const D: usize> {
     pub(crate) grid: &'a Grid<D>,
     pub(crate) cells: Vec<Cell<D>>,
     pub(crate) conditions: &'a Conditions<D>,
-    /// By soil, then of cells that several soils share.
+    /// By soil, then of cells that several soils share or whose soil varies.
     tensors: Vec<[[f64; D]; D]>,
-    /// By cell: the tensor of the soils that share it.
+    /// By cell: the tensor of the soils that share it, or of one that varies.
     shared: Vec<Option<usize>>,
     pub(crate) held: Vec<Held<D>>,
     /// In time, by facet: the flow that its gradient drives out as a step begins \[m/s\]; none: that of the heads sought.
@@ -140,7 +140,12 @@ impl<'a, const D: usize> System<'a, D> {
         let mut tensors: Vec<_> = conditions.soils.iter().map(Soil::tensor).collect();
         let shared = (cells.iter())
             .map(|cell| {
-                let own = layers::laminate(&cell.points, &tensors)?;
+                let points = if cell.whole.is_some() {
+                    &cell.samples
+                } else {
+                    &cell.points
+                };
+                let own = layers::laminate(points, &tensors)?;
                 tensors.push(own);
                 Some(tensors.len() - 1)
             })
@@ -198,8 +203,12 @@ impl<'a, const D: usize> System<'a, D> {
         let [lower, upper] = ends_of(self.grid, own.place);
         let heads = &heads[..1 << D];
         let lowest = heads.iter().copied().fold(f64::INFINITY, f64::min);
-        let is_full = relative.confined || lowest - upper[D - 1] > 0.5 * relative.width;
-        gauss([lower, upper], if is_full { &TWO } else { &FOUR }, soil)
+        let highest = heads.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let beyond = 0.5 * relative.width;
+        let is_full = relative.confined || lowest - upper[D - 1] > beyond;
+        let is_dry = self.curve(soil) == Curve::Ramp && highest - lower[D - 1] < -beyond;
+        let along: &[(f64, f64)] = if is_full || is_dry { &TWO } else { &FOUR };
+        gauss([lower, upper], along, soil)
     }
 
     /// What share of its permeability soil has at a point, and the slope of that.

@@ -10,7 +10,7 @@ use crate::curve::Relative;
 use crate::error::SeepageError;
 use crate::field::Seepage;
 use crate::ground::SeepageBody;
-use crate::solve::{Balanced, Search, TOLERANCE, relative_of};
+use crate::search::{Balanced, Search, TOLERANCE, relative_of};
 use crate::storage::{Storage, Storing};
 
 /// Share of a step that one of its stages lasts \[-\].

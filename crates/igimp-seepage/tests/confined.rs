@@ -3,7 +3,9 @@
 mod common;
 
 use common::{faces, flow, grid, rectangle};
-use igimp_seepage::{Conditions, Extent, InGround, Named, OnFaces, SeepageError, Soil};
+use igimp_seepage::{
+    Conditions, Extent, InGround, Named, OnFaces, SeepageBody, SeepageError, Soil, solve,
+};
 
 fn confined(soils: &[f64]) -> Conditions<2> {
     Conditions {
@@ -64,6 +66,49 @@ fn layers_have_the_harmonic_mean() {
         for own in [found.inflow, found.outflow, found.sections[0].inflow] {
             assert!((own / exact - 1.0).abs() < 1e-9, "{own} of {exact}");
         }
+    }
+}
+
+/// GOAL: permeability that falls tenfold with depth, on lines of the grid and off them: across in series, along side by side.
+/// ORACLE: for k = k₀ (1 + a z) the integrals by hand, q = Δh a k₀ / ln(1 + a H) and q = Δh/L k₀ (H + a H²/2); the mean of k in
+/// place of its inverse, 1.41 times the first, is the control.
+#[test]
+fn permeability_that_grows_upwards_has_the_mean_of_its_direction() {
+    let (least, growth, thick) = (1e-6, 2.25, 4.0);
+    let scale = |x: &[f64; 2]| 1.0 + growth * x[1];
+    // Cells that the ground cuts take k at the middles of a quarter of their height: that error falls with the square of the cell.
+    for (shift, cell, accuracy) in [(0.0, 0.25, 1e-7), (0.3, 0.25, 5e-4), (0.3, 0.125, 1.25e-4)] {
+        let count = (1.0 / cell) as usize;
+        let grid = grid([0.0, -shift * cell], cell, [count, 4 * count + 1]);
+        let region = rectangle([0.0, 0.0], [1.0, thick]);
+        let body = SeepageBody {
+            region: &region,
+            soil: 0,
+            scale: Some(&scale),
+        };
+        let through = |ends: [([f64; 2], [f64; 2]); 2]| {
+            let mut conditions = confined(&[least]);
+            conditions.faces = (std::iter::zip(ends, [7.0, 4.0]))
+                .map(|((lower, upper), head)| {
+                    faces(&format!("{head}"), lower, upper, OnFaces::Head(head))
+                })
+                .collect();
+            let found = solve(&grid, &[body], &conditions, &|_| None).unwrap();
+            assert!((found.inflow / found.outflow - 1.0).abs() < 1e-10);
+            found.outflow
+        };
+        let across = through([([0.0, 0.0], [1.0, 0.0]), ([0.0, thick], [1.0, thick])]);
+        let along = through([([0.0, 0.0], [0.0, thick]), ([1.0, 0.0], [1.0, thick])]);
+        let series = 3.0 * growth * least / (1.0 + growth * thick).ln();
+        let beside = 3.0 * least * thick * (1.0 + 0.5 * growth * thick);
+        println!(
+            "shift {shift}: {} {}",
+            across / series - 1.0,
+            along / beside - 1.0
+        );
+        assert!((across / series - 1.0).abs() < accuracy);
+        assert!((along / beside - 1.0).abs() < accuracy);
+        assert!(3.0 * least * (1.0 + 0.5 * growth * thick) / thick > 1.3 * across);
     }
 }
 

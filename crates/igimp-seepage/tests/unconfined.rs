@@ -103,7 +103,11 @@ fn a_drain_under_a_slope() {
         [0.0, 3.0],
     ];
     let region: &dyn Region<2> = &ground;
-    let body = SeepageBody { region, soil: 0 };
+    let body = SeepageBody {
+        region,
+        soil: 0,
+        scale: None,
+    };
     let mut conditions = Conditions::of(vec![Soil::isotropic(1e-6)]);
     let pond = |_: &[f64; 2]| Some(6.0);
     let level = |x: &[f64; 2]| if x[0] < 7.0 { pond(x) } else { None };
@@ -152,6 +156,7 @@ fn a_dam_in_space() {
     let body = SeepageBody {
         region: &dam,
         soil: 0,
+        scale: None,
     };
     let found = solve(&grid, &[body], &conditions, &|_| None).unwrap();
     assert!(

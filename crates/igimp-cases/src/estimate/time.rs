@@ -227,7 +227,9 @@ fn of_stages<const D: usize>(
         + states * (state + part * particles);
     let more = 1.0 / rayon::current_num_threads() as f64;
     let divided = |share: f64| 1.0 - share + share * more;
-    marching * divided(PARALLEL[0]) + speed.assembly * output * divided(PARALLEL[1])
+    speed.factor * size.flows.seconds
+        + marching * divided(PARALLEL[0])
+        + speed.assembly * output * divided(PARALLEL[1])
 }
 
 /// Pictures of a run, and how many of them show a field.

@@ -59,6 +59,7 @@ pub(super) fn of_check<const D: usize>(case: &Case<D>, name: &str) -> Convergenc
             }
         }
         Some((Quantity::Reaction(_), _)) => of_footings(case),
+        Some((Quantity::Discharge(..), _)) => Convergence::OTHER,
         _ if has_contact(case) => Convergence::CONTACT,
         _ => Convergence::OTHER,
     }

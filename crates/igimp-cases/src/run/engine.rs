@@ -49,7 +49,8 @@ pub(super) fn one_mesh<const D: usize>(
         case,
         &model.laws,
         all.as_ref().unwrap_or(&initial.body.particles),
-    )?;
+    )?
+    .with_discharges(seepage::by_condition(&model));
     let mut session = Session {
         model: &model,
         listener,

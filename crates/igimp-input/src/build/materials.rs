@@ -19,7 +19,7 @@ use igimp_schema::tree::read::{At, Either, Found, Named};
 use igimp_schema::tree::{Node, Wrong};
 use igimp_seepage::{Curve, Soil};
 
-use profiles::{Extent, Property, Terms, property};
+use profiles::{Extent, Property, TABLES, Terms, property};
 
 /// What may be said of a strength, of Young's modulus and of a unit weight that vary.
 const STRENGTH: Terms = Terms {
@@ -36,6 +36,11 @@ const UNDRAINED: Terms = Terms {
 const YOUNG: Terms = Terms {
     may_vanish: false,
     ..STRENGTH
+};
+const PERMEABILITY: Terms = Terms {
+    printed: |value| format!("{} m/s", number(value)),
+    forms: TABLES,
+    ..YOUNG
 };
 const UNIT_WEIGHT: Terms = Terms {
     may_be_nothing: true,
@@ -131,12 +136,12 @@ fn material<const D: usize>(
     let varies = profile(friction.as_ref()).is_some();
     let softening = softening::curves(name, &own.form, (strength, varies), problems);
     let drainage = drainage((common, &own.form), stiffness, strength, problems);
-    let permeability = permeability(common, problems).ok()?;
+    let permeable = permeability(common, extent, problems).ok()?;
     let material = Material {
         saturated: saturated.ok()?,
         drainage: drainage?,
-        permeability: permeability.map(|(soil, _)| soil),
-        void_law: permeability.and_then(|(_, law)| law),
+        permeability: permeable.as_ref().map(|own| own.soil),
+        void_law: permeable.as_ref().and_then(|own| own.void_law),
         given: None,
         name: name.clone(),
         unit_weight: unit_weight?.constant,
@@ -150,6 +155,7 @@ fn material<const D: usize>(
             friction: profile(friction.as_ref()),
             young: profile(young.as_ref()),
             unit_weight: profile(unit_weight),
+            permeability: permeable.and_then(|own| own.profile),
         },
     };
     if problems.errors() == before
@@ -318,45 +324,35 @@ fn constants(own: &keys::Material, common: &MaterialCommon) -> Vec<(&'static str
     stated.collect()
 }
 
+/// A permeability as a material states it.
+struct Permeability {
+    /// The greatest where it varies.
+    soil: Soil,
+    profile: Option<Profile>,
+    void_law: Option<VoidLaw>,
+}
+
 /// The permeability, if the material states one.
-fn permeability(
+fn permeability<const D: usize>(
     common: &MaterialCommon,
+    extent: Extent<'_, D>,
     problems: &mut Problems,
-) -> Result<Option<(Soil, Option<VoidLaw>)>, Wrong> {
+) -> Result<Option<Permeability>, Wrong> {
     let stated = common.permeability.as_ref().map_err(|_| Wrong)?;
     let Some(stated) = stated else {
         return Ok(None);
     };
     let own = match &**stated {
         Either::First(permeability) => {
-            return Ok(Some((Soil::isotropic(*permeability), None)));
+            return Ok(Some(Permeability {
+                soil: Soil::isotropic(*permeability),
+                profile: None,
+                void_law: None,
+            }));
         }
         Either::Second(own) => own,
     };
-    let curve = match (&own.gardner, &own.van_genuchten) {
-        (Some(_), Some(second)) => {
-            problems
-                .error(second.place, "both `gardner` and `van_genuchten` are given")
-                .help("keep the curve that was measured");
-            return Err(Wrong);
-        }
-        (Some(height), None) => Curve::Gardner {
-            alpha: 1.0 / **height,
-        },
-        (None, Some(own)) => {
-            if *own.n <= 1.0 {
-                problems
-                    .error(own.n.place, "n of van Genuchten's curve has to be above 1")
-                    .help("clay has about 1.1 to 1.4, sand 2 to 3");
-                return Err(Wrong);
-            }
-            Curve::VanGenuchten {
-                alpha: 1.0 / *own.height,
-                n: *own.n,
-            }
-        }
-        (None, None) => Curve::Ramp,
-    };
+    let curve = curve(own, problems)?;
     if let (Some(index), None) = (&own.c_k, &own.void_ratio) {
         problems
             .error(
@@ -370,16 +366,67 @@ fn permeability(
         initial: **initial,
         index: own.c_k.as_ref().map(|own| **own),
     });
+    let along = property(
+        &own.horizontal,
+        "horizontal",
+        extent,
+        PERMEABILITY,
+        problems,
+    );
+    let Property { constant, profile } = along.ok_or(Wrong)?;
+    let drainage = common.drainage.as_ref().map_err(|_| Wrong)?;
+    let flows = drainage.as_ref().map(|own| **own) == Some(keys::Drainage::Coupled);
+    if flows && profile.is_some() {
+        problems
+            .error(
+                own.horizontal.place,
+                "permeability of coupled soil does not vary with the level or the depth",
+            )
+            .help("write one value, and materials of their own for layers; computed seepage takes what varies");
+        return Err(Wrong);
+    }
     let soil = Soil {
-        along: *own.horizontal,
-        across: own.vertical.as_ref().map_or(*own.horizontal, |own| **own),
+        along: constant,
+        across: own.vertical.as_ref().map_or(constant, |own| **own),
         angle: *own.angle,
         curve,
         drainable: own.drainable.as_ref().map_or(0.0, |own| **own),
         // It follows from the stiffness, with the weight of the water.
         specific_storage: 0.0,
     };
-    Ok(Some((soil, void_law)))
+    Ok(Some(Permeability {
+        soil,
+        profile,
+        void_law,
+    }))
+}
+
+/// What soil keeps of its permeability above the free surface.
+fn curve(own: &keys::Permeability, problems: &mut Problems) -> Result<Curve, Wrong> {
+    match (&own.gardner, &own.van_genuchten) {
+        (Some(_), Some(second)) => {
+            problems
+                .error(second.place, "both `gardner` and `van_genuchten` are given")
+                .help("keep the curve that was measured");
+            Err(Wrong)
+        }
+        (Some(height), None) => Ok(Curve::Gardner {
+            alpha: 1.0 / **height,
+        }),
+        (None, Some(own)) => {
+            if *own.n <= 1.0 {
+                problems
+                    .error(own.n.place, "n of van Genuchten's curve has to be above 1")
+                    .help("clay has about 1.1 to 1.4, sand 2 to 3");
+                return Err(Wrong);
+            }
+            Ok(Curve::VanGenuchten {
+                alpha: 1.0 / *own.height,
+                n: *own.n,
+            })
+        }
+        (None, None) => Ok(Curve::Ramp),
+    }
 }
 
 /// The unit weight below a water table, if the material states one.

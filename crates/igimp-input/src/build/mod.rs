@@ -19,7 +19,7 @@ mod water;
 
 use std::path::Path;
 
-use igimp_model::{AnyCase, Case, Material, TitleBlock};
+use igimp_model::{AnyCase, Case, Material, Quantity, TitleBlock};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::names::Names;
 use igimp_schema::schema::stages::StageForm;
@@ -28,6 +28,7 @@ use igimp_schema::tree::read::{At, Found};
 use igimp_schema::tree::{Node, Wrong};
 
 use crate::build::grid::boundaries;
+use crate::build::outputs::quantities;
 use assemble::{GridAndBodies, Surroundings};
 use bodies::site::Site;
 use context::Context;
@@ -43,6 +44,8 @@ struct AllNames {
     reinforcement: Names,
     stages: Names,
     monitors: Names,
+    /// Discharges that seepage has, by their names.
+    discharges: Vec<(String, Quantity)>,
 }
 
 impl AllNames {
@@ -69,6 +72,7 @@ impl AllNames {
             reinforcement: Names::of_list("reinforcement", tree.get("reinforcement"), problems),
             stages: Names::of_list("stage", tree.get("stages"), problems),
             monitors: Names::of_list("monitor", tree.get("monitors"), problems),
+            discharges: quantities::discharges(tree),
         }
     }
 }

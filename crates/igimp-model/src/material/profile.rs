@@ -166,6 +166,8 @@ pub struct Profiles {
     pub young: Option<Profile>,
     /// Unit weight \[N/m³\].
     pub unit_weight: Option<Profile>,
+    /// Permeability along the bedding \[m/s\].
+    pub permeability: Option<Profile>,
 }
 
 impl Material {
@@ -174,9 +176,13 @@ impl Material {
         self.strength.cohesive().unwrap_or(0.0)
     }
 
-    /// Whether anything varies.
+    /// Whether anything varies that stress depends on.
     pub fn varies(&self) -> bool {
-        self.profiles != Profiles::default()
+        let of_stress = Profiles {
+            permeability: None,
+            ..self.profiles.clone()
+        };
+        of_stress != Profiles::default()
     }
 
     /// Strength, friction and stiffness at a place over the constants of the material \[-\].
@@ -186,6 +192,7 @@ impl Material {
             friction,
             young,
             unit_weight: _,
+            permeability: _,
         } = &self.profiles;
         let over = |profile: &Option<Profile>, greatest: f64, least: f64| {
             let ratio = |own: &Profile| (own.at(place, ground) / greatest).max(least);
@@ -208,6 +215,19 @@ impl Material {
     pub fn added_by_water(&self) -> f64 {
         self.saturated
             .map_or(0.0, |saturated| saturated - self.unit_weight)
+    }
+
+    /// Permeability at a place over the greatest in its soil \[-\]; one where it does not vary.
+    pub fn permeability_ratio_at<const D: usize>(
+        &self,
+        place: &[f64; D],
+        ground: &Ground<D>,
+    ) -> f64 {
+        let varied = self.profiles.permeability.as_ref();
+        match (varied, self.permeability) {
+            (Some(own), Some(soil)) => own.at(place, ground) / soil.along,
+            _ => 1.0,
+        }
     }
 
     /// Unit weight at a place \[N/m³\].

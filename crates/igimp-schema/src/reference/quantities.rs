@@ -1,7 +1,7 @@
 //! The quantities that curves and checks name, such as `footing.reaction`, as the reference lists them.
 
 /// Quantities and what they mean, for the reference.
-pub(crate) const QUANTITY_DOCS: [(&str, &str); 25] = [
+pub(crate) const QUANTITY_DOCS: [(&str, &str); 26] = [
     ("FOOTING.settlement", "settlement of a rigid footing [m]"),
     (
         "FOOTING.reaction",
@@ -44,6 +44,10 @@ pub(crate) const QUANTITY_DOCS: [(&str, &str); 25] = [
     (
         "reinforcement.MEMBER.at_limit",
         "share of its length on which its tension is at its limit [-]",
+    ),
+    (
+        "seepage.WATER.outflow, seepage.WATER.section.SECTION",
+        "water that leaves the ground in the flow of a condition, and that passes a section of it towards the positive axis [m2/s, m3/s in space]",
     ),
     ("LOAD.factor", "factor on a pressure or point load [-]"),
     (

@@ -213,8 +213,10 @@ table! {
 
 table! {
     PERMEABILITY: Permeability, "A permeability that differs by direction, or that soil above the free surface keeps in part.";
-    horizontal: quantity(Velocity, Positive), required "\"1e-5 m/s\"", "along the bedding";
-    vertical: quantity(Velocity, Positive), optional "as `horizontal`", "across the bedding";
+    horizontal: either(quantity(Velocity, Positive), table(PERMEABILITY_PROFILE: Rows)), required "\"1e-5 m/s\"",
+        "along the bedding; in computed seepage it may vary with the level or with the depth";
+    vertical: quantity(Velocity, Positive), optional "as `horizontal`",
+        "across the bedding; where `horizontal` varies, that where it is greatest, and it varies alike";
     angle: quantity(Angle, Any), default "\"0 deg\"", "angle by which the bedding rises towards +x";
     gardner: quantity(Length, Positive), optional "it falls over one cell at the free surface",
         "height 1/alpha over which permeability falls to 37 % above the free surface, by Gardner's curve";
@@ -343,6 +345,11 @@ rows! {
     schema FRICTION_PROFILE,
     "An angle of friction that varies with the level or with the depth; its tangent is linear in between.",
     quantity(Angle, NotNegative)
+}
+
+rows! {
+    schema PERMEABILITY_PROFILE,
+    "A permeability that varies with the level or with the depth.", quantity(Velocity, NotNegative)
 }
 
 schema! {

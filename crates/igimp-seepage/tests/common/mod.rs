@@ -37,6 +37,7 @@ pub fn flow(
         .map(|(soil, region)| SeepageBody {
             region: region as &dyn Region<2>,
             soil,
+            scale: None,
         })
         .collect();
     solve(grid, &bodies, conditions, &|_| None)

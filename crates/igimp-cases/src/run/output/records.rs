@@ -79,6 +79,9 @@ pub(crate) struct Records {
     pub(crate) peaks: Vec<f64>,
     /// Middle of the interval of the factor of safety found last \[-\].
     pub(crate) factor_of_safety: f64,
+    /// By condition of the water: what leaves the ground in its flow, then what passes each section; empty without one
+    /// \[m²/s; m³/s in space\].
+    discharges: Vec<Vec<f64>>,
     laws: Vec<SharedLaw>,
     /// Particles of all bodies, also of those that come later.
     seeded: usize,
@@ -126,9 +129,16 @@ impl Records {
             watched,
             peaks: vec![f64::NAN; case.checks.len()],
             factor_of_safety: f64::NAN,
+            discharges: Vec::new(),
             laws: laws.to_vec(),
             seeded: particles.len(),
         })
+    }
+
+    /// The same with the discharges of flows.
+    pub(crate) fn with_discharges(mut self, discharges: Vec<Vec<f64>>) -> Self {
+        self.discharges = discharges;
+        self
     }
 
     /// How many particles the case has numbers for.
@@ -195,6 +205,13 @@ impl Records {
             Quantity::Step => moment.number as f64,
             Quantity::PlasticShare => moment.plastic_share,
             Quantity::FactorOfSafety => self.factor_of_safety,
+            Quantity::Discharge(water, section) => {
+                let own = self.discharges.get(water);
+                let number = section.map_or(0, |section| section + 1);
+                own.and_then(|own| own.get(number))
+                    .copied()
+                    .unwrap_or(f64::NAN)
+            }
             Quantity::Time => controls.time,
             Quantity::KineticEnergy => kinetic_energy(moment.particles, moment.rigid),
             Quantity::Top => std::iter::zip(&moment.particles.x, &moment.particles.half_length)

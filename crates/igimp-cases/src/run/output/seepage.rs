@@ -85,6 +85,18 @@ fn flows<'m, const D: usize>(
     })
 }
 
+/// By condition of the water: what leaves the ground in its flow, then what passes each section; empty without a flow.
+pub(crate) fn by_condition<const D: usize>(model: &Model<'_, D>) -> Vec<Vec<f64>> {
+    let of = |condition: usize| {
+        let flow = model.ground_water(condition)?.flow()?;
+        let sections = flow.sections.iter().map(|own| own.inflow);
+        Some(std::iter::once(flow.outflow).chain(sections).collect())
+    };
+    (0..model.case.water.len())
+        .map(|condition| of(condition).unwrap_or_default())
+        .collect()
+}
+
 /// Tables of discharges, and of how flows were found; empty without computed seepage.
 pub(crate) fn tables<const D: usize>(model: &Model<'_, D>) -> Vec<SetupTable> {
     let unit = if D == 2 { "m³/s per m" } else { "m³/s" };

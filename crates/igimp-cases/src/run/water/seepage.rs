@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use igimp_model::{Case, InTime, PoreSource, SeepageCase};
-use igimp_seepage::{Conditions, Course, Seepage, SeepageBody, WaterBalance, march, solve};
+use igimp_model::{Case, Ground, InTime, PoreSource, SeepageCase};
+use igimp_seepage::{Conditions, Course, Scale, Seepage, SeepageBody, WaterBalance, march, solve};
 
 use crate::error::CaseError;
 
@@ -13,6 +13,20 @@ pub(crate) struct Flows<const D: usize> {
     /// By condition of the water; none where nothing is computed.
     pub(crate) by_condition: Vec<Option<Arc<Seepage<D>>>>,
     pub(crate) courses: Vec<Followed>,
+}
+
+/// How the permeability of a material varies from place to place; none: it does not.
+type Varied<'c, const D: usize> = Option<Box<dyn Fn(&[f64; D]) -> f64 + Sync + 'c>>;
+
+/// The same by material.
+fn varied<'c, const D: usize>(case: &'c Case<D>, ground: &'c Ground<D>) -> Vec<Varied<'c, D>> {
+    let of = |material: &'c igimp_model::Material| -> Varied<'c, D> {
+        material.profiles.permeability.as_ref()?;
+        Some(Box::new(|place: &[f64; D]| {
+            material.permeability_ratio_at(place, ground)
+        }))
+    };
+    case.materials.iter().map(of).collect()
 }
 
 /// A flow that was followed in time.
@@ -36,6 +50,8 @@ impl<const D: usize> Flows<D> {
             by_condition: vec![None; case.water.len()],
             courses: Vec::new(),
         };
+        let ground = case.ground();
+        let varied = varied(case, &ground);
         let stated = |index: usize| match &case.water[index].source {
             PoreSource::Seepage(own) => Some(&**own),
             _ => None,
@@ -45,7 +61,9 @@ impl<const D: usize> Flows<D> {
             let Some(own) = stated(index) else { continue };
             match &own.in_time {
                 Some(in_time) => left.push((index, own, in_time)),
-                None => found.by_condition[index] = Some(Arc::new(solved(case, index, own)?)),
+                None => {
+                    found.by_condition[index] = Some(Arc::new(solved(case, index, own, &varied)?));
+                }
             }
         }
         left.sort_by(|a, b| a.2.time.total_cmp(&b.2.time));
@@ -56,7 +74,7 @@ impl<const D: usize> Flows<D> {
             };
             let (own, others): (Vec<_>, Vec<_>) = left.into_iter().partition(is_of_it);
             left = others;
-            found.follow(case, &own)?;
+            found.follow(case, &own, &varied)?;
         }
         Ok(found)
     }
@@ -66,6 +84,7 @@ impl<const D: usize> Flows<D> {
         &mut self,
         case: &Case<D>,
         moments: &[(usize, &SeepageCase, &InTime)],
+        varied: &[Varied<'_, D>],
     ) -> Result<(), CaseError> {
         let [.., (last, own, in_time)] = moments else {
             return Ok(());
@@ -80,7 +99,7 @@ impl<const D: usize> Flows<D> {
             return Ok(());
         };
         // The ground is that of the start.
-        let bodies = bodies(case, (*last, in_time.start))?;
+        let bodies = bodies(case, (*last, in_time.start), varied)?;
         let (conditions, free) = given(case, own);
         let grid = case.grid.grid()?;
         let found = march(&grid, &bodies, (&start, &conditions), &free, &course);
@@ -107,8 +126,9 @@ fn solved<const D: usize>(
     case: &Case<D>,
     condition: usize,
     own: &SeepageCase,
+    varied: &[Varied<'_, D>],
 ) -> Result<Seepage<D>, CaseError> {
-    let bodies = bodies(case, (condition, condition))?;
+    let bodies = bodies(case, (condition, condition), varied)?;
     let (conditions, free) = given(case, own);
     solve(&case.grid.grid()?, &bodies, &conditions, &free).map_err(|source| CaseError::Seepage {
         water: case.water[condition].name.clone(),
@@ -117,10 +137,11 @@ fn solved<const D: usize>(
 }
 
 /// The bodies that are there for a condition, through the ground of another.
-fn bodies<const D: usize>(
-    case: &Case<D>,
+fn bodies<'c, const D: usize>(
+    case: &'c Case<D>,
     (condition, ground): (usize, usize),
-) -> Result<Vec<SeepageBody<'_, D>>, CaseError> {
+    varied: &'c [Varied<'c, D>],
+) -> Result<Vec<SeepageBody<'c, D>>, CaseError> {
     let bodies = case.bodies_of_water(ground);
     for (_, material) in &bodies {
         let material = &case.materials[*material];
@@ -131,9 +152,12 @@ fn bodies<const D: usize>(
             });
         }
     }
-    Ok((bodies.into_iter())
-        .map(|(region, soil)| SeepageBody { region, soil })
-        .collect())
+    let body = |(region, soil): (_, usize)| SeepageBody {
+        region,
+        soil,
+        scale: varied[soil].as_deref().map(|own| -> Scale<'c, D> { own }),
+    };
+    Ok(bodies.into_iter().map(body).collect())
 }
 
 /// What a flow is given: its conditions, and the level of free water by place.

@@ -4,6 +4,7 @@ use igimp_model::{Field, Load, LoadKind, Quantity, ReinforcementQuantity, RigidQ
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::names::suggest::nearest;
 use igimp_schema::text::{clip, row};
+use igimp_schema::tree::Node;
 use igimp_schema::tree::read::At;
 
 use crate::build::AllNames;
@@ -53,6 +54,32 @@ const REINFORCEMENT: [(&str, ReinforcementQuantity, &str); 3] = [
     ("head_force", ReinforcementQuantity::HeadForce, "N/m"),
     ("at_limit", ReinforcementQuantity::AtLimit, "-"),
 ];
+
+/// What the names of discharges begin with.
+const SEEPAGE_PREFIX: &str = "seepage.";
+
+/// The discharges of a file: of each flow that is computed all that leaves, and what passes its sections.
+pub(crate) fn discharges(tree: &Node) -> Vec<(String, Quantity)> {
+    let mut found = Vec::new();
+    for (water, own) in tree.items_at("water").iter().enumerate() {
+        let (Some(name), Some(seepage)) = (own.text_at("name"), own.get("seepage")) else {
+            continue;
+        };
+        found.push((
+            format!("{SEEPAGE_PREFIX}{name}.outflow"),
+            Quantity::Discharge(water, None),
+        ));
+        for (number, section) in seepage.items_at("sections").iter().enumerate() {
+            if let Some(section) = section.text_at("name") {
+                found.push((
+                    format!("{SEEPAGE_PREFIX}{name}.section.{section}"),
+                    Quantity::Discharge(water, Some(number)),
+                ));
+            }
+        }
+    }
+    found
+}
 
 /// Quantities of the whole model.
 const GLOBAL: [(&str, Quantity, &str); 10] = [
@@ -105,6 +132,7 @@ pub(crate) fn unit_of(dimensions: usize, name: &str) -> &'static str {
         (3, "N/m") => "N",
         (3, "N m/m") => "N m",
         (3, "J/m") => "J",
+        (3, "m2/s") => "m3/s",
         (_, unit) => unit,
     }
 }
@@ -112,6 +140,9 @@ pub(crate) fn unit_of(dimensions: usize, name: &str) -> &'static str {
 fn unit_in_plane(dimensions: usize, name: &str) -> &'static str {
     if let Some((_, _, unit)) = GLOBAL.iter().find(|(known, ..)| *known == name) {
         return unit;
+    }
+    if name.starts_with(SEEPAGE_PREFIX) {
+        return "m2/s";
     }
     match name.rsplit_once('.').map_or("", |(_, last)| last) {
         "settlement" => "m",
@@ -137,6 +168,9 @@ pub(crate) fn quantity<const D: usize>(
     let name = value.as_str();
     if let Some((_, quantity, _)) = GLOBAL.iter().find(|(known, ..)| *known == name) {
         return Some(*quantity);
+    }
+    if let Some((_, discharge)) = names.discharges.iter().find(|(known, _)| known == name) {
+        return Some(*discharge);
     }
     if let Some((owner, what)) = name.rsplit_once('.') {
         let body = owner.strip_prefix(RIGID_PREFIX);
@@ -209,6 +243,7 @@ fn known<const D: usize>(names: &AllNames, loads: &[Option<Load<D>>]) -> Vec<Str
         let of_member = REINFORCEMENT.iter();
         known.extend(of_member.map(|(what, ..)| format!("{REINFORCEMENT_PREFIX}{member}.{what}")));
     }
+    known.extend(names.discharges.iter().map(|(name, _)| name.clone()));
     known.extend(GLOBAL.iter().map(|(name, ..)| (*name).to_owned()));
     for monitor in names.monitors.known() {
         known.extend(
