@@ -17,6 +17,7 @@ mod mpi;
 mod pages;
 mod process;
 mod python;
+mod released;
 mod tidy;
 mod validate;
 

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::failure::Failure;
-use crate::metadata::Metadata;
 
 /// The root of the workspace: the folder above this crate's.
 pub(crate) fn root() -> PathBuf {
@@ -34,32 +33,6 @@ pub(crate) fn with_manifest(manifest: &str, words: &[&str], target: &Path) -> Co
     cargo.args([command, "--manifest-path", manifest]);
     cargo.args(rest).env("CARGO_TARGET_DIR", target);
     cargo
-}
-
-/// The packages with programs and benches in release mode. Cargo chooses features of a crate for all packages that it is asked
-/// for at once: they are asked for together, and a crate that several need is compiled once.
-const RELEASED: [&str; 3] = ["igimp", "igimp-validation", "igimp-benchmarks"];
-
-/// A command of cargo for all packages with programs and benches in release mode.
-pub(crate) fn cargo_for_released(command: &str) -> Command {
-    let mut cargo = cargo();
-    cargo.arg(command);
-    for package in RELEASED {
-        cargo.args(["--package", package]);
-    }
-    cargo
-}
-
-/// Builds a program in release mode by a profile of its kind; the program, or the exit code of a build that failed.
-pub(crate) fn released(profile: &str, name: &str) -> Result<Result<Command, u8>, Failure> {
-    let mut build = cargo_for_released("build");
-    let code = status(build.args(["--profile", profile, "--bin", name]))?;
-    if code != 0 {
-        return Ok(Err(code));
-    }
-    // Both profiles put their programs there.
-    let path = Metadata::of_workspace()?.target.join("release").join(name);
-    Ok(Ok(program(path.with_extension(env::consts::EXE_EXTENSION))))
 }
 
 /// Runs a program with the terminal as its own, and returns its exit code.

@@ -1,7 +1,8 @@
 //! `cargo xtask validate`: the validation program in release mode, and what `--accept` changed.
 
 use crate::failure::Failure;
-use crate::process::{program, released, status};
+use crate::process::{program, status};
+use crate::released::released;
 
 /// Where the snapshots are.
 const SNAPSHOTS: &str = "validation/snapshots";

@@ -190,7 +190,7 @@ fn pipes() -> [Question; 8] {
             pipe(0.5, ADHESIVE),
             [5.521, 5.629],
             Claim::Bounds,
-            Level::Default,
+            Level::Full,
         ),
         question(
             "adhesive pipe, w/D = 1",

@@ -75,7 +75,7 @@ static BARS: [Bar; 6] = [
     bar(Section::Round, 8, 3, Level::Quick),
     bar(Section::Square, 8, 2, Level::Quick),
     bar(Section::Round, 16, 3, Level::Default),
-    bar(Section::Square, 16, 2, Level::Default),
+    bar(Section::Square, 16, 2, Level::Full),
     bar(Section::Round, 24, 3, Level::Full),
     bar(Section::Square, 24, 2, Level::Full),
 ];

@@ -8,7 +8,8 @@ use std::time::SystemTime;
 use super::estimate;
 use super::row::Row;
 use crate::failure::Failure;
-use crate::process::{cargo_for_released, status};
+use crate::process::status;
+use crate::released::cargo_for_released;
 
 /// The programs of the benches, and the groups that each of them measures.
 const PROGRAMS: [(&str, &[&str]); 5] = [

@@ -6,7 +6,8 @@ use std::process::Command;
 
 use super::row::{self, Row};
 use crate::failure::Failure;
-use crate::process::{released, status};
+use crate::process::status;
+use crate::released::released;
 
 /// The parts of the survey.
 const PARTS: [&str; 6] = [

@@ -122,8 +122,7 @@ fn largest(profile: &[[f64; 2]]) -> f64 {
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("contact-sphere", ABOUT, out)?;
     let meshes: &[usize] = match level {
-        Level::Quick => &[4],
-        Level::Default => &[4, 6],
+        Level::Quick | Level::Default => &[4],
         Level::Full => &[4, 6, 8],
     };
     let mut errors = Table::new(
