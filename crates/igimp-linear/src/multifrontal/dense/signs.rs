@@ -57,7 +57,9 @@ impl Signs {
         if self.negative.is_empty() {
             return rows;
         }
-        copy.extend(rows.col_iter().flat_map(|column| column.iter()));
+        for column in rows.col_iter() {
+            copy.extend(column.iter());
+        }
         let mut signed = MatMut::from_column_major_slice_mut(copy, rows.nrows(), rows.ncols());
         self.apply(signed.as_mut().transpose_mut());
         signed.into_const()
