@@ -96,7 +96,7 @@ fn pressures_are_factorised_with_their_signs() {
     let (_, _, own) = entries
         .find(|&(column, row, _)| column == last && row == last)
         .unwrap();
-    matrix.values[own] = -50.0 * matrix.values[own];
+    matrix.values[own] *= -50.0;
     assert_eq!(
         method(&mut *SolverKind::Auto.build(), &matrix),
         "multifrontal-lu"
