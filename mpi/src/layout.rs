@@ -1,12 +1,15 @@
 //! From the matrix of rank 0 to ranges of rows: which nodes each rank has, and their entries by rows.
 //!
 //! Nodes stand in the order of the geometric dissection, which keeps neighbours together, and each rank has a run of them. All
-//! nodes have as many rows as the problem has dimensions; a component that is held has a row of its own with its diagonal alone.
+//! nodes have as many rows as the problem has dimensions, and one more where pressures are among the unknowns; a component that is
+//! held, or is not there, has a row of its own with its diagonal alone.
 
 use std::ops::Range;
 use std::sync::Arc;
 
-use igimp_linear::{LinearSolverError, NestedDissection, Pattern, TangentMatrix};
+use igimp_linear::{
+    LinearSolverError, NestedDissection, NodeBlock, Pattern, SCALAR, TangentMatrix,
+};
 use rayon::prelude::*;
 
 /// Nodes that a thread takes at a time.
@@ -25,15 +28,15 @@ pub(crate) struct RankPattern {
 
 impl RankPattern {
     /// Rows unknown by unknown: starts and columns.
-    pub(crate) fn by_unknowns(&self, dims: usize) -> (Vec<i32>, Vec<i32>) {
+    pub(crate) fn by_unknowns(&self, rows: usize) -> (Vec<i32>, Vec<i32>) {
         let mut starts = vec![0];
-        let mut columns = Vec::with_capacity(self.columns.len() * dims * dims);
+        let mut columns = Vec::with_capacity(self.columns.len() * rows * rows);
         for list in self.starts.windows(2) {
             let list = &self.columns[list[0] as usize..list[1] as usize];
-            for _ in 0..dims {
+            for _ in 0..rows {
                 columns.extend(list.iter().flat_map(|&node| {
-                    let first = node as usize * dims;
-                    (first..first + dims).map(|column| column as i32)
+                    let first = node as usize * rows;
+                    (first..first + rows).map(|column| column as i32)
                 }));
                 starts.push(columns.len() as i32);
             }
@@ -42,12 +45,17 @@ impl RankPattern {
     }
 }
 
+/// The components of the unknowns of a node: axes, and after them pressure.
+type Components = [u8; 4];
+
 /// How the rows of a pattern are spread over ranks.
 #[derive(Debug)]
 pub(crate) struct Layout {
     pattern: Arc<Pattern>,
-    /// Dimensions of the problem: rows of a node.
+    /// Dimensions of the problem.
     pub(crate) dims: usize,
+    /// Rows of a node.
+    pub(crate) rows: usize,
     /// Blocks of the pattern in the order of all ranks.
     order: Vec<u32>,
     /// The nodes of each rank in that order.
@@ -59,7 +67,7 @@ pub(crate) struct Layout {
     /// By entry of `Pattern::coupled`, where the rows of the node begin within a column of the other.
     within: Vec<u32>,
     /// By block of the pattern the component of each of its unknowns, and whether others are held.
-    components: Vec<[u8; 3]>,
+    components: Vec<Components>,
 }
 
 impl Layout {
@@ -86,7 +94,8 @@ impl Layout {
             starts.push(couplings.len());
         }
         let dims = dimensions(pattern);
-        if pattern.unknowns().max(nodes * dims) > i32::MAX as usize
+        let rows = dims + usize::from(pattern.has_scalars());
+        if pattern.unknowns().max(nodes * rows) > i32::MAX as usize
             || pattern.coupled.len() > u32::MAX as usize
         {
             let what = "indices of 32 bits for PETSc";
@@ -95,6 +104,7 @@ impl Layout {
         Ok(Self {
             pattern: Arc::clone(pattern),
             dims,
+            rows,
             ranges: ranges(&starts, ranks),
             order,
             starts,
@@ -111,7 +121,7 @@ impl Layout {
 
     /// Unknowns of all ranks, with those of components that are held.
     pub(crate) fn unknowns(&self) -> usize {
-        self.order.len() * self.dims
+        self.order.len() * self.rows
     }
 
     /// The rows of a rank; `lines` are the coordinates of the lines of the grid along each axis.
@@ -147,7 +157,7 @@ impl Layout {
     /// The values of the rows of a rank; rows of components that are held have `held` on their diagonal.
     pub(crate) fn values_of(&self, rank: usize, matrix: &TangentMatrix, held: f64) -> Vec<f64> {
         let nodes = self.ranges[rank].clone();
-        let square = self.dims * self.dims;
+        let square = self.rows * self.rows;
         let first = self.starts[nodes.start];
         let mut values = vec![0.0; (self.starts[nodes.end] - first) * square];
         let mut pieces = Vec::new();
@@ -172,11 +182,11 @@ impl Layout {
 
     /// The rows of a node.
     fn rows_of(&self, node: usize, matrix: &TangentMatrix, held: f64, rows: &mut [f64]) {
-        let (pattern, dims) = (&*self.pattern, self.dims);
+        let (pattern, count) = (&*self.pattern, self.rows);
         let old = self.order[node] as usize;
         let own = pattern.blocks[old].len;
         let couplings = &self.couplings[self.starts[node]..self.starts[node + 1]];
-        let width = couplings.len() * dims;
+        let width = couplings.len() * count;
         for (position, &entry) in couplings.iter().enumerate() {
             let other = pattern.coupled[entry as usize] as usize;
             let (height, first) = (pattern.height(other), pattern.first_value[other]);
@@ -184,15 +194,15 @@ impl Layout {
             let (of_own, of_other) = (&self.components[old], &self.components[other]);
             let columns = of_other[..pattern.blocks[other].len].iter();
             for (column, &component) in columns.enumerate() {
-                let at = position * dims + component as usize;
+                let at = position * count + component as usize;
                 let values = &matrix.values[offset + column * height..][..own];
                 for (&row, &value) in of_own.iter().zip(values) {
                     rows[row as usize * width + at] = value;
                 }
             }
             if other == old {
-                for component in (0..dims).filter(|&own_one| is_held(*of_own, own, own_one)) {
-                    rows[component * width + position * dims + component] = held;
+                for component in (0..count).filter(|&own_one| is_held(*of_own, own, own_one)) {
+                    rows[component * width + position * count + component] = held;
                 }
             }
         }
@@ -200,7 +210,7 @@ impl Layout {
 
     /// The entries of a vector over all unknowns of the pattern that a rank has.
     pub(crate) fn part_of(&self, rank: usize, vector: &[f64]) -> Vec<f64> {
-        let mut part = vec![0.0; self.ranges[rank].len() * self.dims];
+        let mut part = vec![0.0; self.ranges[rank].len() * self.rows];
         self.each_of(rank, |at, unknown| part[at] = vector[unknown]);
         part
     }
@@ -217,29 +227,31 @@ impl Layout {
             let block = self.pattern.blocks[old as usize];
             for local in 0..block.len {
                 let component = self.components[old as usize][local] as usize;
-                visit(index * self.dims + component, block.first + local);
+                visit(index * self.rows + component, block.first + local);
             }
         }
     }
 }
 
-/// Dimensions of a problem: 3 where a node has a third coordinate or unknown.
+/// Dimensions of a problem: 3 where a node has a third coordinate or displacement.
 fn dimensions(pattern: &Pattern) -> usize {
-    let of_block = |block: &igimp_linear::NodeBlock| {
+    let of_block = |block: &NodeBlock| {
         let by_place = block.place.iter().rposition(|&along| along != 0);
-        block.len.max(by_place.map_or(1, |axis| axis + 1))
+        let displacements = block.len - usize::from(block.free & SCALAR != 0);
+        displacements.max(by_place.map_or(1, |axis| axis + 1))
     };
     pattern.blocks.iter().map(of_block).max().unwrap_or(1)
 }
 
 /// By block the component of each of its unknowns.
-fn components(pattern: &Pattern, dims: usize) -> Vec<[u8; 3]> {
-    let of_block = |block: &igimp_linear::NodeBlock| {
-        let mut found = [0, 1, 2];
-        let free = (0..dims as u8).filter(|&axis| block.free >> axis & 1 == 1);
+fn components(pattern: &Pattern, dims: usize) -> Vec<Components> {
+    let of_block = |block: &NodeBlock| {
+        let mut found = [0, 1, 2, 3];
+        let axes = (0..dims as u8).filter(|&axis| block.free >> axis & 1 == 1);
+        let pressure = (block.free & SCALAR != 0).then_some(dims as u8);
         if block.free.count_ones() as usize == block.len {
-            for (own, axis) in found.iter_mut().zip(free) {
-                *own = axis;
+            for (own, component) in found.iter_mut().zip(axes.chain(pressure)) {
+                *own = component;
             }
         }
         found
@@ -248,7 +260,7 @@ fn components(pattern: &Pattern, dims: usize) -> Vec<[u8; 3]> {
 }
 
 /// Whether a component of a node is no unknown.
-fn is_held(components: [u8; 3], len: usize, component: usize) -> bool {
+fn is_held(components: Components, len: usize, component: usize) -> bool {
     let mut free = components[..len].iter();
     !free.any(|&own| own as usize == component)
 }
@@ -265,15 +277,19 @@ fn ranges(starts: &[usize], ranks: usize) -> Vec<Range<usize>> {
 
 #[cfg(test)]
 mod tests {
-    use igimp_linear::{Border, NodeBlock};
+    use igimp_linear::Border;
 
     use super::*;
 
-    /// A row of nodes in the plane, the first held across, each coupled to its neighbours.
-    fn pattern(nodes: usize) -> Arc<Pattern> {
+    /// A row of nodes in the plane, the first held across, each coupled to its neighbours; every second one with a pressure where
+    /// there are some.
+    fn pattern(nodes: usize, has_pressures: bool) -> Arc<Pattern> {
         let (mut blocks, mut starts, mut coupled, mut first) = (vec![], vec![0], vec![], 0);
         for node in 0..nodes {
-            let (len, free) = if node == 0 { (1, 0b10) } else { (2, 0b11) };
+            let (mut len, mut free) = if node == 0 { (1, 0b10) } else { (2, 0b11) };
+            if has_pressures && node % 2 == 0 {
+                (len, free) = (len + 1, free | SCALAR);
+            }
             let place = [node, 1, 0];
             blocks.push(NodeBlock {
                 first,
@@ -305,11 +321,17 @@ mod tests {
     /// ORACLE: its product by columns.
     #[test]
     fn rows_of_ranks_are_the_matrix() {
-        for (nodes, ranks) in [(40, 1), (40, 3), (2, 4)] {
-            let pattern = pattern(nodes);
+        let sizes = [(40, 1), (40, 3), (2, 4)];
+        for ((nodes, ranks), coupled) in sizes
+            .into_iter()
+            .flat_map(|own| [(own, false), (own, true)])
+        {
+            let pattern = pattern(nodes, coupled);
+            let rows_of_node = 2 + usize::from(coupled);
             let matrix = matrix(&pattern);
             let layout = Layout::new(&pattern, ranks).unwrap();
-            assert_eq!((layout.dims, layout.unknowns()), (2, 2 * nodes));
+            assert_eq!((layout.dims, layout.rows), (2, rows_of_node));
+            assert_eq!(layout.unknowns(), rows_of_node * nodes);
             let x: Vec<f64> = (0..pattern.unknowns()).map(|k| 1.0 + k as f64).collect();
             let mut expected = vec![0.0; x.len()];
             matrix.multiply(&x, &mut expected);
@@ -317,7 +339,7 @@ mod tests {
             let all: Vec<f64> = parts.collect();
             let mut found = vec![f64::NAN; x.len()];
             for rank in 0..ranks {
-                let (starts, columns) = layout.of_rank(rank, &[]).by_unknowns(2);
+                let (starts, columns) = layout.of_rank(rank, &[]).by_unknowns(rows_of_node);
                 let values = layout.values_of(rank, &matrix, 7.0);
                 assert_eq!(values.len(), columns.len());
                 let rows = starts.windows(2).map(|ends| {
@@ -336,7 +358,7 @@ mod tests {
     /// GOAL: a component that is held has its diagonal alone, and nodes stand where the lines of the grid are.
     #[test]
     fn held_components_are_apart() {
-        let pattern = pattern(3);
+        let pattern = pattern(3, false);
         let layout = Layout::new(&pattern, 1).unwrap();
         let lines = [vec![0.0, 2.0, 6.0], vec![-1.0, 5.0]];
         let own = layout.of_rank(0, &lines);
@@ -356,7 +378,7 @@ mod tests {
     /// GOAL: ranks have about the same number of entries.
     #[test]
     fn ranks_have_equal_shares() {
-        let layout = Layout::new(&pattern(1000), 4).unwrap();
+        let layout = Layout::new(&pattern(1000, false), 4).unwrap();
         let shares = (0..4).map(|rank| layout.of_rank(rank, &[]).columns.len());
         for share in shares {
             assert!((700..=800).contains(&share), "{share}");

@@ -24,11 +24,12 @@ const END: u64 = 6;
 /// What a solver asks of the ranks; what belongs to each of them follows in parts, that of rank 0 last.
 #[derive(Debug)]
 pub(crate) enum Command {
-    /// The rows of a system with so many unknowns, and rows of a node.
+    /// The rows of a system with so many unknowns, dimensions, and rows of a node.
     Pattern {
         system: u64,
         unknowns: usize,
         dims: usize,
+        rows: usize,
     },
     /// Values of a system.
     Values { system: u64 },
@@ -83,6 +84,8 @@ struct System {
     solver: Option<(Method, u64, Solver)>,
     matrix: Matrix,
     dims: usize,
+    /// Rows of a node.
+    rows: usize,
     coordinates: Vec<f64>,
     has_motions: bool,
 }
@@ -203,14 +206,15 @@ impl<'w> Server<'w> {
 
     /// Makes a system of its rows on this rank.
     fn make(&mut self, words: Words, own: RankPattern) -> Outcome<()> {
-        let [_, system, unknowns, dims, _] = words;
-        let dims = dims as usize;
-        let (starts, columns) = own.by_unknowns(dims);
-        let matrix = Matrix::new(self.world, unknowns as usize, &starts, &columns, dims)?;
+        let [_, system, unknowns, dims, rows] = words;
+        let (dims, rows) = (dims as usize, rows as usize);
+        let (starts, columns) = own.by_unknowns(rows);
+        let matrix = Matrix::new(self.world, unknowns as usize, &starts, &columns, rows)?;
         let made = System {
             solver: None,
             matrix,
             dims,
+            rows,
             coordinates: own.coordinates,
             has_motions: false,
         };
@@ -252,7 +256,9 @@ impl System {
         self.solver = self.solver.take().filter(is_same);
         self.matrix
             .set_symmetry(method.is_symmetric(), method.is_definite())?;
-        if method.wants_motions() && !self.has_motions && self.dims > 1 {
+        // Those of a rigid body say nothing of pressures.
+        let are_wanted = method.wants_motions() && self.rows == self.dims;
+        if are_wanted && !self.has_motions && self.dims > 1 {
             self.matrix
                 .set_rigid_motions(&self.coordinates, self.dims)?;
             self.has_motions = true;
@@ -296,7 +302,8 @@ fn words(command: &Command) -> Words {
             system,
             unknowns,
             dims,
-        } => [PATTERN, system, unknowns as u64, dims as u64, 0],
+            rows,
+        } => [PATTERN, system, unknowns as u64, dims as u64, rows as u64],
         Command::Values { system } => [VALUES, system, 0, 0, 0],
         Command::SetUp {
             system,

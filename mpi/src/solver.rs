@@ -337,6 +337,7 @@ impl LinearSolver for PetscSolver {
             system: self.system,
             unknowns: layout.unknowns(),
             dims: layout.dims,
+            rows: layout.rows,
         };
         let part = |rank| Some(Part::Pattern(layout.of_rank(rank, &self.lines)));
         self.ranks.ask(command, part);
