@@ -42,6 +42,8 @@ const PER_UNKNOWN: f64 = 3e3;
 const PER_PARTICLE_IN_SPACE: f64 = 4e3;
 /// Matrix, its copies and its pattern in space \[bytes per unknown\].
 const PER_UNKNOWN_IN_SPACE: f64 = 7e3;
+/// Supports of pressure and pairs with displacement of a particle whose water flows, in the plane and in space \[bytes\].
+const PER_COUPLED: [f64; 2] = [1e3, 6e3];
 /// A picture of 1920 x 1290 pixels of four bytes while it is drawn and packed \[bytes\].
 const PER_PICTURE: f64 = 2.1 * 1920.0 * 1290.0 * 4.0;
 /// The view in space of a report while it is packed \[bytes\]; slopes and footings of 5 000 to 9 000 particles took 42 to 89 MiB
@@ -86,7 +88,7 @@ pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, CaseError> {
     let mut pressed = vec![false; grid.node_count()];
     let consolidates = case.stages.iter().any(|own| own.consolidation.is_some());
     let (mut scratch, mut list) = (Scratch::default(), Vec::new());
-    let mut by_body = Vec::new();
+    let (mut by_body, mut coupled) = (Vec::new(), 0);
     let mut couplings = (D == 3).then(|| Couplings::new(&grid));
     for body in &case.bodies {
         let drainage = &case.materials[body.material].drainage;
@@ -111,6 +113,7 @@ pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, CaseError> {
             }
         }
         by_body.push(seeds.len());
+        coupled += if flows { seeds.len() } else { 0 };
     }
     let count = |there: &[bool]| -> usize {
         let own = std::iter::zip(&by_body, there);
@@ -142,7 +145,9 @@ pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, CaseError> {
     };
     let nodes = active.iter().filter(|own| **own).count();
     let flows = Flows::of(case, nodes);
-    let solving = particle * particles as f64 + unknown * unknowns as f64 + systems.bytes;
+    let of_pressures = PER_COUPLED[usize::from(D == 3)] * coupled as f64;
+    let solving =
+        particle * particles as f64 + of_pressures + unknown * unknowns as f64 + systems.bytes;
     // Flows are found before the first step, and their equations are gone then.
     let memory = |solving: f64| memory(case, particles, solving.max(flows.bytes));
     Ok(Estimate {
@@ -151,7 +156,7 @@ pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, CaseError> {
         cells: grid.cell_count(),
         unknowns,
         per_item: [
-            particle,
+            particle + of_pressures / (particles as f64).max(1.0),
             unknown + systems.bytes / (unknowns as f64).max(1.0),
         ],
         bytes: memory(solving),
