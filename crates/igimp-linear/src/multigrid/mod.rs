@@ -6,8 +6,9 @@
 //! ([`dense`]). All of this is kept in single precision ([`rows`]). Nodes that carry little soil, at surfaces that cut cells,
 //! are solved for directly before and after each cycle ([`skin`]). Both together are the preconditioner of conjugate
 //! gradients, for symmetric matrices, or of generalised minimal residuals ([`krylov`]), which use the matrix itself
-//! ([`product`]). The solution is checked against it, from restart to restart ([`preconditioned`]). Where pores hold pressures among the unknowns, soil and water have a multigrid each
-//! ([`coupled`]).
+//! ([`product`]). The solution is checked against it, from restart to restart ([`preconditioned`]).
+//!
+//! Where pore pressures are among the unknowns, soil and water have a multigrid each ([`coupled`]).
 
 mod boundary_nodes;
 mod coupled;

@@ -204,6 +204,7 @@ fn soil_and_water_are_iterated_for() {
             (matrix, rhs, found, report.refinements)
         };
         let [small, large] = [6, 11].map(|cells| of(cells, 1e-4).3);
+        println!("{time:e} H²/c_v: {small} iterations on 6³ cells, {large} on 11³");
         assert!(
             large <= 25 && large <= 2 * small,
             "{time}: {small}, then {large}"
