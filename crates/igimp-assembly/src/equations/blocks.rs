@@ -44,6 +44,8 @@ pub(crate) struct NodePlace {
     pub(crate) len: u8,
     /// Which components they are, one bit each.
     pub(crate) free: u8,
+    /// Whether its pore pressure is unknown.
+    pub(crate) has_pressure: bool,
     /// Whether some of its couplings reach beyond the window.
     is_wide: bool,
 }
@@ -91,22 +93,23 @@ impl<const D: usize> BlockTable<D> {
             let code = place.iter().rev().fold(0, |code, &k| code * side + k);
             let len = unknowns.count(node) as usize;
             let block = if len == 0 { NONE } else { blocks.len() as u32 };
+            let has_pressure = len > unknowns.free(node).count_ones() as usize;
             table.nodes.push(NodePlace {
                 code: u32::try_from(code).expect("fewer than 2^32 places"),
                 block,
                 first: unknowns.before(node) as u32,
                 len: unknowns.free(node).count_ones() as u8,
                 free: unknowns.free(node),
+                has_pressure,
                 is_wide: is_wide.get(node).is_some_and(|&is_wide| is_wide),
             });
             if len > 0 {
                 let mut block_place = [0; 3];
                 block_place[..D].copy_from_slice(&place);
-                let of_pressure = len > unknowns.free(node).count_ones() as usize;
                 blocks.push(NodeBlock {
                     first: unknowns.before(node),
                     len,
-                    free: unknowns.free(node) | if of_pressure { SCALAR } else { 0 },
+                    free: unknowns.free(node) | if has_pressure { SCALAR } else { 0 },
                     place: block_place,
                 });
             }

@@ -11,6 +11,7 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::Trial;
+use crate::contributions::consolidation::WaterOfParticle;
 use crate::equations::blocks::BlockTable;
 use crate::equations::kinematics::{
     Linearisation, ParticleState, ParticleTrial, Straining, answered, strained,
@@ -19,6 +20,7 @@ use crate::equations::linearised::{Linearised, Moduli};
 use crate::equations::mirror::mirror;
 use crate::equations::patch::Patch;
 use crate::equations::scatter::Rows;
+use crate::equations::scatter::water::{WaterColumns, scatter_in_space};
 use crate::equations::system::System;
 use crate::error::AssemblyError;
 use crate::method::Kinematics;
@@ -28,6 +30,7 @@ use crate::step::strips::split;
 #[derive(Debug, Default)]
 pub(crate) struct Scratch<const D: usize> {
     pub(crate) linearised: Linearised<D>,
+    pub(crate) water: WaterColumns<D>,
     pub(crate) rows: Rows,
     pub(crate) patch: Patch<D>,
 }
@@ -38,6 +41,9 @@ struct StripTask<'a, const D: usize> {
     particles: &'a mut [ParticleTrial<D>],
     first_node: usize,
     f_int: &'a mut [[f64; D]],
+    /// The first pressure of its nodes, and the forces of all of them.
+    first_pressure: usize,
+    f_of_pressures: &'a mut [[f64; D]],
     /// Where the values of the strip begin, and the values; none when no tangent is asked for.
     values: Option<(usize, &'a mut [f64])>,
 }
@@ -72,17 +78,29 @@ impl<const D: usize> System<'_, D> {
                     .collect(),
                 None => nodes.clone().map(|_| None).collect(),
             };
-            let f_int = split(&mut trial.f_int, nodes.clone());
+            let (of_grid, of_pressures) =
+                (trial.f_int).split_at_mut(self.unknowns.first_pressure());
+            let f_int = split(of_grid, nodes.clone());
+            let pressures = nodes
+                .clone()
+                .map(|nodes| self.unknowns.pressures_of(&nodes));
+            let first_pressures = pressures.clone().map(|pressures| pressures.start);
+            let f_of_pressures = split(of_pressures, pressures).into_iter();
             let particles = split(&mut trial.particles, slots);
-            let parts = strips.zip(particles).zip(f_int).zip(values);
+            let forces = f_int.into_iter().zip(first_pressures.zip(f_of_pressures));
+            let parts = strips.zip(particles).zip(forces).zip(values);
             let tasks: Vec<StripTask<'_, D>> = parts
-                .map(|((((nodes, slots), particles), f_int), values)| StripTask {
-                    slots: slots.clone(),
-                    particles,
-                    first_node: nodes.start,
-                    f_int,
-                    values,
-                })
+                .map(
+                    |((((nodes, slots), particles), forces), values)| StripTask {
+                        slots: slots.clone(),
+                        particles,
+                        first_node: nodes.start,
+                        f_int: forces.0,
+                        first_pressure: forces.1.0,
+                        f_of_pressures: forces.1.1,
+                        values,
+                    },
+                )
                 .collect();
             let failures: Vec<Option<(usize, AssemblyError)>> = tasks
                 .into_par_iter()
@@ -130,9 +148,21 @@ impl<const D: usize> System<'_, D> {
                     sum[axis] += force[axis];
                 }
             }
+            let water = self.consolidation.of_particle(particle, supports, u);
+            if let Some(water) = &water {
+                water.add_forces(strip.first_pressure, strip.f_of_pressures);
+            }
             let Some((start, values)) = &mut strip.values else {
                 continue;
             };
+            if let Some(water) = water.as_ref().filter(|_| D == 3) {
+                scatter_in_space(
+                    water,
+                    supports,
+                    (&self.table, &self.pattern),
+                    (*start, values),
+                );
+            }
             if D == 3 && slot == end_of_patch {
                 let next = order[slot..].iter();
                 let next = next.map(|&particle| self.stencils.of(particle as usize));
@@ -143,6 +173,7 @@ impl<const D: usize> System<'_, D> {
             arch.dispatch(Addition {
                 supports,
                 own: &own,
+                water: water.as_ref(),
                 volume,
                 kinematics,
                 ends_patch: slot + 1 == end_of_patch,
@@ -226,6 +257,8 @@ impl<const D: usize> System<'_, D> {
 struct Addition<'a, const D: usize> {
     supports: &'a [Support<D>],
     own: &'a Linearisation<D>,
+    /// Its water, where that flows.
+    water: Option<&'a WaterOfParticle<'a, D>>,
     volume: f64,
     kinematics: Kinematics,
     /// Whether it is the last one of its patch.
@@ -247,6 +280,7 @@ impl<const D: usize> WithSimd for Addition<'_, D> {
     fn with_simd<S: Simd>(self, _: S) {
         let Scratch {
             linearised,
+            water,
             rows,
             patch,
         } = self.scratch;
@@ -261,9 +295,16 @@ impl<const D: usize> WithSimd for Addition<'_, D> {
             }
         } else {
             let nodes = self.supports.iter().map(|support| support.node);
-            rows.set(nodes, self.matrix.0);
             linearised.linearise(&Moduli::of(self.own, self.volume, self.kinematics));
-            rows.scatter(self.supports, self.matrix, linearised, self.values);
+            if let Some(own) = self.water {
+                rows.set(nodes, self.matrix.0, true);
+                water.set(own, self.supports);
+                let columns = (linearised, water);
+                rows.scatter_with_water(self.supports, self.matrix, columns, self.values);
+            } else {
+                rows.set(nodes, self.matrix.0, false);
+                rows.scatter(self.supports, self.matrix, linearised, self.values);
+            }
         }
     }
 }

@@ -250,7 +250,7 @@ impl<const D: usize> Patch<D> {
         (table, pattern): (&BlockTable<D>, &Pattern),
         (start, slice): (usize, &mut [f64]),
     ) {
-        self.rows.set(self.nodes.iter().copied(), table);
+        self.rows.set(self.nodes.iter().copied(), table, false);
         let stride = self.lanes() * LANES * D;
         for (j, &node) in self.nodes.iter().enumerate() {
             let column = &table.nodes[node];

@@ -490,11 +490,8 @@ impl<'a, const D: usize> System<'a, D> {
 
     /// What a step with nodal values `u` leaves in the pores when it is accepted, for [`Particles::fill_pores`].
     pub fn into_pores(self, u: &[[f64; D]]) -> PoresAfter {
-        PoresAfter {
-            excess: self.consolidation.excess_after(u),
-            water_moved: self.consolidation.water_moved(u),
-            given: self.pores.pressure,
-        }
+        let given = self.pores.pressure;
+        self.consolidation.accepted(self.stencils, u, given)
     }
 
     /// The reaction f_int − f_ext by node, zero at unknowns \[force\].
@@ -575,6 +572,14 @@ impl<'a, const D: usize> System<'a, D> {
             }
             let own = self.evaluate_particle(particle, u, kind, &mut trial)?;
             let volume = self.reference_volume(particle);
+            if let Some(water) = self.consolidation.of_particle(particle, supports, u) {
+                let moved = |node: usize, axis: usize| self.prescribed(node, axis).unwrap_or(0.0);
+                let first = self.unknowns.first_pressure();
+                water.add_force_of_motion(supports, &moved, &mut |place, of_water| {
+                    let unknown = self.unknowns.index(first + place, 0);
+                    force[unknown.expect("pressures are unknown")] += of_water;
+                });
+            }
             linearised.push(supports, &own);
             let kinematics = self.method.kinematics_of_step();
             linearised.linearise(&Moduli::of(&own, volume, kinematics));

@@ -1,5 +1,7 @@
 //! Which degrees of freedom are unknown.
 
+use std::ops::Range;
+
 use igimp_shape::Grid;
 
 use crate::conditions::constraints::Constraints;
@@ -132,6 +134,13 @@ impl<const D: usize> Unknowns<D> {
     /// The nodes of the grid with an unknown pore pressure, ascending, in the order of the nodes that stand for it.
     pub fn pressure_nodes(&self) -> impl Iterator<Item = usize> + '_ {
         self.pressures.iter().map(|&(_, node)| node as usize)
+    }
+
+    /// The pore pressures of some nodes of the grid, by their number.
+    pub(crate) fn pressures_of(&self, nodes: &Range<usize>) -> Range<usize> {
+        let before =
+            |end: usize| (self.pressures).partition_point(|&(_, node)| (node as usize) < end);
+        before(nodes.start)..before(nodes.end)
     }
 
     /// Number of unknowns that are pore pressures.

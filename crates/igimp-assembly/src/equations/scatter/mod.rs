@@ -1,6 +1,8 @@
 //! From the tangent of one particle into the matrix: its unknown rows as runs that lie one after the
 //! other in every column, and its columns one by one.
 
+pub(crate) mod water;
+
 use igimp_linear::Pattern;
 use igimp_shape::Support;
 
@@ -38,13 +40,19 @@ pub(crate) struct Piece {
 }
 
 impl Rows {
-    /// Lists the unknown rows of some nodes.
-    #[inline]
+    /// Lists the unknown rows of some nodes, which have D rows each, and one more for their pressure if `with_pressure`.
+    #[allow(
+        clippy::inline_always,
+        reason = "a constant where it is called, which it has to reach the loop"
+    )]
+    #[inline(always)]
     pub(crate) fn set<const D: usize>(
         &mut self,
         nodes: impl Iterator<Item = usize>,
         table: &BlockTable<D>,
+        with_pressure: bool,
     ) {
+        let of_node = D + usize::from(with_pressure);
         self.runs.clear();
         // The row and the unknown that would make the last run longer.
         let mut next = (u32::MAX, u32::MAX);
@@ -72,13 +80,17 @@ impl Rows {
                 }
                 next = (here.0 + len, here.1 + len);
             };
-            let first = (i * D) as u32;
-            if usize::from(node.len) == D {
-                add(first, 0, D as u32);
-            } else {
-                for (rank, axis) in node.components().enumerate() {
-                    add(first + axis as u32, rank as u32, 1);
-                }
+            let first = (i * of_node) as u32;
+            let has_pressure = with_pressure && node.has_pressure;
+            if usize::from(node.len) == D && has_pressure == with_pressure {
+                add(first, 0, of_node as u32);
+                continue;
+            }
+            for (rank, axis) in node.components().enumerate() {
+                add(first + axis as u32, rank as u32, 1);
+            }
+            if has_pressure {
+                add(first + D as u32, u32::from(node.len), 1);
             }
         }
     }
