@@ -806,6 +806,64 @@ fn clay_consolidates_under_a_fill() {
     assert!(alone.run.body.particles == run.body.particles);
 }
 
+/// Settlement of a layer over that in the end, after a time as c_v t/H² with the c_v at the top, where permeability falls linearly with
+/// the depth to the share `least` at the sealed base: by volumes in differences, implicit in time.
+fn settled(time: f64, least: f64) -> f64 {
+    let (cells, steps) = (400, 4000);
+    let size = 1.0 / cells as f64;
+    // Conductance from each cell to the one above; the top is open, half a cell away.
+    let between = |k: usize| {
+        let height = (k + 1) as f64 * size;
+        (least + (1.0 - least) * height) / size * if k + 1 == cells { 2.0 } else { 1.0 }
+    };
+    let mut excess = vec![1.0; cells];
+    let by_step = time / steps as f64 / size;
+    for _ in 0..steps {
+        let (mut upper, mut reduced) = (vec![0.0; cells], vec![0.0; cells]);
+        for k in 0..cells {
+            let [below, above] = [if k == 0 { 0.0 } else { between(k - 1) }, between(k)];
+            let [below, above] = [below, above].map(|own| by_step * own);
+            let [before, value] = if k == 0 {
+                [0.0; 2]
+            } else {
+                [upper[k - 1], reduced[k - 1]]
+            };
+            let pivot = 1.0 + below + above - below * before;
+            upper[k] = above / pivot;
+            reduced[k] = (excess[k] + below * value) / pivot;
+        }
+        for k in (0..cells).rev() {
+            let above = if k + 1 == cells { 0.0 } else { excess[k + 1] };
+            excess[k] = reduced[k] + upper[k] * above;
+        }
+    }
+    1.0 - excess.iter().sum::<f64>() * size
+}
+
+/// GOAL: permeability of soil that consolidates varies with the depth.
+/// ORACLE: Terzaghi's equation in differences, with the permeability of each depth; the series where it does not vary.
+#[test]
+fn clay_that_is_tighter_below_settles_later() {
+    // T = 0.1540 after a year; 0.24 % of the load is on the grains at once.
+    let series = settled(0.1540, 1.0);
+    assert!((series - 0.4428).abs() < 2e-4, "{series}");
+    let varied =
+        "{ horizontal = { depths = [\"0 m\", \"5 m\"], values = [\"5e-11 m/s\", \"1e-11 m/s\"] } }";
+    let varied = format!("materials.clay.permeability={varied}");
+    let ran = ran("consolidation", &[&varied, "output.figures=[]"]);
+    for (quantity, time) in [
+        ("degree after one year", 0.1540),
+        ("degree after ten years", 1.540),
+    ] {
+        let (found, exact) = (ran.measured(quantity), 0.0024 + 0.9976 * settled(time, 0.2));
+        println!("{quantity}: {found:.4} of {exact:.4}");
+        assert!(
+            (found - exact).abs() < 0.003,
+            "{quantity}: {found} of {exact}"
+        );
+    }
+}
+
 #[test]
 fn an_embankment_on_soft_clay_gains_strength_with_time() {
     let ran = ran("embankment_time", &["grid.cell=1.5 m", "output.figures=[]"]);

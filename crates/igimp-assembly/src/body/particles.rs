@@ -71,6 +71,8 @@ columns! {
     excess_within_cell: f64 = 0.0, Range::Finite, optional;
     /// Rate at which the water by volume grew in the last step in which it flowed \[1/time\].
     water_rate: f64 = 0.0, Range::Finite, optional;
+    /// ln of its permeability over the greatest of its material \[-\].
+    ln_permeability_ratio: f64 = 0.0, Range::Finite, optional;
     /// The number that a particle was seeded with and keeps, whatever others come and go.
     number: usize = number, Range::Finite;
     /// Index of the constitutive law.
@@ -149,6 +151,21 @@ impl<const D: usize> Particles<D> {
     pub fn with_ratios(self, ratios: Vec<Ratios>) -> Result<Self, AssemblyError> {
         Self::from_fields(ParticleFields {
             ratios,
+            ..self.fields
+        })
+    }
+
+    /// The particles with permeabilities over the greatest of their material \[-\], one entry per particle. They carry them
+    /// from then on.
+    ///
+    /// # Errors
+    /// [`AssemblyError::InvalidParticle`] for the first ratio that is not positive and finite.
+    ///
+    /// # Panics
+    /// If there are more or fewer entries than particles.
+    pub fn with_permeability_ratios(self, ratios: &[f64]) -> Result<Self, AssemblyError> {
+        Self::from_fields(ParticleFields {
+            ln_permeability_ratio: ratios.iter().map(|ratio| ratio.ln()).collect(),
             ..self.fields
         })
     }

@@ -125,6 +125,12 @@ impl<'c, const D: usize> Model<'c, D> {
         let mut particles = Particles::new(&seeds)?
             .with_ratios(ratios)?
             .with_initial_histories(&model.laws)?;
+        if (case.materials.iter()).any(|own| own.profiles.permeability.is_some()) {
+            let soil = |seed: &ParticleSeed<D>| &case.materials[seed.law % case.materials.len()];
+            let ratio = |seed: &ParticleSeed<D>| soil(seed).permeability_ratio_at(&seed.x, &ground);
+            let ratios: Vec<f64> = seeds.iter().map(ratio).collect();
+            particles = particles.with_permeability_ratios(&ratios)?;
+        }
         if case.bodies.iter().any(|part| !part.from_start) {
             let is_first = |particle: usize| case.bodies[seeded.body[particle]].from_start;
             model.later = Some(particles.keeping(|particle| !is_first(particle))?);

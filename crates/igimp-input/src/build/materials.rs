@@ -374,17 +374,6 @@ fn permeability<const D: usize>(
         problems,
     );
     let Property { constant, profile } = along.ok_or(Wrong)?;
-    let drainage = common.drainage.as_ref().map_err(|_| Wrong)?;
-    let flows = drainage.as_ref().map(|own| **own) == Some(keys::Drainage::Coupled);
-    if flows && profile.is_some() {
-        problems
-            .error(
-                own.horizontal.place,
-                "permeability of coupled soil does not vary with the level or the depth",
-            )
-            .help("write one value, and materials of their own for layers; computed seepage takes what varies");
-        return Err(Wrong);
-    }
     let soil = Soil {
         along: constant,
         across: own.vertical.as_ref().map_or(constant, |own| **own),

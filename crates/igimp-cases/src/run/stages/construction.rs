@@ -165,6 +165,7 @@ fn become_soil_of<const D: usize>(
         ratios.stiffness = 1.0;
     }
     fields.ratios[particle] = ratios;
+    fields.ln_permeability_ratio[particle] = soil.permeability_ratio_at(&place, ground).ln();
     fields.mass[particle] =
         fields.volume0[particle] * soil.unit_weight_at(&place, ground) / gravity;
     let tau = fields.sigma[particle].map(|row| row.map(|stress| stress * stretch));
