@@ -25,7 +25,7 @@ pub(crate) fn to(
     }
     let left = sweep.left()?;
     let threads = arguments.threads.unwrap_or(1);
-    let Some(demand) = sweep.demand(&left, threads, Speed::measured()?)? else {
+    let Some(demand) = sweep.demand(&left, (threads, arguments.ranks), Speed::measured()?)? else {
         output::print(&format!(
             "all {} tasks are done; igimp collect {} gathers them",
             sweep.tasks.len(),
@@ -66,9 +66,14 @@ pub(crate) fn to(
 /// The resources of a task, and the reason.
 fn given(demand: &Resources) -> String {
     let plural = if demand.threads == 1 { "" } else { "s" };
+    let ranks = match demand.ranks {
+        1 => String::new(),
+        ranks => format!("{ranks} ranks of "),
+    };
     format!(
-        "{} thread{plural}, {} MiB and {} min (1.5 times the memory of task {}, about {}; 3 times the time of \
+        "{}{} thread{plural}, {} MiB and {} min (1.5 times the memory of task {}, about {}; 3 times the time of \
          task {}, about {} here, and 5 min)",
+        ranks,
         demand.threads,
         demand.mebibytes(),
         demand.minutes(),

@@ -12,6 +12,8 @@ use super::{Sweep, SweepError, Task};
 const MEMORY: f64 = 1.5;
 /// Memory is asked for in pieces of this size \[bytes\].
 const PIECE: f64 = 100.0 * 1_048_576.0;
+/// Memory of a rank beside factors and particles: programs, libraries and messages of PETSc and MPI \[bytes\].
+const RANK: f64 = 100.0 * 1_048_576.0;
 /// Time asked for over the estimate \[-\].
 const TIME: f64 = 3.0;
 /// And on top of it, for the start and for what is saved at the end \[s\].
@@ -22,6 +24,8 @@ const MORE_TIME: f64 = 300.0;
 pub struct Resources {
     /// Threads.
     pub threads: usize,
+    /// Ranks, each with as many threads.
+    pub ranks: usize,
     /// The task that needs most memory \[bytes\].
     pub memory: Largest,
     /// The task that takes longest \[s\].
@@ -38,9 +42,14 @@ pub struct Largest {
 }
 
 impl Resources {
-    /// Memory to ask for: 1.5 times the estimate, in pieces of 100 MiB \[MiB\].
+    /// Memory to ask for: 1.5 times the estimate, and for several ranks 100 MiB each, in pieces of 100 MiB \[MiB\].
     pub fn mebibytes(&self) -> u64 {
-        (100.0 * (MEMORY * self.memory.estimate / PIECE).ceil()) as u64
+        let of_ranks = if self.ranks > 1 {
+            RANK * self.ranks as f64
+        } else {
+            0.0
+        };
+        (100.0 * ((MEMORY * self.memory.estimate + of_ranks) / PIECE).ceil()) as u64
     }
 
     /// Time to ask for: three times the estimate and five minutes \[min\].
@@ -50,14 +59,15 @@ impl Resources {
 }
 
 impl Sweep {
-    /// Resources for each of these tasks with that number of threads, on a computer of that speed; `None` without tasks.
+    /// Resources for each of these tasks with those numbers of threads and ranks, on a computer of that speed; `None` without
+    /// tasks.
     ///
     /// # Errors
     /// [`SweepError`] for a task that makes no case, or cannot be set up.
     pub fn demand(
         &self,
         tasks: &[&Task],
-        threads: usize,
+        (threads, ranks): (usize, usize),
         speed: Speed,
     ) -> Result<Option<Resources>, SweepError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -80,6 +90,7 @@ impl Sweep {
         let both = largest(0).zip(largest(1));
         Ok(both.map(|(memory, time)| Resources {
             threads,
+            ranks,
             memory,
             time,
         }))

@@ -67,9 +67,11 @@ fn a_script_of_slurm_starts_several_ranks() {
     assert!(said(&output).contains("only Slurm starts tasks of several ranks"));
     let output = study.igimp(&[&words[..], &["slurm"]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert!(said(&output).contains("each is given 4 ranks of 1 thread, 500 MiB and "));
     let script = fs::read_to_string(study.path("out/slurm.sh")).unwrap();
     for line in [
         "#SBATCH --ntasks=4 --cpus-per-task=1",
+        "#SBATCH --mem=500M",
         "#SBATCH --signal=TERM@120",
         "exec srun --mpi=pmix --cpu-bind=none --kill-on-bad-exit=1 ",
         "igimp-mpi run study.toml --task ",

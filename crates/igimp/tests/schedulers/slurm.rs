@@ -1,5 +1,5 @@
-//! A real Slurm of one node, started for the test on the loopback: an array job, one task of it killed, one stopped by
-//! its time limit, and what is left submitted again.
+//! A real Slurm of one node, started for a test on the loopback: an array job, one task of it killed, one stopped by
+//! its time limit, and what is left submitted again. Tasks of several ranks in the same way, one rank of them killed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,6 +13,21 @@ struct Slurm {
 }
 
 impl Slurm {
+    /// A Slurm, if one is asked for and there; `needs` says what for.
+    fn asked_for(needs: &str) -> Option<Self> {
+        let programs = ["slurmctld", "slurmd", "sbatch", "munged"];
+        let is_asked = std::env::var_os("IGIMP_SLURM").is_some();
+        if is_asked && programs.iter().all(|name| is_there(name)) {
+            return Some(Self::start(
+                Path::new(env!("CARGO_TARGET_TMPDIR")).join("slurm"),
+            ));
+        }
+        println!(
+            "skipped: IGIMP_SLURM=1 with slurmctld, slurmd, sbatch and munged runs it ({needs})"
+        );
+        None
+    }
+
     fn start(folder: PathBuf) -> Self {
         let _ = fs::remove_dir_all(&folder);
         for part in ["state", "spool", "munge"] {
@@ -76,12 +91,18 @@ impl Slurm {
     }
 
     /// Submits from the folder of a study; the number of the job.
+    ///
+    /// Tasks find programs in the folder that `IGIMP_MPI` names, if it names one.
     fn submit(&self, study: &Study, more: &[&str]) -> String {
         let mut words = vec!["sbatch", "--parsable"];
         words.extend(more);
         words.push("out/slurm.sh");
         let mut command = self.command(&words);
-        let output: Output = command.current_dir(&study.folder.0).output().unwrap();
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        let folders = std::env::var_os("IGIMP_MPI").map(PathBuf::from).into_iter();
+        let path = std::env::join_paths(folders.chain(std::env::split_paths(&path))).unwrap();
+        command.env("PATH", path).current_dir(&study.folder.0);
+        let output: Output = command.output().unwrap();
         assert!(output.status.success(), "{}", said(&output));
         String::from_utf8(output.stdout).unwrap().trim().to_owned()
     }
@@ -116,17 +137,12 @@ impl Drop for Slurm {
 
 #[test]
 fn an_array_of_slurm_loses_nothing() {
-    let programs = ["slurmctld", "slurmd", "sbatch", "munged"];
-    if std::env::var_os("IGIMP_SLURM").is_none() || !programs.iter().all(|name| is_there(name)) {
-        println!(
-            "skipped: IGIMP_SLURM=1 with slurmctld, slurmd, sbatch and munged runs it (four minutes)"
-        );
+    let Some(slurm) = Slurm::asked_for("four minutes") else {
         return;
-    }
+    };
     // The last takes longer than its time limit.
     let steps = [300, 4000, 300, 30_000];
     let study = Study::new("slurm with blanks", steps);
-    let slurm = Slurm::start(Path::new(env!("CARGO_TARGET_TMPDIR")).join("slurm"));
     let output = study.igimp(&["sweep", "study.toml", "--to", "slurm"]);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     // A minute is the least that Slurm knows; of the notice it is late or early by half of that.
@@ -163,4 +179,62 @@ fn an_array_of_slurm_loses_nothing() {
     }
     assert_eq!([2, 4].map(|task| study.first_stage_of(task)), first_stages);
     study.is_as(&Study::left_alone("slurm-alone", steps));
+}
+
+/// The displacement that a monitor of a task ends with \[m\].
+fn end_of_monitor(study: &Study, task: usize) -> f64 {
+    let path = study.path(&format!("out/task-{task:04}/monitors/top.csv"));
+    let text = fs::read_to_string(path).unwrap();
+    let last = text.lines().last().unwrap().rsplit(',').next();
+    last.unwrap().parse().unwrap()
+}
+
+// GOAL: tasks of several ranks end as those of one, though a rank is killed and the time of another is up.
+// ORACLE: `igimp sweep` left alone, to 1e-9 of a displacement with ten digits.
+#[test]
+fn tasks_of_several_ranks_lose_nothing() {
+    if std::env::var_os("IGIMP_MPI").is_none() {
+        println!(
+            "skipped: IGIMP_MPI, the folder of igimp-mpi, and IGIMP_SLURM=1 run it (four minutes)"
+        );
+        return;
+    }
+    let Some(slurm) = Slurm::asked_for("four minutes") else {
+        return;
+    };
+    let steps = [60, 2000, 60, 10_000];
+    let study = Study::new("slurm-ranks", steps);
+    let to_slurm = ["sweep", "study.toml", "--to", "slurm", "--ranks", "2"];
+    let output = study.igimp(&to_slurm);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let job = slurm.submit(&study, &["--time=1", "--signal=TERM@15"]);
+    study.wait_for_push(2);
+    let second = "igimp-mpi run study.toml --task 2 ";
+    let killed = Command::new("pkill")
+        .args(["-KILL", "-n", "-f", second])
+        .status();
+    assert!(killed.unwrap().success());
+    slurm.wait_until_empty();
+    assert_eq!(slurm.end_of(&job, 1), "COMPLETED 0:0");
+    assert!(
+        slurm.end_of(&job, 2).starts_with("FAILED 1"),
+        "{}",
+        slurm.end_of(&job, 2)
+    );
+    assert_eq!(slurm.end_of(&job, 3), "COMPLETED 0:0");
+    assert_eq!(slurm.end_of(&job, 4), "FAILED 3:0");
+    let first_stages = [2, 4].map(|task| study.first_stage_of(task));
+    let output = study.igimp(&to_slurm);
+    assert!(said(&output).starts_with("2 of 4 tasks are not done: 2,4\n"));
+    let job = slurm.submit(&study, &[]);
+    slurm.wait_until_empty();
+    for task in [2, 4] {
+        assert_eq!(slurm.end_of(&job, task), "COMPLETED 0:0");
+    }
+    assert_eq!([2, 4].map(|task| study.first_stage_of(task)), first_stages);
+    let alone = Study::left_alone("slurm-ranks-alone", steps);
+    for task in 1..=4 {
+        let [own, other] = [&study, &alone].map(|study| end_of_monitor(study, task));
+        assert!((own / other - 1.0).abs() < 1e-9, "{task}: {own} {other}");
+    }
 }
