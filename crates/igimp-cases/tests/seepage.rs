@@ -195,7 +195,18 @@ fn a_slope_in_space_lets_through_what_it_does_in_the_plane() {
         ),
     ]);
     let file = CaseFile::parse("space.toml", &space, &[]).unwrap_or_else(|error| panic!("{error}"));
-    let found = in_memory(file.case_in_space()).unwrap();
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("seepage-space");
+    let target = Target::of(&file, &folder);
+    let done = AtomicBool::new(false);
+    let case = file.case_in_space();
+    let found = run(case, Some(&target), Start::Afresh, &mut Nobody, &done).unwrap();
+    let cuts = [
+        "figures/seepage-steady-x.svg",
+        "figures/seepage-steady-y.svg",
+    ];
+    for name in cuts.into_iter().chain(["sections/seepage-steady.csv"]) {
+        assert!(folder.join(name).is_file(), "{name}");
+    }
     let space = all(&found.summary.setup);
     println!("plane {plane:.4e}, space {space:.4e} over 2 m");
     assert!(

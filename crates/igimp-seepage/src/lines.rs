@@ -1,5 +1,7 @@
 //! Flow lines, equipotentials and the free surface as lines in the plane.
 
+use igimp_shape::Grid;
+
 use crate::basis::{Basis, nodes_of};
 use crate::field::Seepage;
 use crate::ground::ends_of;
@@ -9,6 +11,67 @@ const BY_CELL: f64 = 4.0;
 
 /// A line across a cell, and what passes it.
 type Pass = ([[f64; 2]; 2], f64);
+
+impl<const D: usize> Seepage<D> {
+    /// The flow in the upright plane across a level axis at a place \[m\], as one in the plane; without a `cut` a flow in the plane
+    /// itself. Heads are those between nodes, and cells those that the plane crosses, with the parts of their velocities that lie in
+    /// it. Discharges stay those of all the flow.
+    ///
+    /// # Panics
+    /// If a flow in space is not cut, one in the plane is, or the axis is not level.
+    pub fn upright(&self, cut: Option<(usize, f64)>) -> Seepage<2> {
+        assert!(cut.is_some() == (D == 3), "flows in space are cut");
+        let (axis, at) = cut.unwrap_or((D, 0.0));
+        assert!(axis != D - 1, "cuts are upright");
+        let along = usize::from(axis == 0);
+        let (layer, share) = (self.grid.axes.get(axis)).map_or((0, 0.0), |axis| {
+            let nodes = axis.nodes();
+            let after = nodes.partition_point(|node| *node <= at);
+            let layer = after.clamp(1, axis.cell_count()) - 1;
+            let share = (at - nodes[layer]) / (nodes[layer + 1] - nodes[layer]);
+            (layer, share.clamp(0.0, 1.0))
+        });
+        let grid = Grid::new([along, D - 1].map(|axis| self.grid.axes[axis].clone()));
+        let in_ground = |[across, level]: [usize; 2], layer: usize| {
+            let mut place = [layer; D];
+            (place[along], place[D - 1]) = (across, level);
+            place
+        };
+        let beyond = layer + usize::from(share > 0.0);
+        let nodes = (0..grid.node_count()).map(|node| grid.node_place(node));
+        let nodes: Vec<[usize; 2]> = nodes
+            .map(|own| [layer, beyond].map(|layer| self.grid.node_index(in_ground(own, layer))))
+            .collect();
+        let cells = (0..grid.cell_count()).map(|cell| grid.cell_place(cell));
+        let cells: Vec<usize> = cells
+            .map(|own| self.grid.cell_index(in_ground(own, layer)))
+            .collect();
+        let head = |pair: &[usize; 2]| {
+            let [lower, upper] = pair.map(|node| self.heads[node]);
+            (1.0 - share) * lower + share * upper
+        };
+        let is_ground = |pair: &[usize; 2]| pair.iter().any(|&node| self.is_ground[node]);
+        let in_plane = |&cell: &usize| [along, D - 1].map(|axis| self.velocities[cell][axis]);
+        Seepage {
+            heads: nodes.iter().map(head).collect(),
+            is_ground: nodes.iter().map(is_ground).collect(),
+            filled: cells.iter().map(|&cell| self.filled[cell]).collect(),
+            velocities: cells.iter().map(in_plane).collect(),
+            discharges: self.discharges.clone(),
+            sections: self.sections.clone(),
+            inflow: self.inflow,
+            outflow: self.outflow,
+            outflow_at_lower_floor: self.outflow_at_lower_floor,
+            floor: self.floor,
+            width: self.width,
+            corrections: self.corrections,
+            residual: self.residual,
+            unknowns: self.unknowns,
+            confined: self.confined,
+            grid,
+        }
+    }
+}
 
 impl Seepage<2> {
     /// The free surface from left to right \[m\], in pieces where there is none between.

@@ -8,7 +8,7 @@
 //! | [`safety_picture`] | `safety-STAGE` |
 //! | [`monitor_pictures`] | `monitor-NAME-KIND` |
 //! | [`section_pictures`] | `section-NAME-KIND` |
-//! | [`seepage_picture`] | `seepage-WATER` |
+//! | [`seepage_pictures`] | `seepage-WATER`, in space `seepage-WATER-AXIS` |
 //! | [`mechanism_picture`] | `mechanism-STAGE` |
 //! | [`field_picture`] | `field-STAGE-FIELD` |
 //! | [`InSpace`] | `space-STAGE-FIELD`, `cut-AXIS-STAGE-FIELD` |
@@ -47,7 +47,7 @@ pub use mechanism::{Failing, Mechanism, mechanism, mechanism_picture};
 pub use meshes::mesh_pictures;
 pub use model::model_picture;
 pub use safety::safety_picture;
-pub use seepage::seepage_picture;
+pub use seepage::seepage_pictures;
 pub use space::InSpace;
 
 use crate::error::ReportError;

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use igimp_model::{Case, Every, in_plane};
+use igimp_model::{Case, Every};
 use igimp_report::pictures;
 use igimp_results::paraview::seepage_grid;
 use igimp_results::summary::SetupTable;
@@ -16,7 +16,7 @@ use crate::run::model::Model;
 use crate::run::water::seepage::Followed;
 
 impl<const D: usize> Output<D> {
-    /// Flows that were computed: a file for ParaView, the free surface as a table, and in the plane a picture.
+    /// Flows that were computed: a file for ParaView, the free surface as a table, and pictures.
     pub(crate) fn seepage(&mut self, model: &Model<'_, D>) -> Result<(), CaseError> {
         let clock = Instant::now();
         let case = model.case;
@@ -26,19 +26,11 @@ impl<const D: usize> Output<D> {
                 let grid = seepage_grid(flow, case.water_unit_weight);
                 grid.write(&self.folder.paraview().join(format!("{name}.vtu")))?;
             }
-            let Some(flow) = in_plane::<_, Seepage<2>>(flow) else {
-                continue;
-            };
-            let mut table = Table::new(&*name, &["x [m]", "free surface y [m]"]);
-            for &x in flow.grid.axes[0].nodes() {
-                if let Some(level) = flow.free_surface(&[x, 0.0]) {
-                    table.push(vec![x, level]);
-                }
-            }
-            table.write_csv(&self.folder.sections())?;
-            if let Some(case) = in_plane::<_, Case<2>>(case).filter(|_| self.draws) {
-                let picture = pictures::seepage_picture(self.folder.root(), case, &name, flow)?;
-                self.figures.push(picture);
+            free_surface(&name, flow).write_csv(&self.folder.sections())?;
+            if self.draws {
+                let root = self.folder.root();
+                let pictures = pictures::seepage_pictures(root, case, &name, flow)?;
+                self.figures.extend(pictures);
             }
         }
         for own in &model.courses {
@@ -67,6 +59,26 @@ impl<const D: usize> Output<D> {
         }
         Ok(table.write_csv(&self.folder.sections())?)
     }
+}
+
+/// The free surface above every node of the grid in plan.
+fn free_surface<const D: usize>(name: &str, flow: &Seepage<D>) -> Table {
+    let header = if D == 2 {
+        &["x [m]", "free surface y [m]"][..]
+    } else {
+        &["x [m]", "y [m]", "free surface z [m]"]
+    };
+    let mut table = Table::new(name, header);
+    let levels = flow.grid.axes[D - 1].node_count();
+    // Nodes of the lowest level come first.
+    for node in 0..flow.grid.node_count() / levels {
+        let place = flow.grid.node_position(node);
+        if let Some(level) = flow.free_surface(&place) {
+            let plan = place[..D - 1].iter().copied();
+            table.push(plan.chain([level]).collect());
+        }
+    }
+    table
 }
 
 /// A flow in time is called by its last moment.
