@@ -4,7 +4,7 @@
 use std::cmp::Ordering;
 use std::path::{Path, PathBuf};
 
-use igimp_figures::{CurvePlot, LineStyle, Series, SeriesStyle};
+use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_report::ReportError;
 use igimp_report::pictures::file_name;
 use igimp_text::on_a_line;
@@ -13,6 +13,20 @@ use super::{Collected, SweepError};
 
 /// Most charts, and most lines of one.
 const MOST: [usize; 2] = [12, 12];
+
+/// Positive values of which the largest is more than this times the smallest stand on a logarithmic axis \[-\].
+const DECADES: f64 = 1e3;
+
+/// The scale of an axis with these values.
+fn scale_of(values: &[f64]) -> Scale {
+    let smallest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if smallest > 0.0 && largest > DECADES * smallest {
+        Scale::Log
+    } else {
+        Scale::Linear
+    }
+}
 
 /// A line of a chart.
 struct Line {
@@ -51,6 +65,7 @@ impl Collected {
                 x_label: on_a_line(&self.header[1 + axis]).into_owned(),
                 y_label: on_a_line(&self.header[column]).into_owned(),
                 series,
+                x_scale: scale_of(x),
                 ..CurvePlot::default()
             };
             let path = folder.join(format!("results-{}", file_name(&self.header[column])));
@@ -116,6 +131,13 @@ impl Collected {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn values_over_more_than_three_decades_stand_on_a_logarithmic_axis() {
+        assert_eq!(scale_of(&[60.0, 8.64e9, 3.0e5]), Scale::Log);
+        assert_eq!(scale_of(&[60.0, 6e4]), Scale::Linear);
+        assert_eq!(scale_of(&[0.0, 1.0, 1e6]), Scale::Linear);
+    }
 
     /// GOAL: a legend counts up, however the tasks of a study are listed; settings that are no numbers stay as listed.
     #[test]
