@@ -42,8 +42,8 @@ const PER_UNKNOWN: f64 = 3e3;
 const PER_PARTICLE_IN_SPACE: f64 = 4e3;
 /// Matrix, its copies and its pattern in space \[bytes per unknown\].
 const PER_UNKNOWN_IN_SPACE: f64 = 7e3;
-/// Supports of pressure and pairs with displacement of a particle whose water flows, in the plane and in space \[bytes\].
-const PER_COUPLED: [f64; 2] = [1e3, 6e3];
+/// Supports of pressure of a particle whose water flows while they are gathered, in the plane and in space \[bytes\].
+const PER_COUPLED: [f64; 2] = [1e3, 3e3];
 /// A picture of 1920 x 1290 pixels of four bytes while it is drawn and packed \[bytes\].
 const PER_PICTURE: f64 = 2.1 * 1920.0 * 1290.0 * 4.0;
 /// The view in space of a report while it is packed \[bytes\]; slopes and footings of 5 000 to 9 000 particles took 42 to 89 MiB

@@ -48,7 +48,7 @@ impl Slurm {
              SlurmctldPidFile={at}/slurmctld.pid\nSlurmdPidFile={at}/slurmd.pid\n\
              SlurmctldLogFile={at}/slurmctld.log\nSlurmdLogFile={at}/slurmd.log\n\
              ProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\nSwitchType=switch/none\nMpiDefault=none\n\
-             ReturnToService=2\nSchedulerParameters=batch_sched_delay=1,sched_interval=2\n\
+             ReturnToService=2\nMinJobAge=3600\nSchedulerParameters=batch_sched_delay=1,sched_interval=2\n\
              SelectType=select/cons_tres\nSelectTypeParameters=CR_Core_Memory\n\
              JobAcctGatherType=jobacct_gather/none\nAccountingStorageType=accounting_storage/none\n\
              NodeName={host} NodeAddr=127.0.0.1 CPUs=2 RealMemory=2000 State=UNKNOWN\n\
@@ -202,12 +202,12 @@ fn tasks_of_several_ranks_lose_nothing() {
     let Some(slurm) = Slurm::asked_for("four minutes") else {
         return;
     };
-    let steps = [60, 2000, 60, 10_000];
+    let steps = [60, 2000, 60, 4000];
     let study = Study::new("slurm-ranks", steps);
     let to_slurm = ["sweep", "study.toml", "--to", "slurm", "--ranks", "2"];
     let output = study.igimp(&to_slurm);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    let job = slurm.submit(&study, &["--time=1", "--signal=TERM@15"]);
+    let job = slurm.submit(&study, &["--time=2", "--signal=TERM@30"]);
     study.wait_for_push(2);
     let second = "igimp-mpi run study.toml --task 2 ";
     let killed = Command::new("pkill")
@@ -226,7 +226,7 @@ fn tasks_of_several_ranks_lose_nothing() {
     let first_stages = [2, 4].map(|task| study.first_stage_of(task));
     let output = study.igimp(&to_slurm);
     assert!(said(&output).starts_with("2 of 4 tasks are not done: 2,4\n"));
-    let job = slurm.submit(&study, &[]);
+    let job = slurm.submit(&study, &["--time=60"]);
     slurm.wait_until_empty();
     for task in [2, 4] {
         assert_eq!(slurm.end_of(&job, task), "COMPLETED 0:0");
