@@ -2,6 +2,7 @@
 //! say it.
 
 pub(crate) mod column;
+pub(crate) mod cryer;
 pub(crate) mod safety;
 pub(crate) mod slice;
 pub(crate) mod sphere;

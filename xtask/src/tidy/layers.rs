@@ -3,23 +3,24 @@
 use crate::metadata::{Metadata, Package};
 
 /// Crates of the project with those that they may depend on, for tests too.
-const LAYERS: [(&str, &[&str]); 21] = [
+const LAYERS: [(&str, &[&str]); 22] = [
     ("igimp-shape", &[]),
     ("igimp-material", &[]),
     ("igimp-linear", &[]),
-    ("igimp-assembly", BELOW_CASES.split_at(3).0),
-    ("igimp-solver", BELOW_CASES.split_at(4).0),
+    ("igimp-surface", &[]),
+    ("igimp-assembly", BELOW_CASES.split_at(4).0),
+    ("igimp-solver", BELOW_CASES.split_at(5).0),
     ("igimp-figures", &[]),
     ("igimp-text", &[]),
     ("igimp-schema", &["igimp-text"]),
-    ("igimp-geometry", LIBRARIES.split_at(8).0),
-    ("igimp-seepage", LIBRARIES.split_at(9).0),
-    ("igimp-model", LIBRARIES.split_at(10).0),
-    ("igimp-results", LIBRARIES.split_at(11).0),
-    ("igimp-input", LIBRARIES.split_at(12).0),
-    ("igimp-report", LIBRARIES.split_at(13).0),
-    ("igimp-cases", LIBRARIES.split_at(14).0),
-    ("igimp-study", LIBRARIES.split_at(15).0),
+    ("igimp-geometry", LIBRARIES.split_at(9).0),
+    ("igimp-seepage", LIBRARIES.split_at(10).0),
+    ("igimp-model", LIBRARIES.split_at(11).0),
+    ("igimp-results", LIBRARIES.split_at(12).0),
+    ("igimp-input", LIBRARIES.split_at(13).0),
+    ("igimp-report", LIBRARIES.split_at(14).0),
+    ("igimp-cases", LIBRARIES.split_at(15).0),
+    ("igimp-study", LIBRARIES.split_at(16).0),
     ("igimp", LIBRARIES),
     ("igimp-benchmarks", LIBRARIES),
     ("igimp-validation", LIBRARIES),
@@ -35,6 +36,7 @@ pub(super) const BELOW_CASES: &[&str] = &[
     "igimp-shape",
     "igimp-material",
     "igimp-linear",
+    "igimp-surface",
     "igimp-assembly",
     "igimp-solver",
 ];
@@ -44,6 +46,7 @@ const LIBRARIES: &[&str] = &[
     "igimp-shape",
     "igimp-material",
     "igimp-linear",
+    "igimp-surface",
     "igimp-assembly",
     "igimp-solver",
     "igimp-figures",
@@ -122,10 +125,11 @@ mod tests {
 
     type Row<'a> = (&'a str, bool, Option<&'a str>, &'a [&'a str]);
 
-    const SOUND: [Row<'_>; 22] = [
+    const SOUND: [Row<'_>; 23] = [
         ("igimp-shape", true, None, &["thiserror"]),
         ("igimp-material", true, None, &[]),
         ("igimp-linear", true, None, &[]),
+        ("igimp-surface", true, None, &["thiserror"]),
         (
             "igimp-assembly",
             true,

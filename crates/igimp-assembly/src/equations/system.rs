@@ -576,8 +576,9 @@ impl<'a, const D: usize> System<'a, D> {
                 let moved = |node: usize, axis: usize| self.prescribed(node, axis).unwrap_or(0.0);
                 let first = self.unknowns.first_pressure();
                 water.add_force_of_motion(supports, &moved, &mut |place, of_water| {
-                    let unknown = self.unknowns.index(first + place, 0);
-                    force[unknown.expect("pressures are unknown")] += of_water;
+                    if let Some(unknown) = self.unknowns.index(first + place, 0) {
+                        force[unknown] += of_water;
+                    }
                 });
             }
             linearised.push(supports, &own);

@@ -4,9 +4,9 @@
 use thiserror::Error;
 
 use super::RigidBody;
-use super::vectors::{minus, norm};
 use crate::body::particles::Particles;
 use crate::error::padded;
+use igimp_surface::vectors::{minus, norm};
 
 /// The centre of a particle stands at least so far off a body, in half-lengths as seeded \[-\]. A choice: an undeformed domain
 /// then reaches no further into the body than a quarter of its width, and a particle at rest on a side, one half-length off,

@@ -3,7 +3,7 @@
 use igimp_shape::Grid;
 
 use super::RigidBody;
-use super::vectors::dot;
+use igimp_surface::vectors::dot;
 
 /// Abscissa of the two-point rule of Gauss on (−1, 1).
 const GAUSS: f64 = 0.577_350_269_189_625_8;

@@ -4,8 +4,8 @@ use igimp_shape::Grid;
 
 use super::RigidBody;
 use super::face::Face;
-use super::surface::Space;
-use super::vectors::{cross_size, dot, minus, norm};
+use igimp_surface::Space;
+use igimp_surface::vectors::{cross_size, dot, minus, norm};
 
 /// Places and weights of six points in a triangle that integrate polynomials of degree four (Dunavant
 /// 1985): two shares of corners with their weight, each in three turns.

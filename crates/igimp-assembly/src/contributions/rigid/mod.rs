@@ -14,14 +14,12 @@ mod mortar_integrals;
 mod pose;
 mod row;
 mod state;
-mod surface;
-mod vectors;
 
+pub use igimp_surface::{CarryingTriangle, Surface, SurfaceError, SurfaceTriangle};
 pub use inertia::RigidInertia;
 pub use interface::{Interface, Penalty, Shear, Tension};
 pub use pose::Pose;
 pub use state::{ContactNode, ContactState};
-pub use surface::{CarryingTriangle, Surface, SurfaceError, SurfaceTriangle};
 
 pub use contact::AcceptedContact;
 

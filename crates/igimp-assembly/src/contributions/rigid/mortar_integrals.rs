@@ -8,13 +8,13 @@ use igimp_shape::Grid;
 use super::RigidBody;
 use super::face::Face;
 use super::face_clipping::{Piece, pieces};
-use super::surface::Space;
-use super::vectors::cross;
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::error::padded;
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
+use igimp_surface::Space;
+use igimp_surface::vectors::cross;
 
 /// A node with a smaller share of a point has none: round-off on a line of the grid \[-\].
 const LEAST_SHARE: f64 = 1e-9;

@@ -1,16 +1,16 @@
 //! A surface in space while it is made: points, facets between them, and knots.
 
-use super::space::Space;
-use super::tree::Tree;
-use super::{Facet, MOST_KNOTS, Surface, SurfaceError, extent_of};
-use crate::contributions::rigid::vectors::{cross, dot, minus, norm};
+use crate::space::Space;
+use crate::tree::Tree;
+use crate::vectors::{cross, dot, minus, norm};
+use crate::{Facet, MOST_KNOTS, Surface, SurfaceError, extent_of};
 
 /// A facet of the core with less than this area over the square of its longest edge is a line \[-\].
 const FLAT: f64 = 1e-10;
 
 /// Points, facets and knots.
 #[derive(Debug, Default)]
-pub(super) struct Draft {
+pub(crate) struct Draft {
     core: Vec<[f64; 3]>,
     outer: Vec<[f64; 3]>,
     shares: Vec<Vec<(usize, f64)>>,
@@ -21,7 +21,7 @@ pub(super) struct Draft {
 
 impl Draft {
     /// A point that is a knot of its own, from its place on the core and on the surface; returns the point.
-    pub(super) fn knot(&mut self, core: [f64; 3], outer: [f64; 3], side: usize) -> usize {
+    pub(crate) fn knot(&mut self, core: [f64; 3], outer: [f64; 3], side: usize) -> usize {
         self.shares.push(vec![(self.places.len(), 1.0)]);
         self.places.push(outer);
         self.side_of.push(side);
@@ -31,7 +31,7 @@ impl Draft {
     }
 
     /// A point that belongs to the knot of another.
-    pub(super) fn beside(&mut self, core: [f64; 3], outer: [f64; 3], other: usize) -> usize {
+    pub(crate) fn beside(&mut self, core: [f64; 3], outer: [f64; 3], other: usize) -> usize {
         self.shares.push(self.shares[other].clone());
         self.core.push(core);
         self.outer.push(outer);
@@ -39,7 +39,7 @@ impl Draft {
     }
 
     /// A facet; nothing if it has no area.
-    pub(super) fn facet(&mut self, corners: [usize; 3], side: usize, outward: &[f64; 3]) {
+    pub(crate) fn facet(&mut self, corners: [usize; 3], side: usize, outward: &[f64; 3]) {
         let [a, b, c] = corners.map(|corner| self.outer[corner]);
         let normal = cross(&minus(&b, &a), &minus(&c, &a));
         let size = norm(&normal);
@@ -58,7 +58,7 @@ impl Draft {
 
     /// Four corners in order, as four facets about their middle, which carries a quarter of each knot: their
     /// tents along both directions are those of the plane.
-    pub(super) fn quad(&mut self, corners: [usize; 4], side: usize, outward: &[f64; 3]) {
+    pub(crate) fn quad(&mut self, corners: [usize; 4], side: usize, outward: &[f64; 3]) {
         let mean = |of: &[[f64; 3]]| {
             std::array::from_fn(|axis| 0.25 * corners.iter().map(|&k| of[k][axis]).sum::<f64>())
         };
@@ -76,7 +76,7 @@ impl Draft {
 
     /// Knots on a flat quadrilateral with four corners in order on core and surface, at shares of its length
     /// along its first and its second edge.
-    pub(super) fn grid(
+    pub(crate) fn grid(
         &mut self,
         core: [[f64; 3]; 4],
         outer: [[f64; 3]; 4],
@@ -107,7 +107,7 @@ impl Draft {
     }
 
     /// The surface.
-    pub(super) fn finish(
+    pub(crate) fn finish(
         self,
         sides: usize,
         rounding: f64,
@@ -200,7 +200,7 @@ fn is_line([a, b, c]: &[[f64; 3]; 3]) -> bool {
 }
 
 /// Refuses more knots than a surface may have; so does an area that is no number.
-pub(super) fn countable(area: f64, spacing: f64) -> Result<(), SurfaceError> {
+pub(crate) fn countable(area: f64, spacing: f64) -> Result<(), SurfaceError> {
     if area <= f64::from(MOST_KNOTS) * spacing * spacing {
         Ok(())
     } else {

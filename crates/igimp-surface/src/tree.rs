@@ -41,7 +41,7 @@ impl<const D: usize> Group<D> {
 
 impl<const D: usize> Tree<D> {
     /// The tree of facets with their corners.
-    pub(super) fn new(facets: Vec<(usize, [[f64; D]; D])>) -> Self {
+    pub(crate) fn new(facets: Vec<(usize, [[f64; D]; D])>) -> Self {
         let mut tree = Self {
             facets: Vec::with_capacity(facets.len()),
             groups: Vec::new(),
@@ -88,7 +88,7 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Moves all of it.
-    pub(super) fn shift(&mut self, by: &[f64; D]) {
+    pub(crate) fn shift(&mut self, by: &[f64; D]) {
         for group in &mut self.groups {
             for axis in 0..D {
                 group.lower[axis] += by[axis];
@@ -99,7 +99,7 @@ impl<const D: usize> Tree<D> {
 
     /// The facets of which one is nearest to a point, all that tie with it among them, in ascending order;
     /// `distance` tells how far off a facet is \[length\].
-    pub(super) fn near(&self, x: &[f64; D], distance: impl Fn(usize) -> f64) -> Vec<usize> {
+    pub(crate) fn near(&self, x: &[f64; D], distance: impl Fn(usize) -> f64) -> Vec<usize> {
         let mut least = f64::INFINITY;
         let mut found = Vec::new();
         let mut open = vec![0];
@@ -135,7 +135,7 @@ impl<const D: usize> Tree<D> {
 
     /// The facets whose boxes, or those of their groups, come as near to a point as `reach` \[length\], in
     /// ascending order.
-    pub(super) fn within(&self, x: &[f64; D], reach: f64) -> Vec<usize> {
+    pub(crate) fn within(&self, x: &[f64; D], reach: f64) -> Vec<usize> {
         let mut found = Vec::new();
         let mut open = vec![0];
         while let Some(group) = open.pop() {

@@ -1,7 +1,7 @@
 //! Surfaces in the plane: polygons and circles.
 
-use super::{Facet, MOST_KNOTS, Surface, SurfaceError, extent_of, positive, shares_along};
-use crate::contributions::rigid::vectors::{dot, norm};
+use crate::vectors::{dot, norm};
+use crate::{Facet, MOST_KNOTS, Surface, SurfaceError, extent_of, positive, shares_along};
 
 impl Surface<2> {
     /// A polygon with corners in order, either way round \[length\], its corners rounded by a radius

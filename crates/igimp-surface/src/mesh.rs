@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::draft::{Draft, countable};
-use super::refine::{divided, triangulated};
-use super::{Surface, SurfaceError, positive, shares_along};
-use crate::contributions::rigid::vectors::{cross, dot, minus, norm};
+use crate::draft::{Draft, countable};
+use crate::refine::{divided, triangulated};
+use crate::vectors::{cross, dot, minus, norm};
+use crate::{Surface, SurfaceError, positive, shares_along};
 
 /// A triangle with less than this area over the square of its longest edge is a line \[-\].
 const FLAT: f64 = 1e-12;

@@ -1,10 +1,10 @@
 //! The place of a facet that is nearest to a point.
 
-use crate::contributions::rigid::vectors::{dot, minus, norm};
+use crate::vectors::{dot, minus, norm};
 
 /// Shares of the corners of a facet in its place nearest to a point, and whether the point lies beyond
 /// its edge.
-pub(super) fn closest<const D: usize>(x: &[f64; D], corners: &[[f64; D]; D]) -> ([f64; D], bool) {
+pub(crate) fn closest<const D: usize>(x: &[f64; D], corners: &[[f64; D]; D]) -> ([f64; D], bool) {
     let mut shares = [0.0; D];
     match D {
         2 => {
@@ -54,6 +54,6 @@ pub(super) fn closest<const D: usize>(x: &[f64; D], corners: &[[f64; D]; D]) -> 
 }
 
 /// The point with these shares of corners.
-pub(super) fn combine<const D: usize>(corners: &[[f64; D]; D], shares: &[f64; D]) -> [f64; D] {
+pub(crate) fn combine<const D: usize>(corners: &[[f64; D]; D], shares: &[f64; D]) -> [f64; D] {
     std::array::from_fn(|axis| (0..D).map(|k| shares[k] * corners[k][axis]).sum())
 }

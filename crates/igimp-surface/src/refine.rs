@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::SurfaceError;
-use crate::contributions::rigid::vectors::{minus, norm};
+use crate::SurfaceError;
+use crate::vectors::{minus, norm};
 
 /// Divides the edges of triangles until none is longer than a length; triangles that share an edge share its
 /// middle. Returns the triangles with the number of the one that they come from.
-pub(super) fn divided(
+pub(crate) fn divided(
     points: &mut Vec<[f64; 3]>,
     triangles: Vec<[usize; 3]>,
     longest: f64,
@@ -81,7 +81,7 @@ fn parts(points: &[[f64; 3]], corners: [usize; 3], middles: [Option<usize>; 3]) 
 }
 
 /// A polygon with its corners anticlockwise, cut into triangles.
-pub(super) fn triangulated(corners: &[[f64; 2]]) -> Result<Vec<[usize; 3]>, SurfaceError> {
+pub(crate) fn triangulated(corners: &[[f64; 2]]) -> Result<Vec<[usize; 3]>, SurfaceError> {
     let mut left: Vec<usize> = (0..corners.len()).collect();
     let mut out = Vec::new();
     let turn = |a: usize, b: usize, c: usize| {

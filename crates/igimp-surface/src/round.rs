@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use super::draft::{Draft, countable};
-use super::{Surface, SurfaceError, positive, shares_along};
-use crate::contributions::rigid::vectors::{dot, norm};
+use crate::draft::{Draft, countable};
+use crate::vectors::{dot, norm};
+use crate::{Surface, SurfaceError, positive, shares_along};
 
 /// A ring has at least so many knots, and a multiple of them: it is the same seen along all axes.
 const QUARTERS: usize = 4;

@@ -1,9 +1,9 @@
 //! What is known of a surface in space beside its core.
 
-use super::closest::{closest, combine};
-use super::tree::Tree;
-use super::{Nearest, Surface};
-use crate::contributions::rigid::vectors::{dot, minus};
+use crate::closest::{closest, combine};
+use crate::tree::Tree;
+use crate::vectors::{dot, minus};
+use crate::{Nearest, Surface};
 
 /// A facet is seen in a face if their normals are not further apart than an angle with this cosine \[-\].
 const SEEN: f64 = 0.5;
@@ -11,25 +11,25 @@ const SEEN: f64 = 0.5;
 /// Facets between points, tents between knots. A point carries shares of knots: its own, or those of
 /// knots around it.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Space<const D: usize> {
+pub struct Space<const D: usize> {
     /// Where the points of the core stand on the surface, by point \[length\].
-    pub(crate) outer: Vec<[f64; D]>,
+    pub outer: Vec<[f64; D]>,
     /// Knots with their shares, by point.
-    pub(crate) shares: Vec<Vec<(usize, f64)>>,
+    pub shares: Vec<Vec<(usize, f64)>>,
     /// Where the knots stand \[length\].
-    pub(super) places: Vec<[f64; D]>,
+    pub(crate) places: Vec<[f64; D]>,
     /// Normal and two tangents, by knot.
-    pub(super) frames: Vec<[[f64; D]; 3]>,
+    pub(crate) frames: Vec<[[f64; D]; 3]>,
     /// The facets of the core that have an area.
-    pub(super) core: Tree<D>,
+    pub(crate) core: Tree<D>,
     /// The facets of each side.
-    pub(super) sides: Vec<Tree<D>>,
+    pub(crate) sides: Vec<Tree<D>>,
 }
 
 impl<const D: usize> Space<D> {
     /// Two tangents of the surface at a knot, in the frame of the body, as far as a face with this normal
     /// has them; the second is the normal times the first (theory, eq. 45a).
-    pub(crate) fn tangents_at(&self, knot: usize, normal: &[f64; D]) -> [[f64; D]; 2] {
+    pub fn tangents_at(&self, knot: usize, normal: &[f64; D]) -> [[f64; D]; 2] {
         let [_, first, second] = &self.frames[knot];
         let along = |own: &[f64; D]| {
             let share = dot(own, normal);
@@ -55,22 +55,22 @@ pub type CarryingTriangle<'a> = ([[f64; 3]; 3], [&'a [(usize, f64)]; 3], usize);
 
 impl<const D: usize> Surface<D> {
     /// What is known beside the core of a surface in space; none in the plane.
-    pub(crate) fn space(&self) -> Option<&Space<D>> {
+    pub fn space(&self) -> Option<&Space<D>> {
         self.space.as_deref()
     }
 
     /// How many facets it has.
-    pub(crate) fn facet_count(&self) -> usize {
+    pub fn facet_count(&self) -> usize {
         self.facets.len()
     }
 
     /// The corners of a facet, as points.
-    pub(crate) fn corners(&self, facet: usize) -> [usize; D] {
+    pub fn corners(&self, facet: usize) -> [usize; D] {
         self.facets[facet].corners
     }
 
     /// The place of a side that is nearest to a point, in space.
-    pub(super) fn nearest_in_space(
+    pub(crate) fn nearest_in_space(
         &self,
         space: &Space<D>,
         x: &[f64; D],
@@ -115,7 +115,7 @@ impl<const D: usize> Surface<D> {
     }
 
     /// Facets of a side within reach of a point that look along a normal, all in the frame of the body.
-    pub(crate) fn seen(
+    pub fn seen(
         &self,
         space: &Space<D>,
         side: usize,

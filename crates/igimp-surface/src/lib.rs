@@ -1,4 +1,4 @@
-//! The surface of a rigid body: flat facets between knots, or round.
+//! The surface of a rigid body: flat facets between knots, or round. Nothing here knows of soil or of a grid.
 
 mod closest;
 mod draft;
@@ -8,15 +8,16 @@ mod refine;
 mod round;
 mod space;
 mod tree;
+pub mod vectors;
 
 pub use mesh::SurfaceTriangle;
 pub use space::CarryingTriangle;
-pub(crate) use space::Space;
+pub use space::Space;
 
 use thiserror::Error;
 
-use self::closest::{closest, combine};
-use super::vectors::{dot, minus, norm};
+use crate::closest::{closest, combine};
+use crate::vectors::{dot, minus, norm};
 
 /// The largest number of knots of a surface.
 const MOST_KNOTS: u32 = 1_000_000;
@@ -153,15 +154,15 @@ pub struct Surface<const D: usize> {
 
 /// The place of a side that is nearest to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Nearest<const D: usize> {
+pub struct Nearest<const D: usize> {
     /// Height above the facet, negative below \[length\].
-    pub(crate) height: f64,
+    pub height: f64,
     /// Out of the body.
-    pub(crate) normal: [f64; D],
+    pub normal: [f64; D],
     /// Knots of the facet, with their shares.
-    pub(crate) knots: [(usize, f64); D],
+    pub knots: [(usize, f64); D],
     /// Whether the point stands beyond the edge of the side.
-    pub(crate) is_beyond: bool,
+    pub is_beyond: bool,
 }
 
 impl<const D: usize> Surface<D> {
@@ -171,7 +172,7 @@ impl<const D: usize> Surface<D> {
     }
 
     /// The side of a knot.
-    pub(crate) fn side_of(&self, knot: usize) -> usize {
+    pub fn side_of(&self, knot: usize) -> usize {
         self.side_of[knot]
     }
 
@@ -209,7 +210,7 @@ impl<const D: usize> Surface<D> {
 
     /// What holds all of it in the frame of the body: lower and upper corner \[length\]. The knots of a circle
     /// need not lie at its outermost places.
-    pub(crate) fn extent(&self) -> ([f64; D], [f64; D]) {
+    pub fn extent(&self) -> ([f64; D], [f64; D]) {
         self.radius
             .map_or_else(|| self.bounds(), |radius| ([-radius; D], [radius; D]))
     }
@@ -221,7 +222,7 @@ impl<const D: usize> Surface<D> {
     }
 
     /// In the plane the length of what belongs to each knot \[length\].
-    pub(crate) fn tents(&self) -> Vec<f64> {
+    pub fn tents(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.knot_count()];
         for facet in &self.facets {
             let corners = facet.corners.map(|corner| self.points[corner]);
@@ -235,7 +236,10 @@ impl<const D: usize> Surface<D> {
 
     /// Signed distance of a point in the frame of the body, negative within it \[length\], and the direction
     /// in which it grows.
-    pub(crate) fn distance(&self, x: &[f64; D]) -> (f64, [f64; D]) {
+    ///
+    /// # Panics
+    /// If no facet is at a distance, as of a point that is not a number.
+    pub fn distance(&self, x: &[f64; D]) -> (f64, [f64; D]) {
         if let Some(radius) = self.radius {
             let length = norm(x);
             let normal = x.map(|x| x / length.max(f64::MIN_POSITIVE));
@@ -273,7 +277,10 @@ impl<const D: usize> Surface<D> {
     }
 
     /// The place of a side that is nearest to a point, both in the frame of the body.
-    pub(crate) fn nearest(&self, x: &[f64; D], side: usize) -> Nearest<D> {
+    ///
+    /// # Panics
+    /// If there is no such side.
+    pub fn nearest(&self, x: &[f64; D], side: usize) -> Nearest<D> {
         if let Some(space) = &self.space {
             return self.nearest_in_space(space, x, side);
         }
