@@ -809,7 +809,7 @@ fn clay_consolidates_under_a_fill() {
 /// Settlement of a layer over that in the end, after a time as c_v t/H² with the c_v at the top, where permeability falls linearly with
 /// the depth to the share `least` at the sealed base: by volumes in differences, implicit in time.
 fn settled(time: f64, least: f64) -> f64 {
-    let (cells, steps) = (400, 4000);
+    let (cells, steps) = (400, 4000_u16);
     let size = 1.0 / cells as f64;
     // Conductance from each cell to the one above; the top is open, half a cell away.
     let between = |k: usize| {
@@ -817,7 +817,7 @@ fn settled(time: f64, least: f64) -> f64 {
         (least + (1.0 - least) * height) / size * if k + 1 == cells { 2.0 } else { 1.0 }
     };
     let mut excess = vec![1.0; cells];
-    let by_step = time / steps as f64 / size;
+    let by_step = time / f64::from(steps) / size;
     for _ in 0..steps {
         let (mut upper, mut reduced) = (vec![0.0; cells], vec![0.0; cells]);
         for k in 0..cells {

@@ -104,16 +104,18 @@ fn picture<const D: usize>(
 ) -> Result<FigureNote, ReportError> {
     let flow = flow.upright(cut.map(|cut| (cut.axis, cut.at)));
     let place = cut.map(|cut| format!("{} = {} m", ["x", "y", "z"][cut.axis], short(cut.at)));
+    let seepage = titled(&case.title, "seepage");
     let mut plot = FieldPlot {
-        title: titled(&case.title, "seepage"),
+        title: place
+            .as_ref()
+            .map_or_else(|| seepage.clone(), |place| titled(&seepage, place)),
         label: "pore pressure u [kPa]".to_owned(),
         map: ColourMap::Sequential,
         ..FieldPlot::default()
     };
-    if let (Some(cut), Some(place)) = (cut, &place) {
-        plot.title = titled(&plot.title, place);
-        plot.x_label = ["y [m]", "x [m]"][cut.axis].to_owned();
-        plot.y_label = "z [m]".to_owned();
+    if let Some(cut) = cut {
+        plot.x_label = String::from(["y [m]", "x [m]"][cut.axis]);
+        plot.y_label = String::from("z [m]");
     }
     for cell in (0..flow.filled.len()).filter(|&cell| flow.filled[cell] > 0.0) {
         let place = flow.grid.cell_place(cell);
