@@ -80,10 +80,10 @@ impl Ball {
         let missed = |x: f64| (1.0 - 0.5 * eta * x * x) * x.sin() - x * x.cos();
         let terms = (1..400).map(|k| {
             let mut ends = [f64::from(k) * PI - FRAC_PI_2, f64::from(k) * PI];
-            let sign = missed(ends[0]).signum();
+            let begins_above = missed(ends[0]) > 0.0;
             for _ in 0..200 {
                 let middle = 0.5 * (ends[0] + ends[1]);
-                let end = usize::from(missed(middle).signum() != sign);
+                let end = usize::from((missed(middle) > 0.0) != begins_above);
                 ends[end] = middle;
             }
             let x = ends[0];
