@@ -631,6 +631,7 @@ fn a_boulder_falls_freely_and_digs_itself_in() {
     let fastest = energy.iter().map(|own| own[1]).fold(0.0, f64::max);
     // Of 20 kN/m over 0.5 m.
     between(fastest, 9.5e3, 10.6e3);
+    println!("impact settles by {}", ran.end_of("settlement"));
     between(ran.end_of("settlement"), 0.55, 0.9);
 }
 

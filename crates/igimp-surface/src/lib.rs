@@ -203,6 +203,11 @@ impl<const D: usize> Surface<D> {
         self.rounding
     }
 
+    /// The radius, if it is round about the origin of its frame \[length\].
+    pub fn radius(&self) -> Option<f64> {
+        self.radius
+    }
+
     /// Its extent in the frame of the body: lower and upper corner \[length\].
     pub fn bounds(&self) -> ([f64; D], [f64; D]) {
         self.bounds

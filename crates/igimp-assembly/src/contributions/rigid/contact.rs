@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::clearance::{Penetration, push_out};
 use super::face_clipping::tents_within;
 use super::interface::{Interface, Tension};
-use super::mortar_integrals::Gathering;
+use super::mortar_integrals::{Gathering, Sums, rolling_radius};
 use super::row::{Functional, Row};
 use super::{ContactNode, ContactState, NODES_PER_BODY, RigidBody};
 use crate::body::particles::Particles;
@@ -85,6 +85,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         let node = self.first_node + NODES_PER_BODY * index;
         let motion = conditions.motions.get(index);
         let is_loaded = conditions.time.is_none() && motion.is_some_and(RigidMotion::is_pushed);
+        let rolls = rolling_radius(body, conditions).is_some();
         let knots = Gathering::new(body, node, particles, stencils, conditions, unknowns).sums();
         for (knot, sums) in knots {
             let area = sums.area.min(tents[knot]);
@@ -99,23 +100,11 @@ impl<'a, const D: usize> Contact<'a, D> {
                     .collect()
             };
             let mut before = body.contact.knots[knot];
-            // Soil that comes near is as far off as it stands, and touches if it overlaps; from then on the
-            // gap follows its motion. Where it is bonded it touches at once.
             let interface = &body.interfaces[surface.side_of(knot)];
             let is_laid =
                 before.area == 0.0 && is_loaded && mean(sums.gap) < LAID * mean(sums.cell);
-            if before.area == 0.0 {
-                let bonds = interface.tension != Tension::None && !before.is_broken;
-                before.gap = if bonds || is_laid {
-                    0.0
-                } else {
-                    mean(sums.gap).max(0.0)
-                };
-                before.is_closed = before.gap == 0.0;
-            } else if !before.is_closed && sums.area > before.area {
-                // More of the soil around the knot has come near, the last of it from further off.
-                before.gap = before.gap.max(mean(sums.gap));
-            }
+            let bonds = interface.tension != Tension::None && !before.is_broken;
+            begin(&mut before, &sums, bonds || is_laid, rolls);
             let mut row = Row {
                 body: index,
                 knot,
@@ -223,6 +212,21 @@ impl<'a, const D: usize> Contact<'a, D> {
             bodies: moved,
             push_out,
         })
+    }
+}
+
+/// Sets the gap that a knot begins a step with. Soil that comes near is as far off as it stands, and touches if it overlaps; from
+/// then on the gap follows its motion, unless the body `rolls` and the knot is open. Where soil `touches` it does at once.
+fn begin<const D: usize>(before: &mut ContactNode, sums: &Sums<D>, touches: bool, rolls: bool) {
+    let gap = sums.gap / sums.area;
+    if before.area == 0.0 {
+        before.gap = if touches { 0.0 } else { gap.max(0.0) };
+        before.is_closed = before.gap == 0.0;
+    } else if !before.is_closed && rolls {
+        before.gap = gap.max(0.0);
+    } else if !before.is_closed && sums.area > before.area {
+        // More of the soil around the knot has come near, the last of it from further off.
+        before.gap = before.gap.max(gap);
     }
 }
 

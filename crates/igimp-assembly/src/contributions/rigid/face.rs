@@ -3,10 +3,13 @@
 use igimp_shape::Grid;
 
 use super::RigidBody;
-use igimp_surface::vectors::dot;
+use igimp_surface::vectors::{dot, minus, norm};
 
 /// Abscissa of the two-point rule of Gauss on (−1, 1).
 const GAUSS: f64 = 0.577_350_269_189_625_8;
+
+/// A line with a smaller sine to a side of a domain does not meet it \[-\].
+const ALONG: f64 = 1e-9;
 
 /// The face of a particle, parallel to a side of the body.
 pub(crate) struct Face<const D: usize> {
@@ -23,6 +26,8 @@ pub(crate) struct Face<const D: usize> {
     half: f64,
     /// From the surface to the face \[length\].
     pub(crate) gap: f64,
+    /// Centre and half-lengths of the domain of its particle \[length\].
+    domain: [[f64; D]; 2],
 }
 
 /// A point of integration on a face.
@@ -66,6 +71,7 @@ impl<const D: usize> Face<D> {
         Some(Self {
             middle: std::array::from_fn(|a| centre[a] - thickness * normal[a]),
             gap,
+            domain: [*centre, *half_length],
             half: reach(&along[0]),
             along,
             side,
@@ -78,6 +84,30 @@ impl<const D: usize> Face<D> {
     pub(crate) fn at(&self, place: &[f64; 2]) -> [f64; D] {
         let [s, t] = place;
         std::array::from_fn(|a| self.middle[a] + s * self.along[0][a] + t * self.along[1][a])
+    }
+
+    /// From a body that is round with this radius to the domain, along the line from its middle through a point of the face
+    /// \[length\] (theory, eq. 45e). A face that is along no side of the domain touches it at a corner; elsewhere soil is further off.
+    pub(crate) fn gap_along(&self, middle: &[f64; D], radius: f64, x: &[f64; D]) -> f64 {
+        let [centre, half] = &self.domain;
+        let corner = |axis: usize, sign: f64| centre[axis] + sign * half[axis];
+        let arm = minus(x, middle);
+        let length = norm(&arm);
+        let (mut entry, mut exit) = (f64::NEG_INFINITY, f64::INFINITY);
+        for axis in 0..D {
+            let along = arm[axis] / length;
+            if along.abs() > ALONG {
+                let sides = [-1.0, 1.0].map(|sign| (corner(axis, sign) - middle[axis]) / along);
+                entry = entry.max(sides[0].min(sides[1]));
+                exit = exit.min(sides[0].max(sides[1]));
+            }
+        }
+        if entry <= exit {
+            return entry - radius;
+        }
+        let nearest: [f64; D] =
+            std::array::from_fn(|axis| x[axis].clamp(corner(axis, -1.0), corner(axis, 1.0)));
+        norm(&minus(&nearest, middle)) - radius
     }
 
     /// Its points of integration in the plane: two between any two lines of the grid and knots of the surface that
@@ -144,4 +174,30 @@ fn tangents<const D: usize>(normal: &[f64; D]) -> [[f64; D]; 2] {
         out[1][a] = normal[b] * out[0][c] - normal[c] * out[0][b];
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Interface, Surface};
+
+    // GOAL: a body that rolls sees level ground where it is.
+    // CASE: a circle of radius 1 that stands 0.02 above ground, and particles of the uppermost layer beside its lowest point.
+    // ORACLE: along a line from its middle, at an angle θ to the vertical, ground is 1.02 / cos θ off; corners of faces are nearer.
+    #[test]
+    fn a_round_body_sees_level_ground_where_it_is() {
+        let (radius, half) = (1.0, [0.1; 2]);
+        let surface = Surface::circle(radius, 0.1).unwrap();
+        let middle = [0.0, 1.02];
+        let body = RigidBody::new(surface, vec![Interface::rough()], middle);
+        for place in [0.0, 0.2, 0.4] {
+            let face = Face::of(&body, 0, &[place, -half[1]], &half).unwrap();
+            let x = face.at(&[0.0, 0.0]);
+            let slope = x[0] / (middle[1] - x[1]);
+            let expected = middle[1] * slope.hypot(1.0) - radius;
+            let gap = face.gap_along(&middle, radius, &x);
+            assert!((gap - expected).abs() < 1e-12, "{gap} {expected}");
+            assert!(gap >= face.gap, "{gap} {}", face.gap);
+        }
+    }
 }

@@ -111,9 +111,10 @@ impl<'a, const D: usize> Gathering<'a, D> {
     fn add_points(&mut self, soil: &Soil<'_, D>, places: &[[f64; D]]) {
         let grid = &self.conditions.grid;
         for point in soil.face.points(self.body, places, grid) {
-            let Some(own) = soil_at(grid, self.stencils, self.unknowns, &point.x) else {
+            let Some(mut own) = soil_at(grid, self.stencils, self.unknowns, &point.x) else {
                 continue;
             };
+            own.gap = self.gap(soil.face, &point.x);
             for (knot, tent) in point.knots {
                 self.add(soil, knot, point.area * tent, &own, &soil.face.along);
             }
@@ -131,7 +132,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
     ) {
         let (body, face) = (self.body, soil.face);
         for piece in pieces(face, half, body, space, places, &self.conditions.grid) {
-            for (corner, (weight, own)) in self.means(&piece).into_iter().enumerate() {
+            for (corner, (weight, own)) in self.means(&piece, face).into_iter().enumerate() {
                 for &(knot, share) in &space.shares[piece.corners[corner]] {
                     let tangents = space.tangents_at(knot, &face.facing);
                     let tangents = tangents.map(|own| body.pose.direction(&own));
@@ -141,12 +142,20 @@ impl<'a, const D: usize> Gathering<'a, D> {
         }
     }
 
+    /// From the body to the soil at a point of a face \[length\].
+    fn gap(&self, face: &Face<D>, x: &[f64; D]) -> f64 {
+        rolling_radius(self.body, self.conditions).map_or(face.gap, |radius| {
+            face.gap_along(&self.body.pose.origin, radius, x)
+        })
+    }
+
     /// By corner of its facet the area of a piece that belongs to it, and the mean of the soil there.
-    fn means(&self, piece: &Piece<D>) -> Vec<(f64, SoilPoint<D>)> {
+    fn means(&self, piece: &Piece<D>, face: &Face<D>) -> Vec<(f64, SoilPoint<D>)> {
         let grid = &self.conditions.grid;
         let none = || SoilPoint {
             shares: Vec::new(),
             place: [0.0; D],
+            gap: 0.0,
             cell: 0.0,
         };
         let mut sums: Vec<(f64, SoilPoint<D>)> = (0..3).map(|_| (0.0, none())).collect();
@@ -154,10 +163,12 @@ impl<'a, const D: usize> Gathering<'a, D> {
             let Some(own) = soil_at(grid, self.stencils, self.unknowns, x) else {
                 continue;
             };
+            let gap = self.gap(face, x);
             for ((weight, mean), share) in sums.iter_mut().zip(shares) {
                 let by = area * share;
                 *weight += by;
                 mean.cell += by * own.cell;
+                mean.gap += by * (gap - face.gap);
                 for axis in 0..D {
                     mean.place[axis] += by * own.place[axis];
                 }
@@ -172,6 +183,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
         for (weight, mean) in &mut sums {
             if *weight > 0.0 {
                 mean.cell /= *weight;
+                mean.gap = face.gap + mean.gap / *weight;
                 mean.place = mean.place.map(|own| own / *weight);
                 for (_, share) in &mut mean.shares {
                     *share /= *weight;
@@ -190,6 +202,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
         SoilPoint {
             shares,
             place,
+            gap,
             cell,
         }: &SoilPoint<D>,
         tangents: &[[f64; D]; 2],
@@ -200,7 +213,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
         let (body, node) = (self.body, self.node);
         let sums = self.knots.entry(knot).or_default();
         sums.area += weight;
-        sums.gap += weight * soil.face.gap;
+        sums.gap += weight * gap;
         sums.young += weight * soil.young;
         sums.adhesion += weight * soil.adhesion;
         sums.cell += weight * cell;
@@ -213,6 +226,15 @@ impl<'a, const D: usize> Gathering<'a, D> {
     }
 }
 
+/// The radius of a body that may roll in a step \[length\]: it is round, and the step takes time. Other points of its surface
+/// come near in every step, so that those that are open are measured anew (theory, eq. 45e).
+pub(crate) fn rolling_radius<const D: usize>(
+    body: &RigidBody<D>,
+    conditions: &StepConditions<D>,
+) -> Option<f64> {
+    conditions.time.and(body.surface.radius())
+}
+
 /// The soil's displacement at a point, as shares of nodes that carry soil.
 struct SoilPoint<const D: usize> {
     /// They sum to one.
@@ -220,6 +242,8 @@ struct SoilPoint<const D: usize> {
     /// The place that the shares stand for, the point itself if all of its nodes carry soil. Seen from there
     /// a rotation of body and soil together opens no gap, and moments balance \[length\].
     place: [f64; D],
+    /// From the body to the soil \[length\].
+    gap: f64,
     /// Size of the cell \[length\].
     cell: f64,
 }
@@ -261,6 +285,7 @@ fn soil_at<const D: usize>(
     Some(SoilPoint {
         shares,
         place,
+        gap: 0.0,
         cell: size.into_iter().fold(f64::INFINITY, f64::min),
     })
 }
