@@ -15,6 +15,7 @@
 //! | `memory` | the same as `returns` and `tangents` ask, of laws with memory and with elasticity that is not linear |
 //! | `hoek_brown` | the same of Hoek–Brown, with its envelope and its reduction |
 //! | `softening` | the same, and closed forms, of laws whose strength goes with plastic strain |
+//! | `undrained` | strength by the direction of stress and by the rate of strain: closed forms, the contract |
 //! | `utilisation` | the share of the strength that a stress mobilises |
 //! | `refusals` | what is not accepted, and the words for it |
 //!
@@ -37,4 +38,5 @@ mod scaled;
 mod softening;
 mod tangents;
 mod tensors;
+mod undrained;
 mod utilisation;
