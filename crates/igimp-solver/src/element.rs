@@ -7,7 +7,7 @@
 //!
 //! let law = Tresca::new(Elasticity::new(10e6, 0.3)?, 50e3)?;
 //! let path = StandardTest::TriaxialUndrained.path(0.05);
-//! let test = ElementTest { sigma: [-100e3; 3], path, steps: 20, kinematics: Kinematics::Finite, duration: 0.0 };
+//! let test = ElementTest { sigma: [-100e3; 3], path, steps: 20, kinematics: Kinematics::Finite, durations: Vec::new() };
 //! let run = test.run(&law)?;
 //! let last = run.states.last().expect("the start is among them");
 //! assert!(run.failure.is_none() && (last.q() - 100e3).abs() < 1.0); // q = 2 c_u
@@ -74,8 +74,9 @@ pub struct ElementTest {
     pub steps: usize,
     /// How strain is measured.
     pub kinematics: Kinematics,
-    /// How long a leg takes \[time\], for laws whose strength goes with the rate of strain; zero: strength at the reference rate.
-    pub duration: f64,
+    /// How long each leg takes \[time\], for laws whose strength goes with the rate of strain; of a leg without an entry it is
+    /// zero, and strength that at the reference rate.
+    pub durations: Vec<f64>,
 }
 
 /// The state of the soil after a step.
@@ -193,6 +194,7 @@ impl ElementTest {
         let mut begin = self.begin(&point.state);
         for (leg, end) in self.path.legs.iter().enumerate() {
             let end = self.filled(end);
+            let duration = self.durations.get(leg).copied().unwrap_or(0.0);
             let follows =
                 |share: f64| std::array::from_fn(|c| begin[c] + share * (end[c] - begin[c]));
             for step in 0..self.steps {
@@ -201,7 +203,7 @@ impl ElementTest {
                 if let Err((share, law)) = follow(
                     law,
                     (&mut point, self.path.controls),
-                    (way, self.duration),
+                    (way, duration),
                     &follows,
                 ) {
                     let failure = Some(StepLost { leg, share, law });

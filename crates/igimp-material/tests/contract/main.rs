@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `returns` | admissible, split of strain, dissipation, closest point, isotropy |
 //! | `active_sets` | returns to planes against every set of planes |
+//! | `every_regime` | every law on random states, by regime; a million a law in release mode |
 //! | `flow_rule` | plastic strain in the cone of the active planes |
 //! | `tangents` | consistent tangent against differences, symmetry |
 //! | `lifts` | spatial tangent against differences, rotation, plane strain against 3D |
@@ -24,6 +25,7 @@
 mod active_sets;
 mod catalogue;
 mod close_eigenvalues;
+mod every_regime;
 mod flow_rule;
 mod hardening;
 mod hoek_brown;
