@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use crate::error::{positive, required};
 use crate::law::trial_stress;
+use crate::spectral::principal::largest;
 use crate::{
     ConstitutiveModel, Dissipation, Elasticity, History, InternalVariable, MaterialError,
     MohrCoulomb, Principal, ReturnMap, Scaling, ShearStrength, Tensor, Tresca, VonMises,
@@ -320,6 +321,14 @@ impl Softening {
         // A rate goes with the step alone, which may be small beside what was before.
         let origin = if moment.rate.is_some() { before } else { 0.0 };
         let begin = before - origin;
+        // It is a difference of strains, whose round-off is in it.
+        let (noise, patience, threshold) = match &moment.rate {
+            Some((own, duration)) => {
+                let noise = 4.0 * f64::EPSILON * largest(trial);
+                (noise, 16, own.threshold(*duration))
+            }
+            None => (0.0, 4, f64::INFINITY),
+        };
         let (mut low, mut high) = (begin, f64::INFINITY);
         let (mut kappa, mut answer) = (begin, first);
         let mut is_last = false;
@@ -327,8 +336,12 @@ impl Softening {
             let gap = begin + answer.strain - kappa;
             let margin = 1.0 - answer.by_kappa;
             let mut next = kappa + gap / margin.max(LEAST_MARGIN);
+            if correction == 1 && next > threshold {
+                // From there, where strength begins to grow, Newton's method comes nearer and never past.
+                next = threshold;
+            }
             let is_plastic = answer.map.regime.is_plastic();
-            let is_closed = gap.abs() <= 4.0 * f64::EPSILON * (begin + answer.strain);
+            let is_closed = gap.abs() <= 4.0 * f64::EPSILON * (begin + answer.strain) + noise;
             if is_plastic && (is_closed || is_last || next.to_bits() == kappa.to_bits()) {
                 return if margin < LEAST_MARGIN {
                     Err(MaterialError::SnapBack { law: self.name() })
@@ -341,8 +354,9 @@ impl Softening {
             } else {
                 high = kappa;
             }
-            // Newton's steps may come slowly from one side: every fourth halves what is left.
-            if !(next > low && next < high) || (correction.is_multiple_of(4) && high.is_finite()) {
+            // Newton's steps may come slowly from one side: now and then one halves what is left.
+            let halves = correction.is_multiple_of(patience) && high.is_finite();
+            if !(next > low && next < high) || halves {
                 next = 0.5 * (low + high);
             }
             if !(next > low && next < high) {

@@ -92,6 +92,15 @@ impl RateEffect {
         positive("reference", self.reference)
     }
 
+    /// The plastic strain of a step of a duration \[time\] just beyond which strength begins to grow \[-\]; infinite without time.
+    pub(super) fn threshold(&self, duration: f64) -> f64 {
+        if duration > 0.0 {
+            duration * self.reference / 3.0_f64.sqrt() * (1.0 + 1e-9)
+        } else {
+            f64::INFINITY
+        }
+    }
+
     /// The strength over that at the reference rate, where a step of a duration \[time\] adds the plastic strain κ \[-\], and its
     /// derivative by κ. Shear in the plane by γ has κ = γ/√3.
     pub(super) fn at(&self, kappa: f64, duration: f64) -> [f64; 2] {
