@@ -435,6 +435,98 @@ fn bearing_capacity_is_that_of_prandtl() {
     between(ran.end_of("load-settlement"), 4.9, 5.9);
 }
 
+/// GOAL: a footing on clay whose strength goes with direction carries the share of the isotropic load that slip lines give, and with the
+/// logarithm of the rate as much more as the strength grows; the angle of compression is resumed and printed.
+/// ORACLE: N = 1 + s_p/s_a and half the girth of the ellipse of Davis and Christian (1971), by quadrature; 5.142 of one strength. A push
+/// that is 100 times as fast adds two log cycles of strength everywhere, so that N grows by two cycles times that of one strength.
+#[test]
+fn anisotropic_footing_carries_what_slip_lines_give() {
+    let coarse = ["grid.cell=2/7 m", "stages.0.steps=30"];
+    let isotropic = [
+        "materials.clay.anisotropy.simple_shear=1.0",
+        "materials.clay.anisotropy.passive=1.0",
+    ];
+    let end = |more: &[&str]| {
+        let ran = ran("anisotropic_footing", &[&coarse, more].concat());
+        assert!(ran.run.failure.is_none());
+        ran.end_of("load-settlement")
+    };
+    let [own, plain] = [end(&[]), end(&isotropic)];
+    let exact = |shear: f64, passive: f64| {
+        let level = 0.5 * (1.0 + passive);
+        let upright = shear * level / passive.sqrt();
+        let arcs = 10_000;
+        let width = std::f64::consts::PI / f64::from(arcs);
+        let arc = |k: i32| {
+            let (sine, cosine) = ((f64::from(k) + 0.5) * width).sin_cos();
+            (level * sine).hypot(upright * cosine) * width
+        };
+        1.0 + passive + (0..arcs).map(arc).fold(0.0, |sum, own| sum + own)
+    };
+    assert!((exact(1.0, 1.0) / (2.0 + std::f64::consts::PI) - 1.0).abs() < 1e-6);
+    let share = exact(0.75, 0.5) / exact(1.0, 1.0);
+    println!(
+        "N {own:.4} of {plain:.4}: {:.4}, exact {share:.4}",
+        own / plain
+    );
+    between(plain, 4.9, 5.7);
+    between(own / plain / share, 0.96, 1.01);
+    let fast = |duration: &str| {
+        let rate = "materials.clay.rate={ per_log_cycle = 0.1, reference = \"1 %/h\" }";
+        let time = format!("stages.0.consolidation={{ duration = \"{duration}\" }}");
+        end(&[&isotropic[..], &[rate, &time, "output.figures=[]"]].concat())
+    };
+    let [hour, blow] = [fast("1 h"), fast("36 s")];
+    let grown = (blow - hour) / (0.2 * plain);
+    println!("N {hour:.4} in an hour, {blow:.4} in 36 s: {grown:.4} of two cycles");
+    between(grown, 0.95, 1.05);
+}
+
+/// GOAL: strengths by direction and rate are refused where they have no meaning, and go on where a run was stopped, to the bit.
+#[test]
+fn anisotropic_footing_resumes_and_refuses() {
+    // Strength that grows with depth, with softening and anisotropy at once.
+    let overrides = [
+        "grid.cell=2/5 m",
+        "stages.0.steps=8",
+        "materials.clay.cu={ at_top = \"40 kPa\", gradient = \"5 kPa/m\" }",
+        "materials.clay.softening={ cu = { residual = 0.5, strain = 0.5 } }",
+        "output.figures=[]",
+    ];
+    let case = file("anisotropic_footing", &overrides);
+    let (whole, stopped) = (folder("anisotropic-whole"), folder("anisotropic-stopped"));
+    let run = run_into((&case, case.case()), &whole, Start::Afresh, None);
+    assert_done(&run.summary);
+    run_into((&case, case.case()), &stopped, Start::Afresh, Some(3));
+    run_into((&case, case.case()), &stopped, Start::Resume, None);
+    assert_equal(
+        &everything(&whole),
+        &everything(&stopped),
+        "after it was taken up",
+    );
+    let angles = |particle: &[f64; 4]| (0.0..=std::f64::consts::FRAC_PI_2).contains(&particle[1]);
+    assert!(run.body.particles.internal.iter().all(angles));
+    let case = file("anisotropic_footing", &[]);
+    let material = &case.case().materials[0];
+    assert_eq!(material.law().unwrap().name(), "anisotropic Tresca");
+    assert_eq!(
+        material.law().unwrap().internal_variables()[0].name,
+        "angle of compression"
+    );
+    let refused = |set: &str| {
+        let text = find("anisotropic_footing").unwrap().text;
+        CaseFile::parse("footing", text, &[set.to_owned()])
+            .unwrap_err()
+            .to_string()
+    };
+    let no_time = refused("materials.clay.rate={ per_log_cycle = 0.1, reference = \"1 %/h\" }");
+    assert!(no_time.contains("no stage takes time"), "{no_time}");
+    let nothing = refused("materials.clay.anisotropy.passive=0.0");
+    assert!(nothing.contains("passive"), "{nothing}");
+    let no_rate = refused("stages.0.consolidation={ duration = \"1 h\" }");
+    assert!(no_rate.contains("no material is coupled"), "{no_rate}");
+}
+
 #[test]
 fn two_layer_footing_lies_between_its_layers() {
     let ran = ran(

@@ -54,6 +54,7 @@ shipped! {
     "vertical_cut": "vertical cut in undrained clay under rising weight, held against limit analysis",
     "nailed_cut": "vertical cut held by soil nails: tension in the nails, factor of safety",
     "bearing_capacity": "rough strip footing on undrained clay, held against Prandtl's solution",
+    "anisotropic_footing": "strip footing on clay whose strength goes with direction, held against its closed form",
     "two_layer_footing": "strip footing on stiff over soft clay, held against limit analysis",
     "strip_load": "uniform strip pressure on undrained clay, held against Prandtl's solution",
     "embankment": "embankment in three lifts on layered ground that was at rest",

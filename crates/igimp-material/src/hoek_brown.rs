@@ -10,7 +10,7 @@ use crate::error::{positive, required};
 use crate::law::{ON_SURFACE, mobilised, trial_stress};
 use crate::pyramid::{Pyramid, Strength};
 use crate::softening::rates::Changing;
-use crate::spectral::principal::{Principal, descending, largest, sorted, unsorted};
+use crate::spectral::principal::{Principal, descending, largest, mean, sorted, unsorted};
 use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Regime, ReturnMap};
 
 /// Most corrections of a touching point.
@@ -276,14 +276,21 @@ impl HoekBrown {
         Err(MaterialError::NotConverged { law: self.name() })
     }
 
-    /// The trial strain goes to the apex.
+    /// The trial strain goes to the apex. Where the tip below the least base is cut off, a trial stress of less mean stress keeps that:
+    /// the apex would take work out of the rock.
     fn at_apex(&self, strain: &Principal, history: &History) -> ReturnMap {
-        let tau = [self.tensile_strength(); 3];
+        let mean = mean(&self.elasticity.stress(strain));
+        let (tau, slope) = if mean < self.tensile_strength() {
+            (mean, self.elasticity.bulk())
+        } else {
+            (self.tensile_strength(), 0.0)
+        };
+        let tau = [tau; 3];
         let elastic = self.elasticity.strain(&tau);
         let delta_eps_p: Principal = std::array::from_fn(|a| strain[a] - elastic[a]);
         ReturnMap {
             tau,
-            tangent: [[0.0; 3]; 3],
+            tangent: [[slope; 3]; 3],
             delta_eps_p,
             history: history.after(&delta_eps_p),
             regime: Regime::Apex,

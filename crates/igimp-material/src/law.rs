@@ -7,7 +7,7 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use crate::spectral::principal::{Principal, deviator, dot};
+use crate::spectral::principal::{Principal, Tensor, deviator, dot};
 use crate::{Elasticity, MaterialError};
 
 /// Most internal variables of a law.
@@ -237,6 +237,35 @@ pub trait ConstitutiveModel: Send + Sync + Debug {
         eps_e_trial: &Principal,
         history: &History,
     ) -> Result<ReturnMap, MaterialError>;
+
+    /// The same in a step of a duration \[time\], zero in statics, for a law whose strength goes with the rate of strain; of other
+    /// laws it is [`return_map`](Self::return_map).
+    ///
+    /// # Errors
+    /// As [`return_map`](Self::return_map).
+    fn return_map_over(
+        &self,
+        eps_e_trial: &Principal,
+        history: &History,
+        duration: f64,
+    ) -> Result<ReturnMap, MaterialError> {
+        let _ = duration;
+        self.return_map(eps_e_trial, history)
+    }
+
+    /// The history with the direction that a stress `tau` with principal axes `frame`, in rows, leaves for the next step, for a law
+    /// whose strength goes by direction; that of other laws stays. The first of `axes` are looked at, and `vertical` is the
+    /// component of an axis that points upwards.
+    fn directed(
+        &self,
+        history: History,
+        tau: &Principal,
+        frame: &Tensor,
+        (axes, vertical): (usize, usize),
+    ) -> History {
+        let _ = (tau, frame, axes, vertical);
+        history
+    }
 
     /// Its internal variables, at most [`INTERNAL_VARIABLES`] of them; none for a law without hardening.
     fn internal_variables(&self) -> &'static [InternalVariable] {

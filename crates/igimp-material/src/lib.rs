@@ -9,7 +9,7 @@
 //! | linear Hencky elasticity | [`Elasticity`] |
 //! | the seam | [`ConstitutiveModel`], [`ReturnMap`], [`History`], [`Regime`] |
 //! | laws | [`HenckyElastic`], [`VonMises`], [`Tresca`], [`MohrCoulomb`], [`DruckerPrager`], [`HoekBrown`], [`ModifiedCamClay`] |
-//! | laws whose strength goes with plastic strain | [`Softening`], [`Curve`] |
+//! | laws whose strength goes with plastic strain, the direction of stress, the rate of strain | [`Softening`], [`Curve`], [`Directions`], [`RateEffect`] |
 //! | soil whose strength and stiffness vary | [`Ratios`], [`ScaledLaw`] |
 //! | from principal space to tensors | [`lift_finite`], [`lift_small`], [`Lifted`], [`SpatialTangent`] |
 //! | what can go wrong | [`MaterialError`] |
@@ -83,11 +83,11 @@ pub use law::{
 };
 pub use mohr_coulomb::MohrCoulomb;
 pub use scaled::{Ratios, ScaledLaw};
-pub use softening::{Curve, Decay, FrictionalCurves, Softening};
+pub use softening::{Curve, Decay, Directions, FrictionalCurves, RateEffect, Softening};
 pub use spectral::eigen::principal_values;
 pub use spectral::lift::{
-    Lifted, TangentKind, TrialStrain, elastic_left_cauchy_green, elastic_left_cauchy_green_of,
-    lift_finite, lift_small, logarithmic_strain,
+    Lifted, TangentKind, TrialStrain, directed_history, elastic_left_cauchy_green,
+    elastic_left_cauchy_green_of, lift_finite, lift_small, logarithmic_strain,
 };
 pub use spectral::principal::{Principal, Tensor};
 pub use spectral::spatial::SpatialTangent;

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use crate::spectral::principal::Principal;
+use crate::spectral::principal::{Principal, Tensor};
 use crate::{
     ConstitutiveModel, Dissipation, ElasticStiffness, Elasticity, History, INTERNAL_VARIABLES,
     InternalVariable, MaterialError, ReturnMap, Scaling, ShearStrength,
@@ -183,11 +183,20 @@ where
         eps_e_trial: &Principal,
         history: &History,
     ) -> Result<ReturnMap, MaterialError> {
+        self.return_map_over(eps_e_trial, history, 0.0)
+    }
+
+    /// The other law has its strains over a time that is as many times longer, so that rates are those of the soil.
+    fn return_map_over(
+        &self,
+        eps_e_trial: &Principal,
+        history: &History,
+        duration: f64,
+    ) -> Result<ReturnMap, MaterialError> {
         let ratio = self.strain_ratio();
         let trial = eps_e_trial.map(|strain| strain * ratio);
-        let answer = self
-            .law
-            .return_map(&trial, &self.unscaled_history(*history))?;
+        let own = self.unscaled_history(*history);
+        let answer = self.law.return_map_over(&trial, &own, duration * ratio)?;
         let Ratios {
             strength,
             stiffness,
@@ -211,6 +220,18 @@ where
 
     fn internal_variables(&self) -> &'static [InternalVariable] {
         self.law.internal_variables()
+    }
+
+    /// That of the other law: no angle goes with the ratios.
+    fn directed(
+        &self,
+        history: History,
+        tau: &Principal,
+        frame: &Tensor,
+        looked_at: (usize, usize),
+    ) -> History {
+        self.law
+            .directed(history, &self.unscaled(tau), frame, looked_at)
     }
 
     fn initial_history(&self, sigma: &Principal) -> History {

@@ -11,7 +11,7 @@ use super::tree::{Node, Value, from_value};
 /// A decimal number or a fraction, as a regular expression.
 const NUMBER: &str = r"[-+]?([0-9_]+\.?[0-9_]*|\.[0-9_]+)([eE][-+]?[0-9]+)?";
 /// Dimensions that keys take.
-const DIMENSIONS: [Dimension; 15] = [
+const DIMENSIONS: [Dimension; 16] = [
     Dimension::Length,
     Dimension::Stress,
     Dimension::UnitWeight,
@@ -27,6 +27,7 @@ const DIMENSIONS: [Dimension; 15] = [
     Dimension::Velocity,
     Dimension::DischargePerLength,
     Dimension::Discharge,
+    Dimension::StrainRate,
 ];
 
 /// JSON Schema (draft 2020-12) of a case file.

@@ -84,6 +84,7 @@ fn units(out: &mut String) {
         Dimension::Velocity,
         Dimension::DischargePerLength,
         Dimension::Discharge,
+        Dimension::StrainRate,
     ] {
         let units: Vec<_> = dimension.units().map(|unit| format!("`{unit}`")).collect();
         let _ = writeln!(out, "| {} | {} |", bare(dimension), units.join(" "));

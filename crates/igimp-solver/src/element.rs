@@ -7,7 +7,7 @@
 //!
 //! let law = Tresca::new(Elasticity::new(10e6, 0.3)?, 50e3)?;
 //! let path = StandardTest::TriaxialUndrained.path(0.05);
-//! let test = ElementTest { sigma: [-100e3; 3], path, steps: 20, kinematics: Kinematics::Finite };
+//! let test = ElementTest { sigma: [-100e3; 3], path, steps: 20, kinematics: Kinematics::Finite, durations: Vec::new() };
 //! let run = test.run(&law)?;
 //! let last = run.states.last().expect("the start is among them");
 //! assert!(run.failure.is_none() && (last.q() - 100e3).abs() < 1.0); // q = 2 c_u
@@ -25,6 +25,9 @@ pub use standard::StandardTest;
 
 /// Number of components that are driven: xx, yy and zz, and shear of x by y.
 pub const COMPONENTS: usize = 4;
+
+/// The axis that points upwards in the soil.
+const VERTICAL: usize = 1;
 
 /// Most halvings of a step.
 const MOST_HALVINGS: i32 = 12;
@@ -71,6 +74,9 @@ pub struct ElementTest {
     pub steps: usize,
     /// How strain is measured.
     pub kinematics: Kinematics,
+    /// How long each leg takes \[time\], for laws whose strength goes with the rate of strain; of a leg without an entry it is
+    /// zero, and strength that at the reference rate.
+    pub durations: Vec<f64>,
 }
 
 /// The state of the soil after a step.
@@ -174,6 +180,8 @@ impl ElementTest {
             return Err(ElementError::Path("a leg needs a step"));
         }
         let history = law.initial_history(&self.sigma);
+        let axes = std::array::from_fn(|a| std::array::from_fn(|b| f64::from(u8::from(a == b))));
+        let history = law.directed(history, &self.sigma, &axes, (3, VERTICAL));
         let (excess, scale) = (
             law.yield_function(&self.sigma, &history),
             law.stress_scale(&self.sigma),
@@ -186,14 +194,18 @@ impl ElementTest {
         let mut begin = self.begin(&point.state);
         for (leg, end) in self.path.legs.iter().enumerate() {
             let end = self.filled(end);
+            let duration = self.durations.get(leg).copied().unwrap_or(0.0);
             let follows =
                 |share: f64| std::array::from_fn(|c| begin[c] + share * (end[c] - begin[c]));
             for step in 0..self.steps {
                 let share = |k: usize| k as f64 / self.steps as f64;
                 let way = [share(step), share(step + 1)];
-                if let Err((share, law)) =
-                    follow(law, (&mut point, self.path.controls), way, &follows)
-                {
+                if let Err((share, law)) = follow(
+                    law,
+                    (&mut point, self.path.controls),
+                    (way, duration),
+                    &follows,
+                ) {
                     let failure = Some(StepLost { leg, share, law });
                     return Ok(ElementRun { states, failure });
                 }
@@ -228,7 +240,7 @@ impl ElementTest {
 fn follow(
     law: &dyn ConstitutiveModel,
     (point, controls): (&mut Point, [Control; COMPONENTS]),
-    [mut from, to]: [f64; 2],
+    ([mut from, to], duration): ([f64; 2], f64),
     values: &dyn Fn(f64) -> [f64; COMPONENTS],
 ) -> Result<(), (f64, Option<MaterialError>)> {
     let whole = to - from;
@@ -237,7 +249,7 @@ fn follow(
     let mut corrections = 0;
     while to - from > 0.5 * least {
         part = part.min(to - from);
-        match point.advanced(law, controls, &values(from + part), part) {
+        match point.advanced(law, controls, &values(from + part), (part, part * duration)) {
             Ok(next) => {
                 *point = next;
                 corrections += point.state.corrections;

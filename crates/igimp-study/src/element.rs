@@ -48,6 +48,8 @@ pub struct Request {
     pub steps: usize,
     /// How strain is measured.
     pub kinematics: Kinematics,
+    /// How long a leg of the path takes \[s\], for strength that goes with the rate of strain; zero: it takes no time.
+    pub duration: f64,
     /// Data of the laboratory, laid over it.
     pub data: Option<Data>,
 }
@@ -141,6 +143,7 @@ pub(crate) fn driven(law: &dyn ConstitutiveModel, request: &Request) -> Result<D
         path: stations.path.clone(),
         steps: stations.steps,
         kinematics: request.kinematics,
+        durations: stations.durations(request.duration),
     };
     let mut run = test.run(law)?;
     run.failure = run.failure.map(|lost| stations.on_path(lost));
@@ -311,6 +314,7 @@ mod tests {
                         stress: [100e3, 80e3],
                         steps: 300,
                         kinematics,
+                        duration: 0.0,
                         data: None,
                     };
                     let tested = test(material, &request).unwrap();

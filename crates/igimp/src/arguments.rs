@@ -183,6 +183,9 @@ pub(crate) struct ElementArguments {
     /// Steps of the test, or of a leg of a path.
     #[arg(long, value_name = "N", default_value = "200", value_parser = at_least_one)]
     pub(crate) steps: usize,
+    /// How long the test takes, or a leg of a path: the rate of strain of clay with `rate`; none: its reference rate.
+    #[arg(long, value_name = "TIME", default_value = "0 s", value_parser = a_time)]
+    pub(crate) duration: f64,
     /// Linear strain and stress per initial area, in place of natural strain and Cauchy stress.
     #[arg(long)]
     pub(crate) small_strain: bool,
@@ -225,6 +228,9 @@ pub(crate) struct FitArguments {
     /// Steps of a test, or of a leg of a path; there is a stop at every measurement besides.
     #[arg(long, value_name = "N", default_value = "200", value_parser = at_least_one)]
     pub(crate) steps: usize,
+    /// How long the test takes, or a leg of a path: the rate of strain of clay with `rate`; none: its reference rate.
+    #[arg(long, value_name = "TIME", default_value = "0 s", value_parser = a_time)]
+    pub(crate) duration: f64,
     /// Linear strain and stress per initial area, in place of natural strain and Cauchy stress.
     #[arg(long)]
     pub(crate) small_strain: bool,
@@ -355,6 +361,14 @@ fn a_test() -> PossibleValuesParser {
 fn a_stress(text: &str) -> Result<f64, String> {
     Quantity::parse_as(text, Dimension::Stress)
         .map_err(|error| format!("{error}; {}", error.help(Some(Dimension::Stress))))
+}
+
+fn a_time(text: &str) -> Result<f64, String> {
+    match Quantity::parse_as(text, Dimension::Time) {
+        Ok(time) if time >= 0.0 => Ok(time),
+        Ok(_) => Err("a test takes no negative time".to_owned()),
+        Err(error) => Err(format!("{error}; {}", error.help(Some(Dimension::Time)))),
+    }
 }
 
 fn a_scatter(text: &str) -> Result<(Measure, f64), String> {

@@ -214,7 +214,11 @@ impl<const D: usize> System<'_, D> {
             let answer = match known {
                 Some(answer) => *answer,
                 None => law
-                    .return_map(straining.principal(), &self.particles.history(particle))
+                    .return_map_over(
+                        straining.principal(),
+                        &self.particles.history(particle),
+                        self.conditions.duration(),
+                    )
                     .map_err(material)?,
             };
             answered(state, straining, law, &answer, (kind, kinematics), trial)

@@ -10,7 +10,10 @@ mod softening;
 use std::sync::Arc;
 
 use igimp_assembly::VoidLaw;
-use igimp_model::{BodyPart, Case, Drainage, Ground, Layer, Material, Profile, Profiles, Strength};
+use igimp_model::{
+    BodyPart, Case, Drainage, Ground, Layer, Material, Profile, Profiles, Stage, StageKind,
+    Strength,
+};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::materials::{self as keys, MaterialCommon, Model};
@@ -185,6 +188,26 @@ pub(super) fn check_on_cells<const D: usize>(case: &Case<D>, problems: &mut Prob
                 .error(None, message)
                 .help("smaller cells, or a larger `band_width` or `strain` of its softening");
         }
+    }
+}
+
+/// Refuses strength that goes with the rate of strain where no stage takes time.
+pub(super) fn check_rates<const D: usize>(case: &Case<D>, problems: &mut Problems) {
+    let takes_time = |stage: &Stage| {
+        stage.consolidation.is_some() || matches!(stage.kind, StageKind::Dynamic(_))
+    };
+    if case.stages.iter().any(takes_time) {
+        return;
+    }
+    let goes = |own: &&Material| own.softening.is_some_and(|own| own.rate.is_some());
+    for material in case.materials.iter().filter(goes) {
+        let message = format!(
+            "the strength of `{}` goes with the rate of strain, and no stage takes time",
+            clip(&material.name, 40)
+        );
+        problems.error(None, message).help(
+            "give the stage that shears it consolidation = { duration = \"100 s\" }, make it a dynamic one, or remove `rate`",
+        );
     }
 }
 

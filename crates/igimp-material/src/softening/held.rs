@@ -3,6 +3,7 @@
 
 use super::curve::Curve;
 use super::rates::Changing;
+use super::undrained::Moment;
 use crate::pyramid::{Pyramid, Strength};
 use crate::spectral::principal::{descending, deviator, dot, sorted, unsorted};
 use crate::{
@@ -45,7 +46,11 @@ pub(super) struct Answer {
 }
 
 impl Held {
-    fn return_map(&self, trial: &Principal, history: &History) -> Result<ReturnMap, MaterialError> {
+    pub(super) fn return_map(
+        &self,
+        trial: &Principal,
+        history: &History,
+    ) -> Result<ReturnMap, MaterialError> {
         match self {
             Self::Cylinder(law, _) => law.return_map(trial, history),
             Self::Pyramid(pyramid, _) => pyramid.return_map(trial, *history),
@@ -95,18 +100,32 @@ impl Held {
 }
 
 impl Kind {
-    /// The law at a plastic strain.
-    pub(super) fn held(&self, elasticity: Elasticity, kappa: f64) -> Result<Held, MaterialError> {
+    /// The curves of soil by undrained strength, each put to something that goes with it; others stay.
+    pub(super) fn map(self, put: impl Fn(Curve) -> Curve) -> Self {
+        match self {
+            Self::VonMises(curve) => Self::VonMises(put(curve)),
+            Self::Tresca(curve) => Self::Tresca(put(curve)),
+            Self::MohrCoulomb { .. } => self,
+        }
+    }
+
+    /// The law at a plastic strain, of which the moment says how much is of the step.
+    pub(super) fn held(
+        &self,
+        elasticity: Elasticity,
+        kappa: f64,
+        moment: &Moment,
+    ) -> Result<Held, MaterialError> {
         let pyramid = |changing: Changing| {
             Held::Pyramid(Pyramid::new(elasticity, &changing.strength), changing)
         };
         Ok(match self {
             Self::VonMises(curve) => {
-                let [yield_stress, rate] = curve.at(kappa);
+                let [yield_stress, rate] = moment.of(curve.at(kappa));
                 Held::Cylinder(VonMises::from_yield_stress(elasticity, yield_stress)?, rate)
             }
             Self::Tresca(curve) => {
-                let [shear, rate] = curve.at(kappa).map(|value| 2.0 * value);
+                let [shear, rate] = moment.of(curve.at(kappa)).map(|value| 2.0 * value);
                 let prism = |shear, apex| Strength {
                     sin_friction: 0.0,
                     sin_dilation: 0.0,

@@ -1,4 +1,5 @@
-//! von Mises, Tresca and Mohr–Coulomb whose strength softens or hardens with plastic strain (theory, eqs. 105 to 109).
+//! von Mises, Tresca and Mohr–Coulomb whose strength softens or hardens with plastic strain (theory, eqs. 105 to 109); that of von
+//! Mises and Tresca also goes with the direction of stress and with the rate of strain (eqs. 120 to 125).
 //!
 //! A step is implicit: strength is that at the end of it. With strength held, each law has an exact return; the plastic strain
 //! at which the return makes just this strain is found by Newton's method in one unknown.
@@ -6,25 +7,36 @@
 mod curve;
 mod held;
 pub(crate) mod rates;
+mod undrained;
 
 use std::sync::Arc;
 
 use crate::error::{positive, required};
 use crate::law::trial_stress;
+use crate::spectral::principal::largest;
 use crate::{
     ConstitutiveModel, Dissipation, Elasticity, History, InternalVariable, MaterialError,
-    MohrCoulomb, Principal, ReturnMap, Scaling, ShearStrength, Tresca, VonMises,
+    MohrCoulomb, Principal, ReturnMap, Scaling, ShearStrength, Tensor, Tresca, VonMises,
 };
 
 pub use curve::{Curve, Decay};
 use held::{Answer, Held, Kind};
+pub use undrained::{Directions, RateEffect};
+use undrained::{Moment, NO_DIRECTION, angle_of_compression};
 
-/// The internal variable: the plastic strain κ that strength goes with.
-const VARIABLES: [InternalVariable; 1] = [InternalVariable {
-    name: "softening strain",
-    unit: "-",
-    scaling: Scaling::Strain,
-}];
+/// The internal variables: the plastic strain κ that strength goes with, and the direction of stress.
+const VARIABLES: [InternalVariable; 2] = [
+    InternalVariable {
+        name: "softening strain",
+        unit: "-",
+        scaling: Scaling::Strain,
+    },
+    InternalVariable {
+        name: "angle of compression",
+        unit: "rad",
+        scaling: Scaling::Constant,
+    },
+];
 
 /// Least share of the elastic stiffness of the point that is left beside softening \[-\]: at zero its stress snaps back.
 const LEAST_MARGIN: f64 = 0.01;
@@ -66,6 +78,10 @@ pub struct Softening {
     strongest: Arc<dyn ConstitutiveModel>,
     /// ψ/φ as given, before any change of strength \[-\].
     dilatancy: f64,
+    /// Strength by the direction of stress.
+    directions: Option<Directions>,
+    /// Strength by the rate of strain.
+    rate: Option<RateEffect>,
 }
 
 impl Softening {
@@ -130,6 +146,81 @@ impl Softening {
         Self::build(elasticity, kind, dilatancy)?.without_snap_back()
     }
 
+    /// The law with a strength that goes with the direction of stress: its curve is that of active loading. The direction is that at
+    /// the start of a step, and an internal variable.
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`] of shares that are not positive, of soil with friction, and of a curve along which stress
+    /// snaps back.
+    pub fn with_directions(mut self, directions: Directions) -> Result<Self, MaterialError> {
+        directions.check()?;
+        self.without_friction()?;
+        let greatest = |curve: Curve| curve.map(|cu| cu * directions.greatest());
+        let strongest = Self::build(self.elasticity, self.kind.map(greatest), 1.0)?;
+        self.strongest = strongest.strongest;
+        self.directions = Some(directions);
+        self.without_snap_back()
+    }
+
+    /// The law with a strength that grows with the rate of plastic shear strain in steps that take time.
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`] of numbers that are not positive, and of soil with friction.
+    pub fn with_rate(mut self, rate: RateEffect) -> Result<Self, MaterialError> {
+        rate.check()?;
+        self.without_friction()?;
+        self.rate = Some(rate);
+        Ok(self)
+    }
+
+    fn without_friction(&self) -> Result<(), MaterialError> {
+        let angle = self
+            .strongest
+            .shear_strength()
+            .map_or(0.0, |own| own.friction_angle);
+        let is_undrained = !matches!(self.kind, Kind::MohrCoulomb { .. });
+        let requirement =
+            "absent: strength goes with direction and rate in soil by undrained strength alone";
+        required("friction_angle", angle, is_undrained, requirement)
+    }
+
+    /// Whether strength stays in a step.
+    fn is_perfect(&self) -> bool {
+        self.rate.is_none() && !self.softens()
+    }
+
+    /// Whether strength goes with plastic strain.
+    fn softens(&self) -> bool {
+        self.first_strain().is_finite()
+    }
+
+    /// Where the angle of compression stands among the internal variables, if the law has it.
+    fn place_of_angle(&self) -> Option<usize> {
+        self.directions.map(|_| usize::from(self.softens()))
+    }
+
+    /// What strength goes with beside plastic strain, in a step of a duration \[time\].
+    fn moment(&self, history: &History, duration: f64) -> Moment {
+        let share = match (&self.directions, self.place_of_angle()) {
+            (Some(own), Some(place)) => own.share(history.internal[place]),
+            _ => 1.0,
+        };
+        Moment {
+            share,
+            rate: self.rate.map(|own| (own, duration)),
+            step: 0.0,
+        }
+    }
+
+    /// κ of a history.
+    fn plastic_strain(&self, history: &History) -> f64 {
+        if self.softens() {
+            history.internal[0]
+        } else {
+            0.0
+        }
+    }
+
     fn build(elasticity: Elasticity, kind: Kind, dilatancy: f64) -> Result<Self, MaterialError> {
         let strongest: Arc<dyn ConstitutiveModel> = match kind {
             Kind::VonMises(curve) => {
@@ -148,13 +239,19 @@ impl Softening {
             kind,
             strongest,
             dilatancy,
+            directions: None,
+            rate: None,
         })
     }
 
     /// Refuses curves so steep that the stress of soil that was never sheared snaps back as it begins to yield, in shear and in
     /// triaxial paths.
     fn without_snap_back(self) -> Result<Self, MaterialError> {
-        let held = self.kind.held(self.elasticity, 0.0)?;
+        let moment = Moment {
+            share: self.directions.map_or(1.0, |own| own.greatest()),
+            ..Moment::AT_REST
+        };
+        let held = self.kind.held(self.elasticity, 0.0, &moment)?;
         for path in [[1.0, 0.0, -1.0], [1.0, 1.0, -2.0], [2.0, -1.0, -1.0]] {
             let answer = self.at_first_yield(&held, path)?;
             if answer.by_kappa < 1.0 - LEAST_MARGIN {
@@ -205,8 +302,11 @@ impl Softening {
         }
     }
 
+    /// The law at the strength that is left, at the reference rate.
     fn held(&self, history: &History) -> Result<Held, MaterialError> {
-        self.kind.held(self.elasticity, history.internal[0])
+        let moment = self.moment(history, 0.0);
+        let kappa = self.plastic_strain(history);
+        self.kind.held(self.elasticity, kappa, &moment)
     }
 
     /// The plastic strain at the end of a step, with the answer there: the zero of
@@ -214,10 +314,21 @@ impl Softening {
     fn settled(
         &self,
         trial: &Principal,
-        history: &History,
+        (history, mut moment): (&History, Moment),
         first: Answer,
     ) -> Result<(f64, Answer), MaterialError> {
-        let begin = history.internal[0];
+        let before = self.plastic_strain(history);
+        // A rate goes with the step alone, which may be small beside what was before.
+        let origin = if moment.rate.is_some() { before } else { 0.0 };
+        let begin = before - origin;
+        // It is a difference of strains, whose round-off is in it.
+        let (noise, patience, threshold) = match &moment.rate {
+            Some((own, duration)) => {
+                let noise = 4.0 * f64::EPSILON * largest(trial);
+                (noise, 16, own.threshold(*duration))
+            }
+            None => (0.0, 4, f64::INFINITY),
+        };
         let (mut low, mut high) = (begin, f64::INFINITY);
         let (mut kappa, mut answer) = (begin, first);
         let mut is_last = false;
@@ -225,13 +336,17 @@ impl Softening {
             let gap = begin + answer.strain - kappa;
             let margin = 1.0 - answer.by_kappa;
             let mut next = kappa + gap / margin.max(LEAST_MARGIN);
+            if correction == 1 && next > threshold {
+                // From there, where strength begins to grow, Newton's method comes nearer and never past.
+                next = threshold;
+            }
             let is_plastic = answer.map.regime.is_plastic();
-            let is_closed = gap.abs() <= 4.0 * f64::EPSILON * (begin + answer.strain);
+            let is_closed = gap.abs() <= 4.0 * f64::EPSILON * (begin + answer.strain) + noise;
             if is_plastic && (is_closed || is_last || next.to_bits() == kappa.to_bits()) {
                 return if margin < LEAST_MARGIN {
                     Err(MaterialError::SnapBack { law: self.name() })
                 } else {
-                    Ok((kappa, answer))
+                    Ok((origin + kappa, answer))
                 };
             }
             if gap > 0.0 {
@@ -239,8 +354,9 @@ impl Softening {
             } else {
                 high = kappa;
             }
-            // Newton's steps may come slowly from one side: every fourth halves what is left.
-            if !(next > low && next < high) || (correction.is_multiple_of(4) && high.is_finite()) {
+            // Newton's steps may come slowly from one side: now and then one halves what is left.
+            let halves = correction.is_multiple_of(patience) && high.is_finite();
+            if !(next > low && next < high) || halves {
                 next = 0.5 * (low + high);
             }
             if !(next > low && next < high) {
@@ -249,7 +365,8 @@ impl Softening {
                 is_last = true;
             }
             kappa = next;
-            let held = self.kind.held(self.elasticity, kappa)?;
+            moment.step = kappa - begin;
+            let held = (self.kind).held(self.elasticity, origin + kappa, &moment)?;
             answer = held.answer(&self.elasticity, trial, history)?;
         }
         Err(MaterialError::NotConverged { law: self.name() })
@@ -257,16 +374,32 @@ impl Softening {
 
     /// The law with other curves, at a factor on strength.
     fn with(&self, kind: Kind) -> Result<Self, MaterialError> {
-        Self::build(self.elasticity, kind, self.dilatancy)
+        let mut law = Self::build(self.elasticity, kind, self.dilatancy)?;
+        law.rate = self.rate;
+        match self.directions {
+            Some(own) => law.with_directions(own),
+            None => Ok(law),
+        }
     }
 }
 
 impl ConstitutiveModel for Softening {
     fn name(&self) -> &'static str {
-        match self.kind {
-            Kind::VonMises(_) => "softening von Mises",
-            Kind::Tresca(_) => "softening Tresca",
-            Kind::MohrCoulomb { .. } => "softening Mohr-Coulomb",
+        let effects = (
+            self.softens(),
+            self.directions.is_some(),
+            self.rate.is_some(),
+        );
+        match (&self.kind, effects) {
+            (Kind::MohrCoulomb { .. }, _) => "softening Mohr-Coulomb",
+            (Kind::VonMises(_), (_, false, false)) => "softening von Mises",
+            (Kind::Tresca(_), (_, false, false)) => "softening Tresca",
+            (Kind::VonMises(_), (false, true, false)) => "anisotropic von Mises",
+            (Kind::Tresca(_), (false, true, false)) => "anisotropic Tresca",
+            (Kind::VonMises(_), (false, false, true)) => "rate-dependent von Mises",
+            (Kind::Tresca(_), (false, false, true)) => "rate-dependent Tresca",
+            (Kind::VonMises(_), _) => "von Mises of several effects",
+            (Kind::Tresca(_), _) => "Tresca of several effects",
         }
     }
 
@@ -275,24 +408,66 @@ impl ConstitutiveModel for Softening {
     }
 
     fn internal_variables(&self) -> &'static [InternalVariable] {
-        &VARIABLES
+        let first = usize::from(!self.softens());
+        let last = if self.directions.is_some() { 2 } else { 1 };
+        &VARIABLES[first..last]
     }
 
-    /// The tangent is that at held strength, and what the change of strength adds,
-    /// $`\partial\tau/\partial\kappa \otimes \mathrm{d}\kappa/\mathrm{d}\varepsilon`$ (theory, eq. 108).
+    /// 45°, that of simple shear, where the stress has no direction yet.
+    fn initial_history(&self, _sigma: &Principal) -> History {
+        let mut history = History::default();
+        if let Some(place) = self.place_of_angle() {
+            history.internal[place] = NO_DIRECTION;
+        }
+        history
+    }
+
+    /// The angle between the vertical and the axis of the major compression; the last one where the stress has no direction.
+    fn directed(
+        &self,
+        mut history: History,
+        tau: &Principal,
+        frame: &Tensor,
+        (axes, vertical): (usize, usize),
+    ) -> History {
+        if let Some(place) = self.place_of_angle() {
+            let scale = self.stress_scale(tau);
+            if let Some(angle) = angle_of_compression(tau, frame, (axes, vertical), scale) {
+                history.internal[place] = angle;
+            }
+        }
+        history
+    }
+
+    /// That of a step at the reference rate.
     fn return_map(
         &self,
         eps_e_trial: &Principal,
         history: &History,
     ) -> Result<ReturnMap, MaterialError> {
+        self.return_map_over(eps_e_trial, history, 0.0)
+    }
+
+    /// The tangent is that at held strength, and what the change of strength adds,
+    /// $`\partial\tau/\partial\kappa \otimes \mathrm{d}\kappa/\mathrm{d}\varepsilon`$ (theory, eq. 108).
+    fn return_map_over(
+        &self,
+        eps_e_trial: &Principal,
+        history: &History,
+        duration: f64,
+    ) -> Result<ReturnMap, MaterialError> {
         trial_stress(&self.elasticity, eps_e_trial)?;
-        let first = self
-            .held(history)?
-            .answer(&self.elasticity, eps_e_trial, history)?;
+        let moment = self.moment(history, duration);
+        let kappa = self.plastic_strain(history);
+        let held = self.kind.held(self.elasticity, kappa, &moment)?;
+        if self.is_perfect() {
+            return held.return_map(eps_e_trial, history);
+        }
+        let first = held.answer(&self.elasticity, eps_e_trial, history)?;
         if !first.map.regime.is_plastic() {
             return Ok(first.map);
         }
-        let (kappa, answer) = self.settled(eps_e_trial, history, first)?;
+        let (kappa, answer) = self.settled(eps_e_trial, (history, moment), first)?;
         let mut map = answer.map;
         let margin = 1.0 - answer.by_kappa;
         for (row, rate) in map.tangent.iter_mut().zip(answer.stress_rate) {
@@ -300,7 +475,9 @@ impl ConstitutiveModel for Softening {
                 *entry += rate * along / margin;
             }
         }
-        map.history.internal[0] = kappa;
+        if self.softens() {
+            map.history.internal[0] = kappa;
+        }
         Ok(map)
     }
 
@@ -327,19 +504,29 @@ impl ConstitutiveModel for Softening {
         }
     }
 
-    /// The greater of initial and residual strength.
+    /// The greater of initial and residual strength, of active loading and at the reference rate.
     fn shear_strength(&self) -> Option<ShearStrength> {
-        self.strongest.shear_strength()
+        let own = self.strongest.shear_strength()?;
+        Some(ShearStrength {
+            cohesive: own.cohesive / self.directions.map_or(1.0, |own| own.greatest()),
+            ..own
+        })
     }
 
-    /// That of the greater of initial and residual strength: no less than the law dissipates.
+    /// That of the greater of initial and residual strength, in the direction of the greatest: no less than the law dissipates at
+    /// the reference rate.
     fn dissipation(&self, rate: &Principal) -> Option<Dissipation> {
         self.strongest.dissipation(rate)
     }
 
-    /// That of von Mises is; along the edges of planes it is not, with associated flow either.
+    /// That of von Mises is, and that of Tresca with a strength that stays in a step; where strength goes with plastic strain, it is not
+    /// along the edges of planes, with associated flow either.
     fn has_symmetric_tangent(&self) -> bool {
-        matches!(self.kind, Kind::VonMises(_))
+        match self.kind {
+            Kind::VonMises(_) => true,
+            Kind::Tresca(_) => self.is_perfect(),
+            Kind::MohrCoulomb { .. } => false,
+        }
     }
 
     /// Initial ψ/φ as given; 1 without friction.
@@ -359,8 +546,8 @@ impl ConstitutiveModel for Softening {
         Ok(Some(Arc::new(self.with(kind)?)))
     }
 
-    /// Divides the curves of c, c_u, tan φ and the cut-off by `srf`, all along; ψ stays but never exceeds φ, and plastic strains
-    /// stay.
+    /// Divides the curves of c, c_u, tan φ and the cut-off by `srf`, all along and in every direction; ψ stays but never exceeds φ,
+    /// and plastic strains and rates stay.
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
         positive("srf", srf)?;
         let weaker = |curve: Curve| curve.map(|value| value / srf);

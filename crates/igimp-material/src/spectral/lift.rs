@@ -107,6 +107,8 @@ pub struct TrialStrain {
     strain: Principal,
     frame: Tensor,
     is_finite: bool,
+    /// The component of an axis that points upwards; none: the last of the dimension.
+    vertical: Option<usize>,
 }
 
 impl TrialStrain {
@@ -121,6 +123,7 @@ impl TrialStrain {
             strain,
             frame,
             is_finite: true,
+            vertical: None,
         })
     }
 
@@ -140,7 +143,17 @@ impl TrialStrain {
             strain,
             frame,
             is_finite: false,
+            vertical: None,
         })
+    }
+
+    /// The same in space that has another axis than the last one upwards.
+    #[must_use]
+    pub fn with_vertical(self, axis: usize) -> Self {
+        Self {
+            vertical: Some(axis),
+            ..self
+        }
     }
 
     /// The principal strains \[-\].
@@ -160,14 +173,18 @@ impl TrialStrain {
         answer: &ReturnMap,
         kind: TangentKind,
     ) -> Result<Lifted<D>, MaterialError> {
-        if self.is_finite {
+        let vertical = self.vertical;
+        let mut lifted = if self.is_finite {
             lift(law, answer, &self.strain, self.frame, kind, |x| {
                 let share = if x == 0.0 { 1.0 } else { x / x.exp_m1() };
                 [share, share + x]
             })
         } else {
             lift(law, answer, &self.strain, self.frame, kind, |_| [1.0; 2])
-        }
+        }?;
+        let axes = axes_looked_at::<D>(vertical);
+        lifted.history = law.directed(lifted.history, &answer.tau, &lifted.frame, axes);
+        Ok(lifted)
     }
 }
 
@@ -228,6 +245,21 @@ pub fn elastic_left_cauchy_green_of<const D: usize>(
     let (principal, frame) = principal_axes::<D>(tau);
     let strain = law.elastic_strain(&principal, history)?;
     Ok(elastic_left_cauchy_green::<D>(&strain, &frame))
+}
+
+/// The history of a law with the direction that a stress τ \[stress\] leaves for the next step ([`ConstitutiveModel::directed`]).
+pub fn directed_history<const D: usize>(
+    law: &dyn ConstitutiveModel,
+    tau: &Tensor,
+    history: History,
+) -> History {
+    let (principal, frame) = principal_axes::<D>(tau);
+    law.directed(history, &principal, &frame, axes_looked_at::<D>(None))
+}
+
+/// How many principal axes have a direction, those in the plane in plane strain, and which component points upwards.
+fn axes_looked_at<const D: usize>(vertical: Option<usize>) -> (usize, usize) {
+    (if D == 2 { 2 } else { 3 }, vertical.unwrap_or(D - 1))
 }
 
 /// The Hencky strain $`\tfrac12\ln b`$ of a left Cauchy–Green tensor `b` (upper triangle).

@@ -36,14 +36,14 @@ fn rock(row: usize) -> HoekBrown {
 }
 
 /// The rocks, as they are and reduced.
-fn laws() -> Vec<(usize, f64, std::sync::Arc<dyn ConstitutiveModel>)> {
+pub(crate) fn laws() -> Vec<(usize, f64, std::sync::Arc<dyn ConstitutiveModel>)> {
     let factors = [1.0, 1.3, 0.7];
     let of = |row: usize| factors.map(|srf| (row, srf, rock(row).reduced(srf).unwrap()));
     (0..ROCKS.len()).flat_map(of).collect()
 }
 
 /// A trial strain from a hundredth of the strain of strength to a hundred times it, degenerate ones included.
-fn trial(row: usize, random: &mut Random) -> Principal {
+pub(crate) fn trial(row: usize, random: &mut Random) -> Principal {
     let (intact, .., young) = ROCKS[row];
     let mass = intact * parameters(row).cohesive_share().sqrt();
     let size = (mass + 1e-3 * intact) / young * 10_f64.powf(random.between(-1.5, 2.0));

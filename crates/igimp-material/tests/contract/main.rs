@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `returns` | admissible, split of strain, dissipation, closest point, isotropy |
 //! | `active_sets` | returns to planes against every set of planes |
+//! | `every_regime` | every law on random states, by regime; a million a law in release mode |
 //! | `flow_rule` | plastic strain in the cone of the active planes |
 //! | `tangents` | consistent tangent against differences, symmetry |
 //! | `lifts` | spatial tangent against differences, rotation, plane strain against 3D |
@@ -15,6 +16,7 @@
 //! | `memory` | the same as `returns` and `tangents` ask, of laws with memory and with elasticity that is not linear |
 //! | `hoek_brown` | the same of Hoek–Brown, with its envelope and its reduction |
 //! | `softening` | the same, and closed forms, of laws whose strength goes with plastic strain |
+//! | `undrained` | strength by the direction of stress and by the rate of strain: closed forms, the contract |
 //! | `utilisation` | the share of the strength that a stress mobilises |
 //! | `refusals` | what is not accepted, and the words for it |
 //!
@@ -23,6 +25,7 @@
 mod active_sets;
 mod catalogue;
 mod close_eigenvalues;
+mod every_regime;
 mod flow_rule;
 mod hardening;
 mod hoek_brown;
@@ -37,4 +40,5 @@ mod scaled;
 mod softening;
 mod tangents;
 mod tensors;
+mod undrained;
 mod utilisation;

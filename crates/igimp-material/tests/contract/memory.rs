@@ -25,7 +25,7 @@ const CAM_CLAY: [(f64, f64, f64, ShearStiffness, f64, f64); 6] = [
     (0.15, 0.05, 0.9, ShearStiffness::Constant(3e6), 30.0, 1e5),
 ];
 
-fn laws() -> Vec<ModifiedCamClay> {
+pub(crate) fn laws() -> Vec<ModifiedCamClay> {
     let law = |(compression, swelling, critical_ratio, shear, overconsolidation, reference)| {
         ModifiedCamClay::new(CamClayParameters {
             compression,
@@ -41,7 +41,7 @@ fn laws() -> Vec<ModifiedCamClay> {
 }
 
 /// A stress that soil began with, its history and its elastic strain.
-fn start(law: &ModifiedCamClay, random: &mut Random) -> (History, Principal) {
+pub(crate) fn start(law: &ModifiedCamClay, random: &mut Random) -> (History, Principal) {
     let p = law.parameters().reference_pressure * 10_f64.powf(random.between(-1.0, 1.5));
     let spread: Principal = random.values(0.4 * p);
     let mean = spread.iter().sum::<f64>() / 3.0;
@@ -51,7 +51,7 @@ fn start(law: &ModifiedCamClay, random: &mut Random) -> (History, Principal) {
 }
 
 /// A trial strain from there, of any size up to `most` \[-\], degenerate ones included.
-fn trial(elastic: &Principal, most: f64, random: &mut Random) -> Principal {
+pub(crate) fn trial(elastic: &Principal, most: f64, random: &mut Random) -> Principal {
     let size = most * 10_f64.powf(random.between(-4.0, 0.0));
     let [i, j] = [random.below(3), random.below(3)];
     let step: Principal = random.values(size);

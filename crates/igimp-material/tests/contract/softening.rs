@@ -51,7 +51,7 @@ fn frictional(row: usize, decay: Decay) -> Softening {
 }
 
 /// Softening and hardening laws of every kind.
-fn families() -> Vec<Vec<Arc<dyn ConstitutiveModel>>> {
+pub(crate) fn families() -> Vec<Vec<Arc<dyn ConstitutiveModel>>> {
     let decays = [Decay::Linear, Decay::Exponential];
     let undrained = |[initial, residual, strain]: [f64; 3]| {
         decays.map(|decay| curve(initial, residual, strain, decay))
@@ -69,7 +69,7 @@ fn families() -> Vec<Vec<Arc<dyn ConstitutiveModel>>> {
 }
 
 /// A trial strain of general position, of two equal values, or hydrostatic in the main, from 1e-5 to a few hundred percent.
-fn trial(random: &mut Random) -> Principal {
+pub(crate) fn trial(random: &mut Random) -> Principal {
     let size = 10_f64.powf(random.between(-3.0, 0.3));
     let middle = size * random.symmetric() * 10_f64.powf(random.between(-4.0, 0.3));
     let values: Principal = random.values(size);
@@ -84,7 +84,7 @@ fn trial(random: &mut Random) -> Principal {
     strain
 }
 
-fn sheared(kappa: f64) -> History {
+pub(crate) fn sheared(kappa: f64) -> History {
     let mut history = History::of_plastic_strain(kappa);
     history.internal[0] = kappa;
     history

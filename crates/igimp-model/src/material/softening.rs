@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use igimp_assembly::SharedLaw;
-use igimp_material::{Curve, Decay, Elasticity, FrictionalCurves, MaterialError, Softening};
+use igimp_material::{
+    Curve, Decay, Directions, Elasticity, FrictionalCurves, MaterialError, RateEffect, Softening,
+};
 
 use super::strength::Strength;
 
@@ -21,7 +23,7 @@ pub struct Softens {
     pub decay: Decay,
 }
 
-/// The parameters of a strength that go with plastic strain.
+/// The parameters of a strength that go with plastic strain, and what an undrained one goes with beside it.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct StrengthCurves {
     /// c_u or c.
@@ -33,9 +35,19 @@ pub struct StrengthCurves {
     /// Width of the bands of shear in which the strains of the curves were measured \[m\]; none: strains are those of the curves
     /// on any cells.
     pub band_width: Option<f64>,
+    /// How an undrained strength goes with the direction of stress.
+    pub directions: Option<Directions>,
+    /// How an undrained strength goes with the rate of strain.
+    pub rate: Option<RateEffect>,
 }
 
 impl StrengthCurves {
+    /// Whether strength goes with plastic strain or its rate.
+    pub fn goes_with_strain(&self) -> bool {
+        let curves = [self.cohesive, self.friction, self.dilation];
+        curves.iter().any(Option::is_some) || self.rate.is_some()
+    }
+
     /// What strains of the curves are multiplied by on cells of a size \[m\]; 1 on none, and without a width.
     pub fn strain_ratio(&self, cell: f64) -> f64 {
         match self.band_width {
@@ -64,15 +76,24 @@ impl StrengthCurves {
             })
         };
         let undrained = |cu: f64| along(cu, self.cohesive, &|share| share * cu);
+        let with_effects = |mut law: Softening| {
+            if let Some(own) = self.directions {
+                law = law.with_directions(own)?;
+            }
+            if let Some(own) = self.rate {
+                law = law.with_rate(own)?;
+            }
+            Ok::<_, MaterialError>(law)
+        };
         Ok(match *strength {
-            Strength::VonMises { undrained_strength } => Arc::new(Softening::von_mises(
-                elasticity,
-                undrained(undrained_strength),
-            )?),
-            Strength::Tresca { undrained_strength } => Arc::new(Softening::tresca(
-                elasticity,
-                undrained(undrained_strength),
-            )?),
+            Strength::VonMises { undrained_strength } => {
+                let curve = undrained(undrained_strength);
+                Arc::new(with_effects(Softening::von_mises(elasticity, curve)?)?)
+            }
+            Strength::Tresca { undrained_strength } => {
+                let curve = undrained(undrained_strength);
+                Arc::new(with_effects(Softening::tresca(elasticity, curve)?)?)
+            }
             Strength::MohrCoulomb {
                 cohesion,
                 friction_angle,
@@ -112,6 +133,17 @@ impl StrengthCurves {
         all.extend((self.friction).map(|own| words("φ", own, angle(own.residual))));
         all.extend((self.dilation).map(|own| words("ψ", own, angle(own.residual))));
         all.extend((self.band_width).map(|width| format!("in bands of {} m", number(width))));
+        all.extend(self.directions.map(|own| {
+            let [shear, passive] = [own.simple_shear, own.passive].map(share);
+            format!("c_u of active loading, {shear} of it in simple shear, {passive} passive")
+        }));
+        all.extend(self.rate.map(|own| {
+            let (growth, reference) = (share(own.per_log_cycle), own.reference);
+            format!(
+                "{growth} more a log cycle of rate above {} 1/s",
+                number(reference)
+            )
+        }));
         all
     }
 }

@@ -37,6 +37,8 @@ pub enum Dimension {
     DischargePerLength,
     /// Discharge, in space \[m³/s\].
     Discharge,
+    /// Rate of strain \[1/s\].
+    StrainRate,
 }
 
 impl Dimension {
@@ -60,6 +62,7 @@ impl Dimension {
             Self::Velocity => "a velocity",
             Self::DischargePerLength => "a discharge per length",
             Self::Discharge => "a discharge",
+            Self::StrainRate => "a rate of strain",
         }
     }
 
@@ -83,6 +86,7 @@ impl Dimension {
             Self::Velocity => "m/s",
             Self::DischargePerLength => "m2/s",
             Self::Discharge => "m3/s",
+            Self::StrainRate => "%/h",
         }
     }
 
@@ -106,6 +110,7 @@ impl Dimension {
             Self::Velocity => "m/s",
             Self::DischargePerLength => "m2/s",
             Self::Discharge => "m3/s",
+            Self::StrainRate => "1/s",
         }
     }
 
@@ -129,6 +134,7 @@ impl Dimension {
             Self::Velocity => "1e-5 m/s",
             Self::DischargePerLength => "2e-5 m2/s",
             Self::Discharge => "3e-3 m3/s",
+            Self::StrainRate => "1 %/h",
         }
     }
 
@@ -297,7 +303,7 @@ const fn pounds_inch(symbol: &'static str, dimension: Dimension, times: f64, pow
     customary(symbol, dimension, times, true, (INCH, power))
 }
 
-static UNITS: [Unit; 118] = [
+static UNITS: [Unit; 126] = [
     ten("m", Dimension::Length, 0),
     ten("mm", Dimension::Length, -3),
     ten("cm", Dimension::Length, -2),
@@ -416,4 +422,12 @@ static UNITS: [Unit; 118] = [
     rate("m3/day", Dimension::Discharge, 1.0, 86_400.0),
     rate("l/s", Dimension::Discharge, 1.0, 1000.0),
     rate("l/min", Dimension::Discharge, 1.0, 60_000.0),
+    rate("1/s", Dimension::StrainRate, 1.0, 1.0),
+    rate("1/min", Dimension::StrainRate, 1.0, 60.0),
+    rate("1/h", Dimension::StrainRate, 1.0, 3600.0),
+    rate("1/d", Dimension::StrainRate, 1.0, 86_400.0),
+    rate("%/s", Dimension::StrainRate, 1.0, 100.0),
+    rate("%/min", Dimension::StrainRate, 1.0, 6000.0),
+    rate("%/h", Dimension::StrainRate, 1.0, 360_000.0),
+    rate("%/d", Dimension::StrainRate, 1.0, 8_640_000.0),
 ];

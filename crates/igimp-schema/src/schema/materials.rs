@@ -73,9 +73,26 @@ table! {
 table! {
     UNDRAINED: Undrained, "Strength by total stress.";
     cu: apart(either(quantity(Stress, Positive), table(STRENGTH_PROFILE: StrengthProfile))), required "\"50 kPa\"",
-        "undrained shear strength in plane strain";
+        "undrained shear strength in plane strain; with `anisotropy` that of active loading";
     softening: apart(table(UNDRAINED_SOFTENING: UndrainedSoftening)), optional "strength stays as soil is sheared",
         "strength that goes with plastic strain";
+    anisotropy: apart(table(ANISOTROPY: Anisotropy)), optional "one strength in all directions",
+        "strength that goes with the direction of the major compression at the start of a step";
+    rate: apart(table(RATE: Rate)), optional "one strength at all rates",
+        "strength that grows with the rate of strain, in stages that take time";
+}
+
+table! {
+    ANISOTROPY: Anisotropy,
+    "Undrained strengths by the direction of the major compression, over `cu` of active loading, where it is upright; in between they lie on an ellipse.";
+    simple_shear: number(Positive), required "0.75", "strength in simple shear, with the major compression at 45 deg, over `cu`";
+    passive: number(Positive), required "0.5", "strength in passive loading, with the major compression level, over `cu`";
+}
+
+table! {
+    RATE: Rate, "An undrained strength that grows with the logarithm of the rate of plastic shear strain.";
+    per_log_cycle: number(Positive), required "0.1", "growth over `cu` for a rate ten times as great";
+    reference: quantity(StrainRate, Positive), required "\"1 %/h\"", "rate at and below which the strength is `cu`; stages without time have it too";
 }
 
 table! {

@@ -5,7 +5,7 @@ use igimp_material::{
     TrialStrain, elastic_left_cauchy_green_of,
 };
 
-use super::{COMPONENTS, Control, ElementState, Kinematics};
+use super::{COMPONENTS, Control, ElementState, Kinematics, VERTICAL};
 
 /// Most corrections of a step.
 const MOST_CORRECTIONS: usize = 25;
@@ -64,14 +64,14 @@ impl Point {
         })
     }
 
-    /// The soil at the end of a step of this length, with these values of what is prescribed; nothing where no equilibrium was
+    /// The soil at the end of a step of this length and duration \[time\], with these values of what is prescribed; nothing where no equilibrium was
     /// found, and what the law said if it refused.
     pub(super) fn advanced(
         &self,
         law: &dyn ConstitutiveModel,
         controls: [Control; COMPONENTS],
         values: &Driven,
-        length: f64,
+        (length, duration): (f64, f64),
     ) -> Result<Self, Option<MaterialError>> {
         let stressed: Vec<usize> = (0..COMPONENTS)
             .filter(|&c| controls[c] == Control::Stress)
@@ -85,7 +85,7 @@ impl Point {
             strain[2] = strain[0];
         }
         for corrections in 1..=MOST_CORRECTIONS {
-            let trial = self.at(law, &strain).map_err(Some)?;
+            let trial = self.at(law, &strain, duration).map_err(Some)?;
             let sigma = trial.sigma;
             let residual: Vec<f64> = (stressed.iter())
                 .map(|&c| stress_of(&sigma, c, is_tied) - values[c])
@@ -136,7 +136,12 @@ impl Point {
     }
 
     /// The answer of the law at a strain.
-    fn at(&self, law: &dyn ConstitutiveModel, strain: &Driven) -> Result<Trial, MaterialError> {
+    fn at(
+        &self,
+        law: &dyn ConstitutiveModel,
+        strain: &Driven,
+        duration: f64,
+    ) -> Result<Trial, MaterialError> {
         let history = &self.state.history;
         let (trial, volume) = match self.kinematics {
             Kinematics::Finite => {
@@ -156,7 +161,8 @@ impl Point {
                 (TrialStrain::small::<3>(&elastic)?, 1.0)
             }
         };
-        let answer = law.return_map(trial.strain(), history)?;
+        let trial = trial.with_vertical(VERTICAL);
+        let answer = law.return_map_over(trial.strain(), history, duration)?;
         let lifted = trial.lift::<3>(law, &answer, TangentKind::Consistent)?;
         let sigma = lifted.tau.map(|row| row.map(|tau| tau / volume));
         if sigma.as_flattened().iter().all(|stress| stress.is_finite()) {

@@ -35,6 +35,7 @@ fn driven(
         path: test.path(strain),
         steps,
         kinematics,
+        durations: Vec::new(),
     };
     let run = test.run(law).unwrap();
     assert_eq!(run.failure, None);
@@ -200,6 +201,7 @@ fn isotropic_compression_runs_along_its_lines() {
         },
         steps: 10,
         kinematics: Kinematics::Small,
+        durations: Vec::new(),
     };
     let run = test.run(&law).unwrap();
     assert_eq!(run.failure, None);
@@ -382,6 +384,7 @@ fn what_cannot_be_is_refused() {
         },
         steps: 10,
         kinematics: Kinematics::Small,
+        durations: Vec::new(),
     };
     let run = test.run(&law).unwrap();
     let lost = run.failure.unwrap();

@@ -16,3 +16,4 @@ mod newton_failures;
 mod one_dimension;
 mod reinforcement;
 mod softening;
+mod undrained;

@@ -154,6 +154,7 @@ fn simple_shear_of_an_element_follows_the_curve() {
         path: StandardTest::SimpleShearUndrained.path(0.15),
         steps: 40,
         kinematics: element::Kinematics::Small,
+        durations: Vec::new(),
     };
     let run = test.run(&*law).unwrap();
     assert!(run.failure.is_none());

@@ -31,10 +31,13 @@ pub(super) fn strength(
         test,
         StandardTest::TriaxialDrained | StandardTest::TriaxialUndrained
     );
-    if material.softening.is_some() {
-        // What it ends on depends on how far it was sheared.
+    let effects = material.softening.unwrap_or_default();
+    if effects.goes_with_strain() {
+        // What it ends on depends on how far it was sheared, and how fast.
         return None;
     }
+    // The test drives compression along the axis, or shear.
+    let in_shear = (effects.directions).map_or(1.0, |own| own.simple_shear);
     match (material.strength, test) {
         (_, StandardTest::Oedometer) => None,
         (Strength::Tresca { undrained_strength }, _) if is_triaxial => {
@@ -46,7 +49,10 @@ pub(super) fn strength(
         (
             Strength::Tresca { undrained_strength } | Strength::VonMises { undrained_strength },
             StandardTest::SimpleShearDrained | StandardTest::SimpleShearUndrained,
-        ) => form(undrained_strength / volume, "c_u"),
+        ) => form(
+            in_shear * undrained_strength / volume,
+            "c_u of simple shear",
+        ),
         (
             Strength::MohrCoulomb {
                 cohesion,

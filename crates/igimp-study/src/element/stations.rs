@@ -52,6 +52,16 @@ impl Stations {
         }
     }
 
+    /// How long its legs take, where one of the path takes this long \[s\].
+    pub(super) fn durations(&self, leg: f64) -> Vec<f64> {
+        if self.is_whole {
+            vec![leg; self.path.legs.len()]
+        } else {
+            let parts = self.ways.windows(2);
+            parts.map(|ends| leg * (ends[1] - ends[0])).collect()
+        }
+    }
+
     /// The state of a way.
     pub(super) fn state_at(&self, way: f64) -> usize {
         let next = self.ways.partition_point(|own| *own < way);

@@ -59,6 +59,7 @@ fn standard(of: StandardTest, stress: f64, data: Data) -> Request {
         stress: [stress; 2],
         steps: 20,
         kinematics: Kinematics::Small,
+        duration: 0.0,
         data: Some(data),
     }
 }
@@ -242,6 +243,7 @@ fn cam_clay_comes_back() {
         stress: [100e3; 2],
         steps: 5,
         kinematics: Kinematics::Small,
+        duration: 0.0,
         data: Some(data(
             &[Measure::Volume],
             &[

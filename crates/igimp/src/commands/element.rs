@@ -32,6 +32,7 @@ pub(crate) fn element(arguments: &ElementArguments) -> Result<Exit, ProgramError
         } else {
             Kinematics::Finite
         },
+        duration: arguments.duration,
         data,
     };
     let tested = test(material, &request).map_err(|error| refused(&error))?;

@@ -83,6 +83,7 @@ fn tests(arguments: &FitArguments, material: &Material) -> Result<Vec<Request>, 
             } else {
                 Kinematics::Finite
             },
+            duration: arguments.duration,
             data: Some(data),
         });
     }

@@ -10,7 +10,8 @@ use igimp_assembly::{
     Kinematics, ParticleFields, Particles, PoreSite, PoreWater as _, Stencils, System,
 };
 use igimp_material::{
-    ConstitutiveModel, ScaledLaw, TangentKind, elastic_left_cauchy_green_of, principal_values,
+    ConstitutiveModel, ScaledLaw, TangentKind, directed_history, elastic_left_cauchy_green_of,
+    principal_values,
 };
 use igimp_model::{Construction, Drainage, Ground, StageKind};
 use igimp_results::ending::EndReason;
@@ -171,6 +172,7 @@ fn become_soil_of<const D: usize>(
     let tau = fields.sigma[particle].map(|row| row.map(|stress| stress * stretch));
     let law = ScaledLaw::new(&*model.laws[fields.law[particle]], ratios)?;
     let history = law.initial_history(&principal_values::<D>(&tau));
+    let history = directed_history::<D>(&law, &tau, history);
     fields.internal[particle] = history.internal;
     fields.b_e[particle] = elastic_left_cauchy_green_of::<D>(&law, &tau, &history)?;
     Ok(())

@@ -2,7 +2,7 @@
 //! and 37).
 
 use igimp_assembly::{Particles, PoreWater as _};
-use igimp_material::{ConstitutiveModel, MaterialError};
+use igimp_material::{ConstitutiveModel, MaterialError, directed_history};
 
 use crate::error::CaseError;
 use crate::run::model::Model;
@@ -34,8 +34,10 @@ pub(crate) fn level_ground<const D: usize>(
             .unwrap_or(material.poisson / (1.0 - material.poisson));
         let mut sigma = [k0 * vertical; 3];
         sigma[D - 1] = vertical;
+        let tensor =
+            std::array::from_fn(|a| std::array::from_fn(|b| if a == b { sigma[a] } else { 0.0 }));
         let answer = |law: &dyn ConstitutiveModel| {
-            let history = law.initial_history(&sigma);
+            let history = directed_history::<D>(law, &tensor, law.initial_history(&sigma));
             let excess = law.yield_function(&sigma, &history);
             let is_admissible = excess <= 1e-9 * law.stress_scale(&sigma);
             let strain = is_admissible.then(|| law.elastic_strain(&sigma, &history));

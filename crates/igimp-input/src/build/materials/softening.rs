@@ -1,10 +1,11 @@
-//! Strength that goes with plastic strain: its curves from what a file states.
+//! Strength that goes with plastic strain, direction and rate: its curves from what a file states.
 
-use igimp_material::Decay;
+use igimp_material::{Decay, Directions, RateEffect};
 use igimp_model::{Flow, Softens, Strength, StrengthCurves};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::materials::{
-    self as keys, AngleCurve, FrictionalSoftening, Model, StrengthCurve, UndrainedSoftening,
+    self as keys, AngleCurve, FrictionalSoftening, Model, StrengthCurve, Undrained,
+    UndrainedSoftening,
 };
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::Wrong;
@@ -17,22 +18,45 @@ pub(super) fn curves(
     (strength, friction_varies): (Option<Strength>, bool),
     problems: &mut Problems,
 ) -> Result<Option<StrengthCurves>, Wrong> {
-    let undrained = match model {
-        Model::VonMises(Ok(own)) => own.strength.softening.as_ref(),
-        Model::Tresca(Ok(own)) => own.strength.softening.as_ref(),
+    match model {
+        Model::VonMises(Ok(own)) => undrained(&own.strength, problems),
+        Model::Tresca(Ok(own)) => undrained(&own.strength, problems),
         Model::MohrCoulomb(Ok(own)) => {
             let stated = own.softening.as_ref().map_err(|_| Wrong)?;
-            return match stated {
+            match stated {
                 Some(own) => frictional(name, own, (strength, friction_varies), problems).map(Some),
                 None => Ok(None),
-            };
+            }
         }
-        _ => return Ok(None),
-    };
-    match undrained.map_err(|_| Wrong)? {
-        Some(own) => of_undrained(own, problems).map(Some),
-        None => Ok(None),
+        _ => Ok(None),
     }
+}
+
+/// What an undrained strength goes with; none where it stays.
+fn undrained(own: &Undrained, problems: &mut Problems) -> Result<Option<StrengthCurves>, Wrong> {
+    let softening = own.softening.as_ref().map_err(|_| Wrong)?;
+    let anisotropy = own.anisotropy.as_ref().map_err(|_| Wrong)?;
+    let rate = own.rate.as_ref().map_err(|_| Wrong)?;
+    if softening.is_none() && anisotropy.is_none() && rate.is_none() {
+        return Ok(None);
+    }
+    let curves = match softening {
+        Some(own) => of_undrained(own, problems)?,
+        None => StrengthCurves::default(),
+    };
+    let directions = anisotropy.as_ref().map(|own| Directions {
+        simple_shear: *own.simple_shear,
+        passive: *own.passive,
+    });
+    let rate = rate.as_ref().map(|own| RateEffect {
+        per_log_cycle: *own.per_log_cycle,
+        reference: *own.reference,
+    });
+    Ok(Some(StrengthCurves {
+        directions,
+        rate,
+        ..curves
+    }))
 }
 
 /// Whether soil that is sheared far dilates no more.
@@ -158,5 +182,6 @@ fn frictional(
         friction: own.friction.as_ref().map(of_angle),
         dilation: own.dilation.as_ref().map(of_angle),
         band_width: own.band_width.as_ref().map(|own| **own),
+        ..StrengthCurves::default()
     })
 }

@@ -48,14 +48,15 @@ pub(super) fn consolidation<const D: usize>(
             .help("let water flow in a stage of type wait before it or after it");
         return Err(Wrong);
     }
-    let flows = |own: &igimp_model::Material| {
+    let goes_with_time = |own: &igimp_model::Material| {
         matches!(own.drainage, Drainage::Undrained { flows: true, .. })
+            || own.softening.is_some_and(|own| own.rate.is_some())
     };
     let materials = &about.context.materials;
-    if materials.iter().all(Option::is_some) && !materials.iter().flatten().any(flows) {
+    if materials.iter().all(Option::is_some) && !materials.iter().flatten().any(goes_with_time) {
         problems
             .error(own.place, "no material is coupled: no water flows")
-            .help("write drainage = \"coupled\" and a permeability in the soil that consolidates");
+            .help("write drainage = \"coupled\" and a permeability in the soil that consolidates, or a `rate` in soil whose strength goes with it");
         return Err(Wrong);
     }
     let mut open_sides = Vec::new();
