@@ -57,7 +57,7 @@ fn all() -> Vec<(&'static str, Vec<Tried>)> {
         add(law, Box::new(draw));
     }
     for law in memory::laws() {
-        let own = law.clone();
+        let own = law;
         let draw = move |random: &mut Random| {
             let (history, elastic) = memory::start(&own, random);
             (memory::trial(&elastic, 0.3, random), history, 0.0)
