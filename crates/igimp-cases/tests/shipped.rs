@@ -449,6 +449,9 @@ fn anisotropic_footing_carries_what_slip_lines_give() {
     let end = |more: &[&str]| {
         let ran = ran("anisotropic_footing", &[&coarse, more].concat());
         assert!(ran.run.failure.is_none());
+        // Time alone is no consolidation.
+        let stages = ran.run.summary.stages.iter();
+        assert!({ stages }.all(|stage| stage.consolidation.is_none()));
         ran.end_of("load-settlement")
     };
     let [own, plain] = [end(&[]), end(&isotropic)];

@@ -23,7 +23,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
-const ABOUT: &str = "A sphere of elastic soil, an eighth of it, is pressed on all sides at once and drains at its surface. As the outer shell gives way first, the pressure in the middle rises above that of the load before it falls. Pressure of the load instead of a load: a suction of p₀ that comes at once, of which nothing flows, is all excess pressure at first.";
+const ABOUT: &str = "A sphere of elastic soil, an eighth of it, is pressed on all sides at once and drains at its surface. As the outer shell gives way first, the pressure in the middle rises above that of the load before it falls. In place of a load a suction of p₀ comes at once and everywhere: before water flows, all of it is excess pressure.";
 const CRYER: Oracle = Oracle {
     kind: OracleKind::Exact,
     source: "Cryer 1963",

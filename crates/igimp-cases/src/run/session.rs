@@ -417,8 +417,10 @@ impl<const D: usize> Watch<'_, '_, D> {
         }
         let model = self.session.model;
         if self.path.flow.is_some() {
-            let own = self.stage.consolidation.get_or_insert_default();
-            flow::tally(own, model.case, report, &accepted.body.particles);
+            if report.water.is_some() {
+                let own = self.stage.consolidation.get_or_insert_default();
+                flow::tally(own, model.case, report, &accepted.body.particles);
+            }
             self.flow_step.set(report.duration);
         }
         let mut controls = self.path.from.towards(self.path.to, report.to);
