@@ -25,12 +25,13 @@ pub const SECTION: &str = include_str!("viewer/soil.html");
 pub const STYLE: &str = include_str!("viewer/viewer.css");
 
 /// The script in parts.
-const PARTS: [&str; 11] = [
+const PARTS: [&str; 12] = [
     include_str!("viewer/frame.js"),
     include_str!("viewer/camera.js"),
     include_str!("viewer/slant.js"),
     include_str!("viewer/gl.js"),
     include_str!("viewer/axes.js"),
+    include_str!("viewer/water.js"),
     include_str!("viewer/overlay.js"),
     include_str!("viewer/scene.js"),
     include_str!("viewer/section.js"),

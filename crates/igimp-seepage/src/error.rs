@@ -12,6 +12,12 @@ pub enum SeepageError {
     /// Nothing says how high the water stands.
     #[error("no face and no region has a head: give one where water enters or leaves")]
     NoHead,
+    /// Nothing says how much water is in the ground.
+    #[error(
+        "no water enters the ground: no free water touches it, no face and no region has a head or an inflow, and it does not rain; \
+         say where water comes from"
+    )]
+    NotFed,
     /// A box of a condition touches no soil or no face.
     #[error("`{name}` {what}")]
     Empty {

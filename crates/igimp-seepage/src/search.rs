@@ -299,6 +299,22 @@ pub(crate) fn start_of<const D: usize>(system: &System<'_, D>) -> Option<f64> {
     on_faces.chain(within).reduce(f64::max)
 }
 
+/// Whether anything says how much water is in the ground: a head, or water that enters. Without, it is as full as the start is.
+pub(crate) fn is_fed<const D: usize>(system: &System<'_, D>) -> bool {
+    let on_faces = system.held.iter().any(|held| match held.at {
+        At::Head(_) => true,
+        At::Inflow(inflow) | At::Open(inflow) => inflow > 0.0,
+        At::Closed => false,
+    });
+    let within = &system.conditions.regions;
+    let within = within.iter().any(|own| match own.what {
+        InGround::Head(_) => true,
+        InGround::Inflow(inflow) => inflow > 0.0,
+        InGround::Drain | InGround::Soil(_) => false,
+    });
+    on_faces || within
+}
+
 /// Refuses numbers that do not serve.
 fn check<const D: usize>(conditions: &Conditions<D>) -> Result<(), SeepageError> {
     let refuse = |what: String, value: f64, wanted| {

@@ -10,7 +10,7 @@ use crate::curve::Relative;
 use crate::error::SeepageError;
 use crate::field::{Seepage, by_node, interpolated};
 use crate::ground::SeepageBody;
-use crate::search::{ON_THE_WAY, Search, TOLERANCE, path, relative_of, start_of};
+use crate::search::{ON_THE_WAY, Search, TOLERANCE, is_fed, path, relative_of, start_of};
 use crate::system::System;
 
 /// Cells with soil up to which a flow is sought from a constant head.
@@ -63,6 +63,9 @@ fn find<const D: usize>(
 ) -> Result<(), SeepageError> {
     let (grid, conditions) = (search.system.grid, search.system.conditions);
     let constant = start_of(&search.system).ok_or(SeepageError::NoHead)?;
+    if !is_fed(&search.system) {
+        return Err(SeepageError::NotFed);
+    }
     let relative = relative_of(grid, conditions);
     if search.system.cells.len() > few
         && !conditions.confined

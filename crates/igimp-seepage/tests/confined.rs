@@ -259,4 +259,8 @@ fn what_makes_no_flow_is_refused() {
     conditions.soils[0].across = -1.0;
     let error = flow(&grid, &ground, &conditions).unwrap_err().to_string();
     assert!(error.contains("is -1, and has to be positive"), "{error}");
+    conditions = confined(&[1e-4]);
+    conditions.confined = false;
+    let error = flow(&grid, &ground, &conditions).unwrap_err();
+    assert!(matches!(error, SeepageError::NotFed), "{error}");
 }

@@ -32,6 +32,10 @@ const MOST_SHORTENINGS: u32 = 8;
 /// the place where it vanishes by nearly as much as it was short of it leads nowhere.
 const WORK_LEFT: f64 = 0.8;
 
+/// The same after so many corrections, which good steps do not need: what has swung for long is searched along closely.
+const WORK_LEFT_LATE: f64 = 0.1;
+const LATE: usize = 3;
+
 /// The least and the greatest share of a stretch at which the residual is tried along a correction \[-\].
 const WITHIN: [f64; 2] = [0.1, 0.9];
 
@@ -410,8 +414,13 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         let (mut before, mut beyond) = ((0.0, self.work), (1.0, work(&whole, residual)));
         let mut last = beyond;
         let mut evaluated = Ok(());
+        let left = if self.iterations > LATE {
+            WORK_LEFT_LATE
+        } else {
+            WORK_LEFT
+        };
         for _ in 0..MOST_SHORTENINGS {
-            if residual.is_round_off || beyond.1 >= 0.0 || last.1.abs() <= WORK_LEFT * self.work {
+            if residual.is_round_off || beyond.1 >= 0.0 || last.1.abs() <= left * self.work {
                 break;
             }
             let share = (before.1 / (before.1 - beyond.1)).clamp(WITHIN[0], WITHIN[1]);

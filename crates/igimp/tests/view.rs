@@ -626,6 +626,11 @@ fn a_run_in_space_is_shown() {
         let area: f64 = area.parse().unwrap();
         assert!((area - 4.0 * 2.0_f64.sqrt()).abs() < 0.01 * area, "{area}");
     }
+    // From half of the scale on, which runs from the lowest layer's 1 − (15/16)² to the highest one's 1 − (1/16)²: z/H > 0.34, the upper
+    // five of eight layers.
+    let upper = looked_at(browser, &folder, &view, "least=50");
+    assert_eq!(attribute(&upper, "canvas", "data-particles"), "320");
+    assert_eq!(attribute(&upper, "canvas", "data-faces"), "3072");
     let value: f64 = attribute(&page, "found", "data-value").parse().unwrap();
     let (_, text) = page.split_once("m: displacement length ").unwrap();
     let z: f64 = page
@@ -786,6 +791,38 @@ fn water_tables_are_drawn() {
     };
     let page = looked_at(browser, &folder, &view, "frame=2");
     assert_eq!(attribute(&page, "canvas", "data-water"), "1");
+}
+
+/// GOAL: in space the free surface of a computed flow is drawn over its frames, and stands out where the cut meets it.
+/// ORACLE: a pond over the cube stands at its level throughout.
+#[test]
+fn water_in_space_is_drawn() {
+    let case = CUBE
+        .replace("unit_weight = \"18 kN/m3\"", "unit_weight = \"18 kN/m3\"\nsaturated_unit_weight = \"20 kN/m3\"\npermeability = \"1e-6 m/s\"")
+        .replace("[[stages]]", "[[water]]\nname = \"pool\"\n[water.seepage]\nfree_water = [[\"0 m\", \"2.5 m\"], [\"2 m\", \"2.5 m\"]]\n\n[[stages]]")
+        .replace("figures = [\"displacement\", \"sigma_zz\"]", "figures = []");
+    let folder = results_of("water-in-space", &case, &[]);
+    let view = View::of(&folder, "results");
+    let index: serde_json::Value = serde_json::from_str(&view.get("index.json").2).unwrap();
+    let surface = &index["water"][0][0];
+    let places = serde_json::json!([0.0, 0.5, 1.0, 1.5, 2.0]);
+    assert_eq!((&surface["x"], &surface["y"]), (&places, &places));
+    let levels: Vec<f64> = (surface["z"].as_array().unwrap().iter())
+        .flat_map(|row| row.as_array().unwrap())
+        .filter_map(serde_json::Value::as_f64)
+        .collect();
+    assert_eq!(levels.len(), 25);
+    let off = |level: &f64| (level - 2.5).abs();
+    assert!(levels.iter().all(|level| off(level) < 1e-6), "{levels:?}");
+    let Some(browser) = browser() else {
+        return;
+    };
+    let page = looked_at(browser, &folder, &view, "frame=2&cut=1,0.55");
+    assert_eq!(attribute(&page, "canvas", "data-water"), "1");
+    let met: usize = attribute(&page, "canvas", "data-water-cut")
+        .parse()
+        .unwrap();
+    assert!(met >= 4, "{met}");
 }
 
 /// GOAL: two runs stand side by side, each with its own files, and what is chosen in the first is chosen in the second.

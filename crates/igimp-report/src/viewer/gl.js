@@ -58,7 +58,7 @@ void main() {
   else tint = lifted(colour.rgb) * (isBack ? 0.35 : lightOf(smoothed, lie.w));
   at = corner;
   // The insides of the far walls are seen through cracks.
-  bool shown = crosses && !(isBack && (caps > 0.5 || flatly > 0.5));
+  bool shown = colour.a > 0.5 && crosses && !(isBack && (caps > 0.5 || flatly > 0.5));
   gl_Position = shown ? seen(place) : vec4(2.0, 2.0, 2.0, 1.0);
 }`;
 
@@ -109,6 +109,7 @@ precision highp float;
 in vec4 tint;
 out vec4 ink;
 void main() {
+  if (tint.a < 0.5) discard;
   ink = vec4(tint.rgb, 1.0);
 }`;
 

@@ -3,7 +3,7 @@
 document.getElementById("held").addEventListener("toggle", () => {
   const wish = new URLSearchParams(location.hash.slice(1));
   const numbers = (name) => (wish.has(name) ? wish.get(name).split(",").map(Number) : null);
-  const viewer = new Viewer({ field: wish.get("field"), view: wish.get("view"), cut: numbers("cut"), hover: numbers("hover"), arrows: wish.get("arrows"), section: numbers("section") }, () => {});
+  const viewer = new Viewer({ field: wish.get("field"), view: wish.get("view"), cut: numbers("cut"), hover: numbers("hover"), least: Number(wish.get("least")), arrows: wish.get("arrows"), section: numbers("section") }, () => {});
   const frames = [...document.querySelectorAll("script.held-frame")].map((page, k) => {
     const beside = (name) => {
       for (let next = page.nextElementSibling; next && !next.classList.contains("held-frame"); next = next.nextElementSibling) {

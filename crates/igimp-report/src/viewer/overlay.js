@@ -7,6 +7,7 @@ const LONGEST_ARROW = 34;
 class Overlay {
   constructor(scene) {
     this.scene = scene;
+    this.water = new Water(scene);
     this.arrows = null;
     this.section = null;
   }
@@ -74,35 +75,10 @@ class Overlay {
         pen.stroke();
       });
     }
-    this.water(pen, place);
+    this.water.paint(pen, place);
     this.members(pen, place);
     if (this.arrows) this.paintArrows(pen, place);
     if (this.section) this.paintSection(pen, place);
-  }
-
-  // Water tables, blue as in the pictures of a report, with the sign of a free surface at their highest end.
-  water(pen, place) {
-    const { water } = this.scene.bodies;
-    pen.strokeStyle = "#0072b2";
-    pen.fillStyle = "#0072b2";
-    for (const line of water) {
-      const points = line.map(([x, y]) => this.see(place, x, y));
-      for (const [width, colour] of [[4, "rgba(255,255,255,0.7)"], [1.8, "#0072b2"]]) {
-        pen.lineWidth = width;
-        pen.strokeStyle = colour;
-        pen.beginPath();
-        points.forEach(([x, y], k) => (k === 0 ? pen.moveTo(x, y) : pen.lineTo(x, y)));
-        pen.stroke();
-      }
-      const { left, right } = place.room;
-      const inside = points.filter(([x]) => x > left + 8 && x < place.width - right - 8);
-      const [x, y] = inside.length > 0 ? inside.reduce((best, own) => (own[1] < best[1] ? own : best)) : [left + 14, points[0][1]];
-      pen.beginPath();
-      pen.moveTo(x, y);
-      pen.lineTo(x - 5, y - 8);
-      pen.lineTo(x + 5, y - 8);
-      pen.fill();
-    }
   }
 
   // Reinforcement: a heavy line with a light core, as in the pictures of a report.
@@ -130,7 +106,7 @@ class Overlay {
     for (let k = 0; k < boxes.faces.box.length; k += 1) {
       const [box, face] = [boxes.faces.box[k], boxes.faces.face[k]];
       const isFront = (2 * (face % 2) - 1) * place.eye[Math.floor(face / 2)] > 1e-6;
-      if (isFront && (!cut || dot(cut.normal, this.scene.centre(box)) <= cut.offset)) seen.add(box);
+      if (isFront && !this.scene.isLeftOut(box) && (!cut || dot(cut.normal, this.scene.centre(box)) <= cut.offset)) seen.add(box);
     }
     return seen;
   }

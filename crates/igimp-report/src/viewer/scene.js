@@ -42,6 +42,7 @@ class Scene {
     this.overlay = new Overlay(this);
     this.extent = extentOf([]);
     this.cut = null;
+    this.least = 0;
     this.marked = -1;
     this.painting = 0;
     this.axes = new Axes(this);
@@ -62,19 +63,39 @@ class Scene {
     const { low = none, high = none, lie = new Uint8Array(4 * count).fill(128) } = shapes;
     this.bodies = bodies;
     this.extent = extentOf(high, extentOf(low, this.extent));
-    const faces = Scene.facesOf(shapes.faces || new Uint8Array(count).fill(32));
+    const masks = shapes.faces || new Uint8Array(count).fill(32);
     const origin = [0, 1, 2].map((k) => (count > 0 ? 0.5 * (this.extent.low[k] + this.extent.high[k]) : 0));
     const pieces = shapes.pieces ? { corners: shapes.pieces, ends: shapes["piece-ends"], whose: shapes.whose } : null;
     const edges = shapes.edges ? { corners: shapes.edges, ends: shapes["edge-ends"] } : null;
-    this.boxes = { low, high, lie, faces, origin, count, pieces, edges };
-    if (this.surface) this.surface.shape(this.boxes, bodies.triangles);
+    this.boxes = { low, high, lie, masks, origin, count, pieces, edges };
+    this.cover();
     this.slice();
-    this.canvas.dataset.faces = faces.box.length;
     this.canvas.dataset.lines = bodies.lines.length / 6;
     this.canvas.dataset.members = bodies.members.length / 6;
     this.canvas.dataset.water = bodies.water.length;
     this.canvas.dataset.pieces = pieces ? pieces.ends.length : 0;
     this.canvas.dataset.edges = edges ? edges.ends.length : 0;
+  }
+
+  // The faces of boxes: those of the skin, or all where some particles are left out.
+  cover() {
+    const { boxes } = this;
+    boxes.faces = Scene.facesOf(this.least > 0 ? new Uint8Array(boxes.count).fill(63) : boxes.masks);
+    if (this.surface) this.surface.shape(boxes, this.bodies.triangles);
+    this.canvas.dataset.faces = boxes.faces.box.length;
+  }
+
+  // Leaves out particles whose value is less than a share of the scale.
+  from(least) {
+    const covers = least > 0 !== this.least > 0;
+    this.least = least;
+    if (!covers || !this.boxes) return;
+    this.cover();
+    this.slice();
+  }
+
+  isLeftOut(box) {
+    return this.colours[4 * box + 3] === 0;
   }
 
   // The face of a slanted cut; an ordinary canvas has none.
@@ -106,12 +127,16 @@ class Scene {
   colour(values, [low, high], colours) {
     const bytes = new Uint8Array(4 * this.boxes.count);
     const last = colours.length - 1;
+    let seen = 0;
     for (let box = 0; box < this.boxes.count; box += 1) {
       const share = high > low ? (values[box] - low) / (high - low) : 0.5;
       const colour = Number.isFinite(share) ? colours[Math.min(Math.max(Math.round(share * last), 0), last)] : [168, 168, 168];
       bytes.set(colour, 4 * box);
-      bytes[4 * box + 3] = 255;
+      const isSeen = !(this.least > 0 && !(share >= this.least));
+      bytes[4 * box + 3] = isSeen ? 255 : 0;
+      if (isSeen) seen += 1;
     }
+    this.canvas.dataset.particles = seen;
     this.colours = bytes;
     if (this.surface) this.surface.colour(bytes);
     this.paint();
@@ -191,7 +216,7 @@ class Scene {
     for (let k = 0; k < faces.box.length; k += 1) {
       const [box, face] = [faces.box[k], faces.face[k]];
       const [axis, side] = [Math.floor(face / 2), 2 * (face % 2) - 1];
-      if (side * place.eye[axis] <= 1e-6) continue;
+      if (side * place.eye[axis] <= 1e-6 || this.isLeftOut(box)) continue;
       const [low, high] = [this.corner("low", box), this.corner("high", box)];
       if (cut && !Scene.clipped(low, high, cut)) continue;
       const about = [0, 1, 2].map((j) => (lie[4 * box + j] - 128) / 127 + (j === axis ? 0.3 * side : 0));
@@ -203,6 +228,7 @@ class Scene {
       const { axis } = cut;
       const at = cut.offset * cut.normal[axis];
       for (let box = 0; box < count; box += 1) {
+        if (this.isLeftOut(box)) continue;
         const [low, high] = [this.corner("low", box), this.corner("high", box)];
         const more = cut.normal[axis] > 0 ? [1e-4, 0.1] : [-0.1, -1e-4];
         const size = high[axis] - low[axis];
@@ -294,6 +320,7 @@ class Scene {
     }
     let [best, nearest] = [-1, -Infinity];
     for (let box = 0; box < count; box += 1) {
+      if (this.isLeftOut(box)) continue;
       let [enter, leave] = [least, most];
       for (let k = 0; k < 3 && enter < leave; k += 1) {
         const [a, b] = [low[3 * box + k] - from[k], high[3 * box + k] - from[k]];

@@ -32,9 +32,9 @@ function banded(colours, shares) {
 
 class Viewer {
   // `wish` may name a frame (from 1), a field, a place to point at (in space a point of the canvas, as shares of
-  // its sides), a view, a cut, arrows and the ends of a section; `changed` hears of every frame shown.
+  // its sides), a view, a cut, the least value shown in hundredths of the scale, arrows and the ends of a section; `changed` hears of every frame shown.
   constructor(wish, changed) {
-    this.part = Object.fromEntries(["soil", "field", "map", "state", "state-label", "space", "view", "cut", "cut-row", "cut-at", "cut-told", "cut-side", "slant-row", "slant-turn", "slant-dip", "slant-told", "canvas", "surface", "bar", "ticks", "bar-label", "play", "slider", "pace", "pace-label", "when", "found", "keys", "clamp", "fixed", "bands", "arrows", "picture", "film", "draw-section", "section", "section-curve", "section-told", "section-table", "section-end"].map((id) => [id, document.getElementById(id)]));
+    this.part = Object.fromEntries(["soil", "field", "map", "state", "state-label", "space", "view", "cut", "cut-row", "cut-at", "cut-told", "cut-side", "slant-row", "slant-turn", "slant-dip", "slant-told", "canvas", "surface", "bar", "ticks", "bar-label", "play", "slider", "pace", "pace-label", "when", "found", "keys", "clamp", "fixed", "bands", "arrows", "least", "least-row", "least-told", "picture", "film", "draw-section", "section", "section-curve", "section-told", "section-table", "section-end"].map((id) => [id, document.getElementById(id)]));
     this.scene = new Scene(this.part.canvas, this.part.surface);
     this.wish = wish;
     this.changed = changed;
@@ -100,6 +100,7 @@ class Viewer {
     part.view.addEventListener("change", () => this.look(part.view.value));
     part.cut.addEventListener("change", () => this.layCut());
     part["cut-at"].addEventListener("input", () => this.cutThere());
+    part.least.addEventListener("input", () => this.from(Number(part.least.value)));
     for (const name of ["slant-turn", "slant-dip"]) part[name].addEventListener("input", () => this.layCut(this.shareOfCut()));
     part["cut-side"].addEventListener("click", () => {
       this.side = -(this.side || 1);
@@ -143,6 +144,8 @@ class Viewer {
     // A scale for all frames asks for all of them.
     if (this.shown.particles > LARGE) part.fixed.checked = false;
     part.space.hidden = dimension === 2;
+    // Of a thinned body the page has no inside.
+    part["least-row"].hidden = dimension === 2 || Boolean(this.shown.planes);
     // Of a thinned body only some planes have all that they cross.
     part.cut.querySelector("option[value='3']").disabled = Boolean(this.shown.planes) || !this.scene.surface;
     part.canvas.style.touchAction = dimension === 2 ? "pan-y" : "none";
@@ -153,6 +156,10 @@ class Viewer {
       this.look(wish.view);
       wish.view = "";
     }
+    if (dimension === 3 && wish.least) {
+      this.from(wish.least);
+      wish.least = 0;
+    }
     if (dimension === 3 && wish.cut) {
       const [axis, share, side, turn, dip] = wish.cut;
       if (turn !== undefined) [part["slant-turn"].value, part["slant-dip"].value] = [turn, dip];
@@ -161,6 +168,13 @@ class Viewer {
       this.layCut(share);
       wish.cut = null;
     }
+  }
+
+  // Leaves out particles whose value is less than so many hundredths of the scale.
+  from(hundredths) {
+    this.part.least.value = hundredths;
+    this.scene.from(hundredths / 100);
+    this.paint();
   }
 
   // Lets the slider of the cut run over the body: anywhere, or from one place to the next where the page has
@@ -386,6 +400,8 @@ class Viewer {
     if (part.bands.checked && !field.whole) colours = banded(colours, this.ticksOfBar(low, high, 10).map((tick) => tick.share));
     this.colours = colours;
     this.scene.colour(this.values, [low, high], colours);
+    const least = low + this.scene.least * (high - low);
+    part["least-told"].textContent = this.scene.least > 0 ? `${short(field.whole ? least : least / this.unit[0])}${this.unit[1] ? ` ${this.unit[1]}` : ""} on` : "all";
     const every = part.bands.checked ? 1 : 8;
     const stops = colours.map((colour, k) => [colour, k]).filter(([, k]) => k % every === 0 || k === LEVELS - 1);
     part.bar.style.background = `linear-gradient(to right, ${stops.map(([colour, k]) => `rgb(${colour}) ${((100 * k) / (LEVELS - 1)).toFixed(2)}%`).join(", ")})`;

@@ -8,6 +8,7 @@ mod browser;
 mod http;
 mod results;
 mod server;
+mod water;
 
 use std::sync::mpsc;
 

@@ -45,6 +45,16 @@ const SETTLEMENT: [f64; 2] = [1e-5, 2e-3];
 const STEPS: usize = 20;
 /// Where the edge stands in its cell on the axes of the grid \[-\].
 const PLACE: f64 = 0.75;
+/// Other places, in full on a mesh of so many cells.
+const OTHER_PLACES: [f64; 4] = [0.0, 0.25, 0.5, 0.9];
+const CELLS_AT_PLACES: usize = 8;
+/// By how much the loads of all places may differ over their mean \[-\].
+const SPREAD: f64 = 0.03;
+const INDIFFERENT: Oracle = Oracle {
+    kind: OracleKind::Theory,
+    source: "the soil and the footing, which know no grid",
+    locator: "largest less smallest load over their mean: 0",
+};
 
 /// A footing of unit width.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,11 +102,11 @@ impl Footing {
         RigidBody::new(surface, sides, [0.0, 0.0, 0.5])
     }
 
-    /// The push on so many cells per width, and settlement and load by step.
-    fn push(self, cells: usize) -> Result<(RunRecord, Table), CaseError> {
+    /// The push on so many cells per width with its edge at a place of its cell, and settlement and load by step.
+    fn push(self, cells: usize, place: f64) -> Result<(RunRecord, Table), CaseError> {
         let h = 1.0 / cells as f64;
         // The cell at the axis is as wide as what is left, 0.6 to 1.6 times the others.
-        let edge = 0.5 - PLACE * h;
+        let edge = 0.5 - place * h;
         let mut first = edge - (edge / h).floor() * h;
         if first < 0.6 * h {
             first += h;
@@ -124,8 +134,16 @@ impl Footing {
             weightless(&quarter.grid, &constraints, &law, motion)
         };
         let name = self.name().replace(' ', "_");
+        let (of, told) = if place.total_cmp(&PLACE).is_eq() {
+            (String::new(), String::new())
+        } else {
+            (
+                format!("_{:.0}", 100.0 * place),
+                format!(", edge at {place} of its cell"),
+            )
+        };
         let mut curve = Table::new(
-            format!("{name}_{cells}"),
+            format!("{name}_{cells}{of}"),
             &["settlement_over_B_[-]", "V_over_A_[s_u]"],
         );
         let mut observe = |accepted: &Accepted<'_, 3>| {
@@ -136,7 +154,7 @@ impl Footing {
         let mut method = Method::shared_strain();
         method.geometry = Geometry::Given;
         let (run, _) = run(
-            format!("{}, B/h = {cells}", self.name()),
+            format!("{}, B/h = {cells}{told}", self.name()),
             &mut body,
             &method,
             &MarchSettings::steps(STEPS),
@@ -167,7 +185,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         .collect();
     let done = pushes
         .par_iter()
-        .map(|(footing, cells)| footing.push(*cells))
+        .map(|(footing, cells)| footing.push(*cells, PLACE))
         .collect::<Result<Vec<_>, CaseError>>()?;
     let mut before: Option<(Footing, f64)> = None;
     for ((footing, _), (record, curve)) in pushes.iter().zip(done) {
@@ -184,5 +202,34 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         }
         before = Some((*footing, end));
     }
+    if level == Level::Full {
+        places(&mut study)?;
+    }
     Ok(study)
+}
+
+/// The rough circle with its edge at other places of its cell.
+fn places(study: &mut Study) -> Result<(), CaseError> {
+    let footing = Footing::Circle { rough: true };
+    let done = OTHER_PLACES
+        .par_iter()
+        .chain([&PLACE])
+        .map(|&place| footing.push(CELLS_AT_PLACES, place))
+        .collect::<Result<Vec<_>, CaseError>>()?;
+    let (expected, band) = footing.says();
+    let (mut least, mut most, mut sum, mut last) = (f64::INFINITY, 0.0_f64, 0.0, 0);
+    for (k, (record, curve)) in done.into_iter().enumerate() {
+        let end = curve.rows.last().map_or(f64::NAN, |row| row[1]);
+        (least, most, sum) = (least.min(end), most.max(end), sum + end);
+        if k < OTHER_PLACES.len() {
+            curve.write_csv(&study.folder)?;
+            last = study.run_to_end(record);
+            study.check(last, "V/(A s_u) at the end [-]", expected, band, end);
+        }
+    }
+    let spread = (most - least) / (sum / 5.0);
+    let quantity = "rough circle, B/h = 8: spread over the places of the grid [-]";
+    let band = Band::Between(0.0, SPREAD);
+    study.check(last, quantity, INDIFFERENT.says(0.0), band, spread);
+    Ok(())
 }

@@ -9,12 +9,12 @@ use std::time::UNIX_EPOCH;
 use igimp_input::CaseFile;
 use igimp_model::{AnyCase, Every, StageKind};
 use igimp_report::patches::Pieces;
-use igimp_report::pictures::water::tables_after;
 use igimp_report::viewer::{self, Keep};
 use igimp_results::paraview::pvd;
 use igimp_results::summary::Summary;
 use serde_json::{Value, json};
 
+use super::water;
 use crate::commands::pieces;
 use crate::error::ProgramError;
 
@@ -137,7 +137,7 @@ impl Results {
             "stage_of_curve": recorded,
             "never": case.is_some_and(|case| case.output().paraview == Every::Never),
             "seconds": self.seconds(),
-            "water": case.map(water_tables),
+            "water": case.map(|case| water::by_stage(case, &|name| self.section(name))),
             "files": files,
         })
         .to_string()
@@ -156,6 +156,12 @@ impl Results {
             .into_iter()
             .map(|(file, time)| (format!("paraview/{file}"), json!(time)));
         named.collect()
+    }
+
+    /// The path of a table of sections by the name of its file.
+    fn section(&self, name: &str) -> Option<PathBuf> {
+        let mut names = self.names("sections", "csv");
+        names.find_map(|(_, path)| (path.file_name()?.to_str()? == name).then_some(path))
     }
 
     /// A file by its name in an address, with its length and kind; nothing for names that are not
@@ -215,19 +221,6 @@ impl Results {
         }
         serde_json::from_slice(&fs::read(path).ok()?).ok()
     }
-}
-
-/// By stage: the water tables at its end as lines of points \[m\]; none in space.
-fn water_tables(case: &AnyCase) -> Vec<Vec<Vec<[f64; 2]>>> {
-    let AnyCase::Plane(case) = case else {
-        return Vec::new();
-    };
-    let ends = [case.grid.lower()[0], case.grid.upper()[0]];
-    let of_stage = |stage| {
-        let tables = tables_after(case, stage, ends).into_iter();
-        tables.map(|table| table.points).collect()
-    };
-    (0..case.stages.len()).map(of_stage).collect()
 }
 
 /// Whether a run laid out its results here.

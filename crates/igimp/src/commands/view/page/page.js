@@ -168,6 +168,7 @@ const viewer = new Viewer(
     section: numbersOf("section"),
     view: asked.get("view"),
     cut: numbersOf("cut"),
+    least: Number(asked.get("least")),
   },
   (entry, field, frame) => {
     current = entry;
