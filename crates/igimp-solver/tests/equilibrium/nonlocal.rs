@@ -2,7 +2,7 @@
 //! BODY: a column of unit cells between a lower side that is held and an upper one that is pushed or loaded along. Its middle row is
 //! 1 % weaker, and what is farther than 3 l from it 5 % stronger, so that one band forms there and no half of one at a side. Strength
 //! falls on a line, so that all is linear behind the peak.
-//! ORACLE: the closed form of $`\bar\kappa - l^2 \bar\kappa'' = \kappa`$ with $`\tau = c + H (m \bar\kappa + (1 - m) \kappa)`$ over slip:
+//! ORACLE: eq. 110e, the closed form of $`\bar\kappa - l^2 \bar\kappa'' = \kappa`$ with $`\tau = c + H (m \bar\kappa + (1 - m) \kappa)`$ over slip:
 //! with s = √(m − 1) the band is w = 2 l s (π − atan 1/s) wide, and $`\mathrm{d}\tau/\mathrm{d}\delta = H/(w + 2l)`$. A layer of
 //! height T snaps back beyond −H T = G (w + 2l).
 
