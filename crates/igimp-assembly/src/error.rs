@@ -142,6 +142,14 @@ pub enum AssemblyError {
     /// Every degree of freedom is prescribed or dropped.
     #[error("no unknown is left: every active node is fixed")]
     NoUnknowns,
+    /// Softening over a length is asked for where it is not solved for.
+    #[error(
+        "softening over a length goes with plane strain in statics, not with {with}: scale it by the width of its bands"
+    )]
+    NonlocalStrain {
+        /// What it does not go with.
+        with: &'static str,
+    },
     /// The velocities that the grid takes over from the particles were not found.
     #[error(
         "the motion of the particles could not be given to the grid: a share of {left:.1e} of their momentum is left"

@@ -262,15 +262,26 @@ fn a_slope_that_softens_lies_between_peak_and_residual() {
 /// the same bits.
 #[test]
 fn a_slope_that_softens_is_taken_up_with_what_it_remembers() {
-    let steps = ["stages.2.steps=6", "output.figures=[]"];
-    let file = file("slope", &[&SOFTENS[..], &steps].concat());
-    let whole = folder("softening-whole");
+    is_taken_up("softening", SOFTENS[4]);
+}
+
+/// GOAL: the same of nonlocal strain, with a length in place of a width; and the slope stands.
+#[test]
+fn a_slope_that_softens_over_a_length_is_taken_up_with_what_it_remembers() {
+    let softening = SOFTENS[4].replace("band_width = \"1 m\"", "length = \"4 m\"");
+    is_taken_up("nonlocal", &softening);
+}
+
+fn is_taken_up(name: &str, softening: &str) {
+    let steps = [softening, "stages.2.steps=6", "output.figures=[]"];
+    let file = file("slope", &[&SOFTENS[..4], &SOFTENS[5..], &steps].concat());
+    let whole = folder(&format!("{name}-whole"));
     let run = run_into((&file, file.case()), &whole, Start::Afresh, None);
     let remembered = &run.body.particles.internal;
     assert!(!remembered.is_empty() && run.summary.stages.len() == 3);
     let expected = everything(&whole);
     let taken: usize = run.summary.stages[0].steps + 3;
-    let stopped = folder("softening-stopped");
+    let stopped = folder(&format!("{name}-stopped"));
     let early = run_into((&file, file.case()), &stopped, Start::Afresh, Some(taken));
     assert!(early.summary.interrupted);
     run_into((&file, file.case()), &stopped, Start::Resume, None);
@@ -330,6 +341,22 @@ fn sensitive_slope_is_as_safe_on_three_meshes() {
         between(factor / factors[0], 0.98, 1.02);
     }
     assert!(unscaled > 1.03 * factors[2], "{unscaled}");
+}
+
+/// GOAL: with a length in place of a width a slope of clay that softens lies between those of residual and of intact strength.
+/// ORACLE: γH F/c_u of 5.379 to 5.412 by limit analysis.
+#[test]
+fn sensitive_slope_softens_over_a_length() {
+    let height = "grid.domain.y=[\"0 m\", \"15 m\"]";
+    let softening =
+        "materials.clay.softening={ cu = { residual = 0.3, strain = 0.05 }, length = \"2 m\" }";
+    let ran = ran("sensitive_slope", &[height, softening]);
+    assert_eq!(ran.outcomes(), [Completed, Completed]);
+    let [stands, fails] = ran.factor_of_safety(1);
+    println!("F of {stands} to {fails}");
+    between(0.5 * (stands + fails), 0.451, 1.494);
+    let remembered = ran.run.body.particles.internal.iter();
+    assert!(remembered.fold(0.0, |most: f64, own| most.max(own[1])) > 0.0);
 }
 
 /// GOAL: the factor of a slope by Hoek and Brown lies between those of two Mohr–Coulomb soils that enclose its envelope.

@@ -178,6 +178,29 @@ mod tests {
             "materials.sand.softening.friction.residual=89.5 deg",
             "a residual friction angle",
         );
+        refused("materials.sand.softening.length=-1 m", "length");
+        refused(
+            "materials.sand.softening={ friction = { residual = \"30 deg\", strain = 0.1 }, length = \"1 m\", band_width = \"1 m\" }",
+            "`length` and `band_width` do not go together",
+        );
+        refused(
+            "materials.sand.softening.over_nonlocal=2",
+            "`over_nonlocal` is stated without a `length`",
+        );
+        refused(
+            "materials.sand.softening={ friction = { residual = \"30 deg\", strain = 0.1 }, length = \"1 m\", over_nonlocal = 1 }",
+            "slip gathers in one row of cells",
+        );
+        refused(
+            "materials.sand.softening={ friction = { residual = \"36 deg\", strain = 0.1 }, length = \"1 m\" }",
+            "strength that hardens needs no `length`",
+        );
+        let seeing = ["materials.sand.softening.length=0.3 m".to_owned()];
+        let file = MaterialsFile::parse("sand.toml", SAND, &seeing).unwrap();
+        let nonlocal = file.materials[0].softening.unwrap().nonlocal.unwrap();
+        assert!(
+            (nonlocal.length - 0.3).abs() < 1e-15 && (nonlocal.over_nonlocal - 2.0).abs() < 1e-15
+        );
         let clay = "igimp = 1\n[materials.clay]\nmodel = \"tresca\"\nyoung = \"20 MPa\"\npoisson = 0.3\ncu = \"50 kPa\"\n\
                     unit_weight = \"18 kN/m3\"\nsoftening = { cu = { residual = RESIDUAL, strain = STRAIN } }\n";
         let refused = |residual: &str, strain: &str, words: &str| {

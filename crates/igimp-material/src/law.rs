@@ -167,6 +167,29 @@ pub struct ReturnMap {
     pub regime: Regime,
 }
 
+/// How the strength of a law sees plastic strain beside its own point: by the over-nonlocal measure
+/// $`m \bar\kappa + (1 - m) \kappa`$ of an implicit gradient (theory, eqs. 110a and 110b).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nonlocal {
+    /// Length l over which plastic strain is spread \[length\]. Positive.
+    pub length: f64,
+    /// Share m of the nonlocal strain \[-\]. Above 1 bands of shear have a width; with 1 they have none.
+    pub over_nonlocal: f64,
+}
+
+/// What plastic strain and nonlocal strain are to each other at a point, at the end of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct NonlocalRates {
+    /// Plastic strain of the step Δκ \[-\].
+    pub plastic: f64,
+    /// Its derivative by the principal trial strains \[-\].
+    pub plastic_by_strain: Principal,
+    /// Its derivative by the nonlocal strain \[-\].
+    pub plastic_by_nonlocal: f64,
+    /// The derivative of the principal stresses τ by the nonlocal strain \[stress\].
+    pub stress_by_nonlocal: Principal,
+}
+
 impl ReturnMap {
     /// A stress that needed no return.
     pub(crate) fn elastic(elasticity: &Elasticity, tau: Principal, history: History) -> Self {
@@ -251,6 +274,29 @@ pub trait ConstitutiveModel: Send + Sync + Debug {
     ) -> Result<ReturnMap, MaterialError> {
         let _ = duration;
         self.return_map(eps_e_trial, history)
+    }
+
+    /// How strength sees plastic strain beside its own point; none of a law whose strength is that of a point.
+    fn nonlocal(&self) -> Option<Nonlocal> {
+        None
+    }
+
+    /// The same as [`return_map`](Self::return_map) in a step over which the nonlocal strain rises by `rise` \[-\], with what both
+    /// strains are to each other; of a law whose strength is that of a point, nothing.
+    ///
+    /// # Errors
+    /// As [`return_map`](Self::return_map).
+    fn return_map_nonlocal(
+        &self,
+        eps_e_trial: &Principal,
+        history: &History,
+        rise: f64,
+    ) -> Result<(ReturnMap, NonlocalRates), MaterialError> {
+        let _ = rise;
+        Ok((
+            self.return_map(eps_e_trial, history)?,
+            NonlocalRates::default(),
+        ))
     }
 
     /// The history with the direction that a stress `tau` with principal axes `frame`, in rows, leaves for the next step, for a law

@@ -79,7 +79,7 @@ pub use hencky::HenckyElastic;
 pub use hoek_brown::{HoekBrown, HoekBrownParameters};
 pub use law::{
     ConstitutiveModel, Dissipation, ElasticStiffness, History, INTERNAL_VARIABLES,
-    InternalVariable, Regime, ReturnMap, Scaling, ShearStrength,
+    InternalVariable, Nonlocal, NonlocalRates, Regime, ReturnMap, Scaling, ShearStrength,
 };
 pub use mohr_coulomb::MohrCoulomb;
 pub use scaled::{Ratios, ScaledLaw};

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::spectral::principal::{Principal, Tensor};
 use crate::{
     ConstitutiveModel, Dissipation, ElasticStiffness, Elasticity, History, INTERNAL_VARIABLES,
-    InternalVariable, MaterialError, ReturnMap, Scaling, ShearStrength,
+    InternalVariable, MaterialError, Nonlocal, NonlocalRates, ReturnMap, Scaling, ShearStrength,
 };
 
 /// Strength, friction and stiffness of a piece of soil over those of its material.
@@ -105,6 +105,30 @@ impl<L: Deref<Target = dyn ConstitutiveModel>> ScaledLaw<L> {
         }
     }
 
+    /// The answer of the other law as one of this, to soil with a `history`.
+    fn scaled_answer(&self, answer: &ReturnMap, history: &History) -> ReturnMap {
+        let ratio = self.strain_ratio();
+        let Ratios {
+            strength,
+            stiffness,
+            ..
+        } = self.ratios;
+        let delta_eps_p = answer.delta_eps_p.map(|strain| strain / ratio);
+        ReturnMap {
+            tau: answer.tau.map(|component| component * strength),
+            tangent: answer
+                .tangent
+                .map(|row| row.map(|modulus| modulus * stiffness)),
+            delta_eps_p,
+            history: History {
+                internal: self
+                    .scaled_internal(answer.history.internal, |value, scale| value * scale),
+                ..history.after(&delta_eps_p)
+            },
+            regime: answer.regime,
+        }
+    }
+
     /// Internal variables with each put to its own scale.
     fn scaled_internal(
         &self,
@@ -197,25 +221,31 @@ where
         let trial = eps_e_trial.map(|strain| strain * ratio);
         let own = self.unscaled_history(*history);
         let answer = self.law.return_map_over(&trial, &own, duration * ratio)?;
-        let Ratios {
-            strength,
-            stiffness,
-            ..
-        } = self.ratios;
-        let delta_eps_p = answer.delta_eps_p.map(|strain| strain / ratio);
-        Ok(ReturnMap {
-            tau: answer.tau.map(|component| component * strength),
-            tangent: answer
-                .tangent
-                .map(|row| row.map(|modulus| modulus * stiffness)),
-            delta_eps_p,
-            history: History {
-                internal: self
-                    .scaled_internal(answer.history.internal, |value, scale| value * scale),
-                ..history.after(&delta_eps_p)
-            },
-            regime: answer.regime,
-        })
+        Ok(self.scaled_answer(&answer, history))
+    }
+
+    /// That of the other law: lengths do not go with the ratios.
+    fn nonlocal(&self) -> Option<Nonlocal> {
+        self.law.nonlocal()
+    }
+
+    fn return_map_nonlocal(
+        &self,
+        eps_e_trial: &Principal,
+        history: &History,
+        rise: f64,
+    ) -> Result<(ReturnMap, NonlocalRates), MaterialError> {
+        let ratio = self.strain_ratio();
+        let trial = eps_e_trial.map(|strain| strain * ratio);
+        let own = self.unscaled_history(*history);
+        let (answer, rates) = (self.law).return_map_nonlocal(&trial, &own, rise * ratio)?;
+        let rates = NonlocalRates {
+            plastic: rates.plastic / ratio,
+            stress_by_nonlocal: (rates.stress_by_nonlocal)
+                .map(|modulus| modulus * self.ratios.stiffness),
+            ..rates
+        };
+        Ok((self.scaled_answer(&answer, history), rates))
     }
 
     fn internal_variables(&self) -> &'static [InternalVariable] {

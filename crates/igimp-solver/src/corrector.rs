@@ -71,7 +71,7 @@ impl Guard {
         gives_up: true,
     };
 
-    /// Where the load factor is unknown, as on a plateau: none until a correction is halved.
+    /// Where the load factor is unknown, as on a plateau, and where soil softens over a length: none until a correction is halved.
     const ON_PATH: Self = Self {
         share: 0.0,
         least: 0.0,
@@ -156,7 +156,12 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         } = workspace;
         let earlier = matrix.take();
         solver.start_step();
-        let guard = (D == 3 && system.flows_without_potential()).then_some(Guard::IN_SPACE);
+        let guard = if D == 3 && system.flows_without_potential() {
+            Some(Guard::IN_SPACE)
+        } else {
+            // Where bands may form here or there, whole corrections go round in circles.
+            (system.softens_over_a_length()).then_some(Guard::ON_PATH)
+        };
         Self {
             stencils,
             grid,
@@ -193,8 +198,8 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
     /// The same with a load factor that is unknown.
     pub(crate) fn on_path(mut self, factor: FreeFactor<'s, D>) -> Self {
         self.guard = Some(match self.guard {
-            Some(_) => Guard::FADING,
-            None => Guard::ON_PATH,
+            Some(own) if own.gives_up => Guard::FADING,
+            _ => Guard::ON_PATH,
         });
         self.factor = Some(factor);
         self

@@ -1,4 +1,4 @@
-//! What acts at the nodes beside the stress of the soil: ghost penalty, inertia, water, reinforcement, rigid bodies.
+//! What acts at the nodes beside the stress of the soil: ghost penalty, inertia, water, nonlocal strain, reinforcement, rigid bodies.
 
 pub(crate) mod consolidation;
 pub(crate) mod couplings;
@@ -7,6 +7,7 @@ pub(crate) mod ghost;
 pub(crate) mod inertia;
 pub(crate) mod loads;
 pub(crate) mod nodal_forces;
+pub(crate) mod nonlocal;
 pub(crate) mod pore_water;
 pub(crate) mod reinforcement;
 pub(crate) mod rigid;

@@ -40,12 +40,12 @@ pub(crate) struct NodePlace {
     pub(crate) block: u32,
     /// First of its unknowns.
     pub(crate) first: u32,
-    /// How many components of its displacement are unknown. A pore pressure that is unknown follows them.
+    /// How many components of its displacement are unknown. A scalar that is unknown follows them.
     pub(crate) len: u8,
     /// Which components they are, one bit each.
     pub(crate) free: u8,
-    /// Whether its pore pressure is unknown.
-    pub(crate) has_pressure: bool,
+    /// Whether a scalar of it is unknown: its pore pressure or its nonlocal strain.
+    pub(crate) has_scalar: bool,
     /// Whether some of its couplings reach beyond the window.
     is_wide: bool,
 }
@@ -93,14 +93,14 @@ impl<const D: usize> BlockTable<D> {
             let code = place.iter().rev().fold(0, |code, &k| code * side + k);
             let len = unknowns.count(node) as usize;
             let block = if len == 0 { NONE } else { blocks.len() as u32 };
-            let has_pressure = len > unknowns.free(node).count_ones() as usize;
+            let has_scalar = len > unknowns.free(node).count_ones() as usize;
             table.nodes.push(NodePlace {
                 code: u32::try_from(code).expect("fewer than 2^32 places"),
                 block,
                 first: unknowns.before(node) as u32,
                 len: unknowns.free(node).count_ones() as u8,
                 free: unknowns.free(node),
-                has_pressure,
+                has_scalar,
                 is_wide: is_wide.get(node).is_some_and(|&is_wide| is_wide),
             });
             if len > 0 {
@@ -109,7 +109,7 @@ impl<const D: usize> BlockTable<D> {
                 blocks.push(NodeBlock {
                     first: unknowns.before(node),
                     len,
-                    free: unknowns.free(node) | if has_pressure { SCALAR } else { 0 },
+                    free: unknowns.free(node) | if has_scalar { SCALAR } else { 0 },
                     place: block_place,
                 });
             }

@@ -19,6 +19,7 @@ use igimp_material::{
 };
 use igimp_shape::Support;
 
+use crate::contributions::nonlocal::SpatialRates;
 use crate::contributions::pore_water::PoreResponse;
 use crate::error::AssemblyError;
 use crate::method::{Geometry, Kinematics, Method};
@@ -78,6 +79,8 @@ pub(crate) struct Linearisation<const D: usize> {
     pub(crate) push_bar: [[f64; D]; D],
     /// Stress and tangent in spatial axes, those of the water in the pores included.
     pub(crate) lifted: Lifted<D>,
+    /// What its plastic and its nonlocal strain are to each other, where strength sees that.
+    pub(crate) nonlocal: Option<SpatialRates<D>>,
 }
 
 /// The state of a particle at the start of a step.
@@ -193,6 +196,7 @@ pub(crate) fn answered<const D: usize>(
         push: straining.push,
         push_bar: straining.push_bar,
         lifted,
+        nonlocal: None,
     };
     if !state.pores.is_none() {
         let mean = state.pores.given - trial.excess;

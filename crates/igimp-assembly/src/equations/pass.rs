@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use crate::Trial;
 use crate::contributions::consolidation::WaterOfParticle;
+use crate::contributions::nonlocal::{SpatialRates, StrainOfParticle};
 use crate::equations::blocks::BlockTable;
 use crate::equations::kinematics::{
     Linearisation, ParticleState, ParticleTrial, Straining, answered, strained,
@@ -20,7 +21,8 @@ use crate::equations::linearised::{Linearised, Moduli};
 use crate::equations::mirror::mirror;
 use crate::equations::patch::Patch;
 use crate::equations::scatter::Rows;
-use crate::equations::scatter::water::{WaterColumns, scatter_in_space};
+use crate::equations::scatter::scalar::ScalarColumns;
+use crate::equations::scatter::water::scatter_in_space;
 use crate::equations::system::System;
 use crate::error::AssemblyError;
 use crate::method::Kinematics;
@@ -30,7 +32,7 @@ use crate::step::strips::split;
 #[derive(Debug, Default)]
 pub(crate) struct Scratch<const D: usize> {
     pub(crate) linearised: Linearised<D>,
-    pub(crate) water: WaterColumns<D>,
+    pub(crate) scalar: ScalarColumns<D>,
     pub(crate) rows: Rows,
     pub(crate) patch: Patch<D>,
 }
@@ -41,9 +43,9 @@ struct StripTask<'a, const D: usize> {
     particles: &'a mut [ParticleTrial<D>],
     first_node: usize,
     f_int: &'a mut [[f64; D]],
-    /// The first pressure of its nodes, and the forces of all of them.
-    first_pressure: usize,
-    f_of_pressures: &'a mut [[f64; D]],
+    /// The first scalar of its nodes, and the forces of all of them.
+    first_scalar: usize,
+    f_of_scalars: &'a mut [[f64; D]],
     /// Where the values of the strip begin, and the values; none when no tangent is asked for.
     values: Option<(usize, &'a mut [f64])>,
 }
@@ -78,16 +80,13 @@ impl<const D: usize> System<'_, D> {
                     .collect(),
                 None => nodes.clone().map(|_| None).collect(),
             };
-            let (of_grid, of_pressures) =
-                (trial.f_int).split_at_mut(self.unknowns.first_pressure());
+            let (of_grid, of_scalars) = (trial.f_int).split_at_mut(self.unknowns.first_scalar());
             let f_int = split(of_grid, nodes.clone());
-            let pressures = nodes
-                .clone()
-                .map(|nodes| self.unknowns.pressures_of(&nodes));
-            let first_pressures = pressures.clone().map(|pressures| pressures.start);
-            let f_of_pressures = split(of_pressures, pressures).into_iter();
+            let scalars = nodes.clone().map(|nodes| self.unknowns.scalars_of(&nodes));
+            let first_scalars = scalars.clone().map(|scalars| scalars.start);
+            let f_of_scalars = split(of_scalars, scalars).into_iter();
             let particles = split(&mut trial.particles, slots);
-            let forces = f_int.into_iter().zip(first_pressures.zip(f_of_pressures));
+            let forces = f_int.into_iter().zip(first_scalars.zip(f_of_scalars));
             let parts = strips.zip(particles).zip(forces).zip(values);
             let tasks: Vec<StripTask<'_, D>> = parts
                 .map(
@@ -96,8 +95,8 @@ impl<const D: usize> System<'_, D> {
                         particles,
                         first_node: nodes.start,
                         f_int: forces.0,
-                        first_pressure: forces.1.0,
-                        f_of_pressures: forces.1.1,
+                        first_scalar: forces.1.0,
+                        f_of_scalars: forces.1.1,
                         values,
                     },
                 )
@@ -150,7 +149,11 @@ impl<const D: usize> System<'_, D> {
             }
             let water = self.consolidation.of_particle(particle, supports, u);
             if let Some(water) = &water {
-                water.add_forces(strip.first_pressure, strip.f_of_pressures);
+                water.add_forces(strip.first_scalar, strip.f_of_scalars);
+            }
+            let strain = self.strain_of_particle(particle, &own, u);
+            if let Some(strain) = &strain {
+                strain.add_forces(supports, strip.first_scalar, strip.f_of_scalars);
             }
             let Some((start, values)) = &mut strip.values else {
                 continue;
@@ -174,6 +177,7 @@ impl<const D: usize> System<'_, D> {
                 supports,
                 own: &own,
                 water: water.as_ref(),
+                strain: strain.as_ref(),
                 volume,
                 kinematics,
                 ends_patch: slot + 1 == end_of_patch,
@@ -209,23 +213,55 @@ impl<const D: usize> System<'_, D> {
     ) -> Result<Linearisation<D>, AssemblyError> {
         let material = |source| AssemblyError::Material { particle, source };
         let kinematics = self.method.kinematics_of_step();
+        let supports = self.stencils.of(particle);
+        let rise = (self.nonlocal).rise(self.particles.law[particle], supports, u);
         let ask = |law: &dyn ConstitutiveModel| {
             let (state, straining) = self.strain_particle(particle, u)?;
-            let answer = match known {
-                Some(answer) => *answer,
-                None => law
-                    .return_map_over(
-                        straining.principal(),
-                        &self.particles.history(particle),
-                        self.conditions.duration(),
-                    )
+            let history = self.particles.history(particle);
+            let mut rates = None;
+            let answer = match (known, rise) {
+                (Some(answer), _) => *answer,
+                (None, Some(rise)) => {
+                    let asked = law.return_map_nonlocal(straining.principal(), &history, rise);
+                    let (answer, own) = asked.map_err(material)?;
+                    rates = Some(own);
+                    answer
+                }
+                (None, None) => law
+                    .return_map_over(straining.principal(), &history, self.conditions.duration())
                     .map_err(material)?,
             };
-            answered(state, straining, law, &answer, (kind, kinematics), trial)
+            let own = answered(state, straining, law, &answer, (kind, kinematics), trial)?;
+            let elastic = match kind {
+                TangentKind::Elastic => 1.0,
+                TangentKind::Consistent => 0.0,
+                TangentKind::Regularised { elastic } => elastic,
+            };
+            let spatial = |rates| SpatialRates::of(&rates, &own.lifted.frame, elastic);
+            let nonlocal = rates.map(spatial);
+            Ok(Linearisation { nonlocal, ..own })
         };
         let laws = &self.conditions.laws;
         let asked = self.particles.ask_law(particle, laws, ask);
         asked.map_err(material)?
+    }
+
+    /// The nonlocal strain of a particle at nodal values `u`; none where strength does not see it.
+    #[inline]
+    pub(crate) fn strain_of_particle<'c>(
+        &'c self,
+        particle: usize,
+        own: &'c Linearisation<D>,
+        u: &[[f64; D]],
+    ) -> Option<StrainOfParticle<'c, D>> {
+        let rates = own.nonlocal.as_ref()?;
+        let supports = (self.stencils.of(particle), rates);
+        let volumes = [
+            self.particles.volume(particle),
+            self.reference_volume(particle),
+        ];
+        let law = self.particles.law[particle];
+        self.nonlocal.of_particle(law, supports, u, volumes)
     }
 
     /// One particle as nodal step displacements `u` strain it.
@@ -263,6 +299,8 @@ struct Addition<'a, const D: usize> {
     own: &'a Linearisation<D>,
     /// Its water, where that flows.
     water: Option<&'a WaterOfParticle<'a, D>>,
+    /// Its nonlocal strain, where strength sees that.
+    strain: Option<&'a StrainOfParticle<'a, D>>,
     volume: f64,
     kinematics: Kinematics,
     /// Whether it is the last one of its patch.
@@ -284,7 +322,7 @@ impl<const D: usize> WithSimd for Addition<'_, D> {
     fn with_simd<S: Simd>(self, _: S) {
         let Scratch {
             linearised,
-            water,
+            scalar,
             rows,
             patch,
         } = self.scratch;
@@ -301,10 +339,14 @@ impl<const D: usize> WithSimd for Addition<'_, D> {
             let nodes = self.supports.iter().map(|support| support.node);
             linearised.linearise(&Moduli::of(self.own, self.volume, self.kinematics));
             if let Some(own) = self.water {
+                scalar.set_water(own, self.supports);
+            } else if let Some(own) = self.strain {
+                scalar.set_strain(own, self.supports, linearised);
+            }
+            if self.water.is_some() || self.strain.is_some() {
                 rows.set(nodes, self.matrix.0, true);
-                water.set(own, self.supports);
-                let columns = (linearised, water);
-                rows.scatter_with_water(self.supports, self.matrix, columns, self.values);
+                let columns = (linearised, scalar);
+                rows.scatter_with_scalar(self.supports, self.matrix, columns, self.values);
             } else {
                 rows.set(nodes, self.matrix.0, false);
                 rows.scatter(self.supports, self.matrix, linearised, self.values);

@@ -18,6 +18,7 @@ use crate::contributions::loads::{
     add_force_of_points, add_unbalanced_forces, add_variation_of_weight, nodal_drag, weight,
 };
 use crate::contributions::nodal_forces::NodalForces;
+use crate::contributions::nonlocal::{NonlocalStrain, strain_nodes};
 use crate::contributions::pore_water::Pores;
 use crate::contributions::reinforcement::{Members, Reinforcement};
 use crate::contributions::rigid::{
@@ -26,7 +27,7 @@ use crate::contributions::rigid::{
 use crate::contributions::walls::WallForces;
 use crate::equations::blocks::BlockTable;
 use crate::equations::damping::StiffnessDamping;
-use crate::equations::kinematics::ParticleTrial;
+use crate::equations::kinematics::{Linearisation, ParticleTrial};
 use crate::equations::linearised::{Linearised, Moduli};
 use crate::equations::residual::{OutOfBalance, force_of_round_off};
 use crate::equations::trial::Trial;
@@ -64,6 +65,8 @@ pub struct System<'a, const D: usize> {
     pub(crate) pores: Pores,
     /// Excess pore pressure as an unknown, in a step in which water flows.
     pub(crate) consolidation: Consolidation<D>,
+    /// Nonlocal strain as an unknown, in a step whose soil softens over a length.
+    pub(crate) nonlocal: NonlocalStrain<D>,
     pub(crate) table: BlockTable<D>,
     pub(crate) pattern: Arc<Pattern>,
     symmetric: bool,
@@ -127,9 +130,12 @@ impl<'a, const D: usize> System<'a, D> {
             .map(|motion| motion.map(|drive| matches!(drive, Drive::Loaded(_))))
             .collect();
         let constraints = &conditions.constraints;
-        let has_pressure = pressure_nodes(particles, stencils, conditions);
+        let mut has_scalar = strain_nodes(particles, stencils, conditions)?;
+        if has_scalar.is_empty() {
+            has_scalar = pressure_nodes(particles, stencils, conditions);
+        }
         let below = cuts.below;
-        let unknowns = Unknowns::number(grid, stencils, constraints, below, &free, &has_pressure)?;
+        let unknowns = Unknowns::number(grid, stencils, constraints, below, &free, &has_scalar)?;
         let young = |particle: usize| particles.young(particle, &conditions.laws);
         let couplings = [
             ghost_penalty(grid, particles, stencils, young, cuts.ghost_penalty),
@@ -138,7 +144,7 @@ impl<'a, const D: usize> System<'a, D> {
         let contact = Contact::find(bodies, particles, stencils, conditions, &unknowns);
         let reinforcement = Members::find(members, stencils, conditions, method, &unknowns)?;
         let (mut f_ext, pores) = external_force(particles, stencils, conditions, method, &motions)?;
-        f_ext.resize(f_ext.len() + unknowns.pressure_count(), [0.0; D]);
+        f_ext.resize(f_ext.len() + unknowns.scalar_count(), [0.0; D]);
         let of_step = (conditions, method);
         let consolidation =
             Consolidation::find(particles, bodies, stencils, of_step, &unknowns, &pores)?;
@@ -153,7 +159,6 @@ impl<'a, const D: usize> System<'a, D> {
             stencils,
             conditions: Cow::Borrowed(conditions),
             method,
-            unknowns,
             f_ext,
             round_off: force_of_round_off(particles, stencils, conditions),
             couplings,
@@ -164,6 +169,8 @@ impl<'a, const D: usize> System<'a, D> {
             damping: None,
             pores,
             consolidation,
+            nonlocal: NonlocalStrain::find(conditions, &unknowns),
+            unknowns,
             motions,
             table,
             pattern: Arc::new(pattern),
@@ -330,6 +337,11 @@ impl<'a, const D: usize> System<'a, D> {
     /// Whether soil moves whose flow is not associated.
     pub fn moves_without_potential(&self) -> bool {
         !self.symmetric_particles && self.inertia.is_some()
+    }
+
+    /// Whether strength softens with the plastic strain of the ground around, which is among the unknowns.
+    pub fn softens_over_a_length(&self) -> bool {
+        self.nonlocal.is_solved_for()
     }
 
     /// Whether soil may touch a rigid body in this step.
@@ -572,16 +584,8 @@ impl<'a, const D: usize> System<'a, D> {
             }
             let own = self.evaluate_particle(particle, u, kind, &mut trial)?;
             let volume = self.reference_volume(particle);
-            if let Some(water) = self.consolidation.of_particle(particle, supports, u) {
-                let moved = |node: usize, axis: usize| self.prescribed(node, axis).unwrap_or(0.0);
-                let first = self.unknowns.first_pressure();
-                water.add_force_of_motion(supports, &moved, &mut |place, of_water| {
-                    if let Some(unknown) = self.unknowns.index(first + place, 0) {
-                        force[unknown] += of_water;
-                    }
-                });
-            }
             linearised.push(supports, &own);
+            self.add_scalars_of_motion(particle, (&own, &linearised), u, &mut force);
             let kinematics = self.method.kinematics_of_step();
             linearised.linearise(&Moduli::of(&own, volume, kinematics));
             for (j, column) in supports.iter().enumerate() {
@@ -616,6 +620,31 @@ impl<'a, const D: usize> System<'a, D> {
         Ok(force)
     }
 
+    /// Adds what the prescribed step displacements do to the scalars of a particle, by unknown \[force\].
+    fn add_scalars_of_motion(
+        &self,
+        particle: usize,
+        (own, linearised): (&Linearisation<D>, &Linearised<D>),
+        u: &[[f64; D]],
+        force: &mut [f64],
+    ) {
+        let supports = self.stencils.of(particle);
+        let moved = |node: usize, axis: usize| self.prescribed(node, axis).unwrap_or(0.0);
+        let first = self.unknowns.first_scalar();
+        let mut add = |place: usize, by: f64| {
+            if let Some(unknown) = self.unknowns.index(first + place, 0) {
+                force[unknown] += by;
+            }
+        };
+        if let Some(water) = self.consolidation.of_particle(particle, supports, u) {
+            water.add_force_of_motion(supports, &moved, &mut add);
+        }
+        if let Some(strain) = self.strain_of_particle(particle, own, u) {
+            let gradients = (linearised.g(), linearised.g_bar());
+            strain.add_force_of_motion(supports, gradients, &moved, &mut add);
+        }
+    }
+
     /// The first particle whose law answers a tangent that is not finite at nodal step
     /// displacements `u` \[length\], as an error that names it. A pass over all particles, for when
     /// a matrix was found not to be finite.
@@ -642,13 +671,13 @@ impl<'a, const D: usize> System<'a, D> {
             .collect()
     }
 
-    /// Number of nodes: those of the grid, two behind them for the motion of each rigid body, and one for each pore pressure
-    /// that is unknown.
+    /// Number of nodes: those of the grid, two behind them for the motion of each rigid body, and one for each scalar
+    /// that is unknown: pore pressure or nonlocal strain.
     pub fn node_count(&self) -> usize {
-        self.unknowns.first_pressure() + self.unknowns.pressure_count()
+        self.unknowns.first_scalar() + self.unknowns.scalar_count()
     }
 
-    /// Where a node stands \[length\]; one that stands for a rigid body at its reference point, one for pore pressure where its
+    /// Where a node stands \[length\]; one that stands for a rigid body at its reference point, one for a scalar where its
     /// node of the grid is.
     pub fn node_position(&self, node: usize) -> [f64; D] {
         let node = self.unknowns.block_node(node);

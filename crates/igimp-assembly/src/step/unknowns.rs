@@ -13,8 +13,8 @@ use crate::step::stencils::Stencils;
 const NONE: u32 = u32::MAX;
 
 /// The unknowns of a step: free degrees of freedom of active nodes, nodes ascending, and then those of
-/// rigid bodies. Excess pore pressure is the last unknown of its node; a node of its own, behind those of rigid bodies,
-/// stands for it wherever displacements are listed by node.
+/// rigid bodies. A scalar, excess pore pressure or nonlocal strain, is the last unknown of its node; a node of its own,
+/// behind those of rigid bodies, stands for it wherever displacements are listed by node.
 #[derive(Clone, Debug)]
 pub struct Unknowns<const D: usize> {
     /// Number of unknowns on nodes before each node; length nodes + 1.
@@ -28,15 +28,15 @@ pub struct Unknowns<const D: usize> {
     /// Unknowns of the grid; those of rigid bodies follow.
     of_grid: usize,
     len: usize,
-    /// The unknowns that are pore pressures, with their nodes of the grid, ascending.
-    pressures: Vec<(u32, u32)>,
+    /// The unknowns that are scalars, with their nodes of the grid, ascending.
+    scalars: Vec<(u32, u32)>,
 }
 
 impl<const D: usize> Unknowns<D> {
     /// Numbers the unknowns. Nodes whose volume is below `drop_below` of their cells' volume are
     /// dropped: their displacement is zero. (Tied nodes carry no volume any more.) Behind the nodes of the
-    /// grid stand those of rigid bodies, each with its free components, and those of pore pressure: the nodes of the grid that
-    /// `has_pressure` names, if it names any.
+    /// grid stand those of rigid bodies, each with its free components, and those of scalars: the nodes of the grid that
+    /// `has_scalar` names, if it names any.
     ///
     /// # Errors
     /// [`AssemblyError::NoUnknowns`].
@@ -46,7 +46,7 @@ impl<const D: usize> Unknowns<D> {
         constraints: &Constraints<D>,
         drop_below: f64,
         of_bodies: &[[bool; D]],
-        has_pressure: &[bool],
+        has_scalar: &[bool],
     ) -> Result<Self, AssemblyError> {
         let nodes = grid.node_count();
         let all = nodes + of_bodies.len();
@@ -54,7 +54,7 @@ impl<const D: usize> Unknowns<D> {
         let mut rank = vec![[NONE; D]; all];
         let mut active = vec![false; nodes];
         let mut blocks_before = Vec::with_capacity(nodes + 1);
-        let mut pressures = Vec::new();
+        let mut scalars = Vec::new();
         let mut blocks = 0;
         let mut len: u32 = 0;
         for node in 0..nodes {
@@ -73,8 +73,8 @@ impl<const D: usize> Unknowns<D> {
                     own += 1;
                 }
             }
-            if has_pressure.get(node) == Some(&true) {
-                pressures.push((len + own, node as u32));
+            if has_scalar.get(node) == Some(&true) {
+                scalars.push((len + own, node as u32));
                 own += 1;
             }
             len += own;
@@ -102,7 +102,7 @@ impl<const D: usize> Unknowns<D> {
             active,
             of_grid,
             len: len as usize,
-            pressures,
+            scalars,
         })
     }
 
@@ -126,42 +126,42 @@ impl<const D: usize> Unknowns<D> {
         self.len == 0
     }
 
-    /// The first of the nodes that stand for pore pressure, which is the first component of each.
-    pub fn first_pressure(&self) -> usize {
+    /// The first of the nodes that stand for a scalar, which is the first component of each.
+    pub fn first_scalar(&self) -> usize {
         self.rank.len()
     }
 
-    /// The nodes of the grid with an unknown pore pressure, ascending, in the order of the nodes that stand for it.
-    pub fn pressure_nodes(&self) -> impl Iterator<Item = usize> + '_ {
-        self.pressures.iter().map(|&(_, node)| node as usize)
+    /// The nodes of the grid with an unknown scalar, ascending, in the order of the nodes that stand for it.
+    pub fn scalar_nodes(&self) -> impl Iterator<Item = usize> + '_ {
+        self.scalars.iter().map(|&(_, node)| node as usize)
     }
 
-    /// The pore pressures of some nodes of the grid, by their number.
-    pub(crate) fn pressures_of(&self, nodes: &Range<usize>) -> Range<usize> {
+    /// The scalars of some nodes of the grid, by their number.
+    pub(crate) fn scalars_of(&self, nodes: &Range<usize>) -> Range<usize> {
         let before =
-            |end: usize| (self.pressures).partition_point(|&(_, node)| (node as usize) < end);
+            |end: usize| (self.scalars).partition_point(|&(_, node)| (node as usize) < end);
         before(nodes.start)..before(nodes.end)
     }
 
-    /// Number of unknowns that are pore pressures.
-    pub(crate) fn pressure_count(&self) -> usize {
-        self.pressures.len()
+    /// Number of unknowns that are scalars.
+    pub(crate) fn scalar_count(&self) -> usize {
+        self.scalars.len()
     }
 
     /// The unknown of a node's component, if it is free.
     #[inline]
     pub fn index(&self, node: usize, axis: usize) -> Option<usize> {
         let Some(rank) = self.rank.get(node) else {
-            let (unknown, _) = self.pressures[node - self.rank.len()];
+            let (unknown, _) = self.scalars[node - self.rank.len()];
             return (axis == 0).then_some(unknown as usize);
         };
         let rank = rank[axis];
         (rank != NONE).then(|| (self.first[node] + rank) as usize)
     }
 
-    /// The node and the axis of an unknown, if there is such an unknown; of a pore pressure the node that stands for it.
+    /// The node and the axis of an unknown, if there is such an unknown; of a scalar the node that stands for it.
     pub fn place(&self, unknown: usize) -> Option<(usize, usize)> {
-        let among = (self.pressures).binary_search_by_key(&unknown, |&(own, _)| own as usize);
+        let among = (self.scalars).binary_search_by_key(&unknown, |&(own, _)| own as usize);
         if let Ok(place) = among {
             return Some((self.rank.len() + place, 0));
         }
@@ -178,11 +178,11 @@ impl<const D: usize> Unknowns<D> {
         self.active[node]
     }
 
-    /// The node of the grid in whose block of the matrix the unknowns of a node are: itself, but for pore pressure.
+    /// The node of the grid in whose block of the matrix the unknowns of a node are: itself, but for a scalar.
     #[inline]
     pub(crate) fn block_node(&self, node: usize) -> usize {
         match node.checked_sub(self.rank.len()) {
-            Some(place) => self.pressures[place].1 as usize,
+            Some(place) => self.scalars[place].1 as usize,
             None => node,
         }
     }
@@ -213,7 +213,7 @@ impl<const D: usize> Unknowns<D> {
         free
     }
 
-    /// Number of unknowns of a node of the grid, pore pressure included.
+    /// Number of unknowns of a node of the grid, a scalar included.
     pub(crate) fn count(&self, node: usize) -> u32 {
         self.first[node + 1] - self.first[node]
     }

@@ -182,8 +182,8 @@ fn pressures_are_held() {
         let still = vec![[0.0; 2]; system.node_count()];
         let (_, matrix) = system.linearise(&still, TangentKind::Elastic).unwrap();
         let unknowns = system.unknowns();
-        let pressures: Vec<usize> = (0..unknowns.pressure_nodes().count())
-            .map(|k| unknowns.index(unknowns.first_pressure() + k, 0).unwrap())
+        let pressures: Vec<usize> = (0..unknowns.scalar_nodes().count())
+            .map(|k| unknowns.index(unknowns.first_scalar() + k, 0).unwrap())
             .collect();
         let displacements: Vec<usize> = (0..unknowns.len())
             .filter(|unknown| pressures.binary_search(unknown).is_err())
@@ -204,7 +204,7 @@ fn pressures_are_held() {
         // Pressure over its unknown: the constrained modulus, here that of Young, over a cell.
         let scale = young * cells as f64;
         let mut mass = DMatrix::<f64>::zeros(pressures.len(), pressures.len());
-        let places: Vec<usize> = unknowns.pressure_nodes().collect();
+        let places: Vec<usize> = unknowns.scalar_nodes().collect();
         for particle in 0..body.len() {
             let own = stencils.of(particle);
             for a in own {

@@ -7,6 +7,7 @@ mod energy;
 mod errors;
 mod given_geometry;
 mod invariants;
+mod nonlocal;
 mod patch;
 mod pore_water;
 mod residual;

@@ -132,8 +132,9 @@ impl Systems {
 
 /// Whether all tangents of a case are symmetric.
 fn is_symmetric<const D: usize>(case: &Case<D>) -> bool {
+    let cell = case.grid.smallest_cell()[D - 1];
     (case.materials.iter())
-        .all(|material| material.law().is_ok_and(|law| law.has_symmetric_tangent()))
+        .all(|material| (material.law_on(cell)).is_ok_and(|law| law.has_symmetric_tangent()))
 }
 
 /// A method by its name.

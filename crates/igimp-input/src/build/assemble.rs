@@ -165,6 +165,7 @@ pub(super) fn assemble<const D: usize>(
     let case = case.refined(**grid.refine.as_ref().ok()?);
     study::check(tree, &meshes, &case, problems);
     materials::check_on_cells(&case, problems);
+    materials::check_lengths(&case, problems);
     materials::check_rates(&case, problems);
     Some(case)
 }

@@ -60,13 +60,15 @@ impl Curve {
         self.initial.max(self.residual)
     }
 
-    /// The value at a plastic strain, and its derivative by that.
+    /// The value at a plastic strain, and its derivative by that; below zero, where the over-nonlocal measure may be, the curve goes on
+    /// along the line that it begins with.
     pub(super) fn at(&self, kappa: f64) -> [f64; 2] {
         let way = self.residual - self.initial;
         let share = kappa / self.strain;
         match self.decay {
             Decay::Linear if share < 1.0 => [self.initial + way * share, way / self.strain],
             Decay::Linear => [self.residual, 0.0],
+            Decay::Exponential if share < 0.0 => [self.initial + way * share, way / self.strain],
             Decay::Exponential => {
                 let left = (-share).exp();
                 [self.residual - way * left, way * left / self.strain]

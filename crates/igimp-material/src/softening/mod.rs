@@ -6,17 +6,18 @@
 
 mod curve;
 mod held;
+mod nonlocal;
 pub(crate) mod rates;
 mod undrained;
 
 use std::sync::Arc;
 
 use crate::error::{positive, required};
-use crate::law::trial_stress;
 use crate::spectral::principal::largest;
 use crate::{
     ConstitutiveModel, Dissipation, Elasticity, History, InternalVariable, MaterialError,
-    MohrCoulomb, Principal, ReturnMap, Scaling, ShearStrength, Tensor, Tresca, VonMises,
+    MohrCoulomb, Nonlocal, NonlocalRates, Principal, ReturnMap, Scaling, ShearStrength, Tensor,
+    Tresca, VonMises,
 };
 
 pub use curve::{Curve, Decay};
@@ -24,19 +25,31 @@ use held::{Answer, Held, Kind};
 pub use undrained::{Directions, RateEffect};
 use undrained::{Moment, NO_DIRECTION, angle_of_compression};
 
-/// The internal variables: the plastic strain κ that strength goes with, and the direction of stress.
-const VARIABLES: [InternalVariable; 2] = [
-    InternalVariable {
-        name: "softening strain",
-        unit: "-",
-        scaling: Scaling::Strain,
-    },
-    InternalVariable {
-        name: "angle of compression",
-        unit: "rad",
-        scaling: Scaling::Constant,
-    },
-];
+/// The plastic strain κ that strength goes with.
+const PLASTIC: InternalVariable = InternalVariable {
+    name: "softening strain",
+    unit: "-",
+    scaling: Scaling::Strain,
+};
+
+/// The direction of stress.
+const ANGLE: InternalVariable = InternalVariable {
+    name: "angle of compression",
+    unit: "rad",
+    scaling: Scaling::Constant,
+};
+
+/// The plastic strain of the ground around.
+const AROUND: InternalVariable = InternalVariable {
+    name: "nonlocal strain",
+    unit: "-",
+    scaling: Scaling::Strain,
+};
+
+/// The internal variables of a law whose strength is that of a point, and of one that sees the ground around.
+const VARIABLES: [InternalVariable; 2] = [PLASTIC, ANGLE];
+const OF_GROUND_AROUND: [InternalVariable; 2] = [PLASTIC, AROUND];
+const OF_ALL: [InternalVariable; 3] = [PLASTIC, ANGLE, AROUND];
 
 /// Least share of the elastic stiffness of the point that is left beside softening \[-\]: at zero its stress snaps back.
 const LEAST_MARGIN: f64 = 0.01;
@@ -82,6 +95,8 @@ pub struct Softening {
     directions: Option<Directions>,
     /// Strength by the rate of strain.
     rate: Option<RateEffect>,
+    /// How strength sees plastic strain beside its own point.
+    nonlocal: Option<Nonlocal>,
 }
 
 impl Softening {
@@ -212,6 +227,19 @@ impl Softening {
         }
     }
 
+    /// κ at which a law of a point would have the strength that is left.
+    fn measure(&self, kappa: f64, history: &History) -> f64 {
+        match (&self.nonlocal, self.place_of_nonlocal()) {
+            (Some(own), Some(place)) => own.measure(kappa, history.internal[place]),
+            _ => kappa,
+        }
+    }
+
+    /// How much of its own plastic strain the strength of a point goes with \[-\]: below zero it hardens where the ground softens.
+    fn own_share(&self) -> f64 {
+        self.nonlocal.map_or(1.0, |own| own.own_share())
+    }
+
     /// κ of a history.
     fn plastic_strain(&self, history: &History) -> f64 {
         if self.softens() {
@@ -241,6 +269,7 @@ impl Softening {
             dilatancy,
             directions: None,
             rate: None,
+            nonlocal: None,
         })
     }
 
@@ -254,7 +283,7 @@ impl Softening {
         let held = self.kind.held(self.elasticity, 0.0, &moment)?;
         for path in [[1.0, 0.0, -1.0], [1.0, 1.0, -2.0], [2.0, -1.0, -1.0]] {
             let answer = self.at_first_yield(&held, path)?;
-            if answer.by_kappa < 1.0 - LEAST_MARGIN {
+            if self.own_share() * answer.by_kappa < 1.0 - LEAST_MARGIN {
                 continue;
             }
             return Err(MaterialError::InvalidParameter {
@@ -305,8 +334,8 @@ impl Softening {
     /// The law at the strength that is left, at the reference rate.
     fn held(&self, history: &History) -> Result<Held, MaterialError> {
         let moment = self.moment(history, 0.0);
-        let kappa = self.plastic_strain(history);
-        self.kind.held(self.elasticity, kappa, &moment)
+        let measure = self.measure(self.plastic_strain(history), history);
+        self.kind.held(self.elasticity, measure, &moment)
     }
 
     /// The plastic strain at the end of a step, with the answer there: the zero of
@@ -334,7 +363,7 @@ impl Softening {
         let mut is_last = false;
         for correction in 1..=MOST_CORRECTIONS {
             let gap = begin + answer.strain - kappa;
-            let margin = 1.0 - answer.by_kappa;
+            let margin = self.margin(&answer);
             let mut next = kappa + gap / margin.max(LEAST_MARGIN);
             if correction == 1 && next > threshold {
                 // From there, where strength begins to grow, Newton's method comes nearer and never past.
@@ -366,7 +395,8 @@ impl Softening {
             }
             kappa = next;
             moment.step = kappa - begin;
-            let held = (self.kind).held(self.elasticity, origin + kappa, &moment)?;
+            let measure = self.measure(origin + kappa, history);
+            let held = (self.kind).held(self.elasticity, measure, &moment)?;
             answer = held.answer(&self.elasticity, trial, history)?;
         }
         Err(MaterialError::NotConverged { law: self.name() })
@@ -376,6 +406,7 @@ impl Softening {
     fn with(&self, kind: Kind) -> Result<Self, MaterialError> {
         let mut law = Self::build(self.elasticity, kind, self.dilatancy)?;
         law.rate = self.rate;
+        law.nonlocal = self.nonlocal;
         match self.directions {
             Some(own) => law.with_directions(own),
             None => Ok(law),
@@ -408,6 +439,12 @@ impl ConstitutiveModel for Softening {
     }
 
     fn internal_variables(&self) -> &'static [InternalVariable] {
+        if self.nonlocal.is_some() {
+            return match self.directions {
+                Some(_) => &OF_ALL,
+                None => &OF_GROUND_AROUND,
+            };
+        }
         let first = usize::from(!self.softens());
         let last = if self.directions.is_some() { 2 } else { 1 };
         &VARIABLES[first..last]
@@ -456,29 +493,25 @@ impl ConstitutiveModel for Softening {
         history: &History,
         duration: f64,
     ) -> Result<ReturnMap, MaterialError> {
-        trial_stress(&self.elasticity, eps_e_trial)?;
-        let moment = self.moment(history, duration);
-        let kappa = self.plastic_strain(history);
-        let held = self.kind.held(self.elasticity, kappa, &moment)?;
-        if self.is_perfect() {
-            return held.return_map(eps_e_trial, history);
+        Ok(self.returned(eps_e_trial, history, duration)?.0)
+    }
+
+    fn nonlocal(&self) -> Option<Nonlocal> {
+        self.nonlocal
+    }
+
+    /// With $`\hat\kappa = m\bar\kappa + (1 - m)\kappa`$ the strength of eq. 105 (theory, eq. 110c).
+    fn return_map_nonlocal(
+        &self,
+        eps_e_trial: &Principal,
+        history: &History,
+        rise: f64,
+    ) -> Result<(ReturnMap, NonlocalRates), MaterialError> {
+        let mut risen = *history;
+        if let Some(place) = self.place_of_nonlocal() {
+            risen.internal[place] += rise;
         }
-        let first = held.answer(&self.elasticity, eps_e_trial, history)?;
-        if !first.map.regime.is_plastic() {
-            return Ok(first.map);
-        }
-        let (kappa, answer) = self.settled(eps_e_trial, (history, moment), first)?;
-        let mut map = answer.map;
-        let margin = 1.0 - answer.by_kappa;
-        for (row, rate) in map.tangent.iter_mut().zip(answer.stress_rate) {
-            for (entry, along) in row.iter_mut().zip(answer.by_trial) {
-                *entry += rate * along / margin;
-            }
-        }
-        if self.softens() {
-            map.history.internal[0] = kappa;
-        }
-        Ok(map)
+        self.returned(eps_e_trial, &risen, 0.0)
     }
 
     /// That of the law at the strength that is left.

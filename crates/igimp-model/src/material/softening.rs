@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use igimp_assembly::SharedLaw;
 use igimp_material::{
-    Curve, Decay, Directions, Elasticity, FrictionalCurves, MaterialError, RateEffect, Softening,
+    Curve, Decay, Directions, Elasticity, FrictionalCurves, MaterialError, Nonlocal, RateEffect,
+    Softening,
 };
 
 use super::strength::Strength;
@@ -35,6 +36,8 @@ pub struct StrengthCurves {
     /// Width of the bands of shear in which the strains of the curves were measured \[m\]; none: strains are those of the curves
     /// on any cells.
     pub band_width: Option<f64>,
+    /// How strength sees the plastic strain of the ground around; none: it goes with that of the point.
+    pub nonlocal: Option<Nonlocal>,
     /// How an undrained strength goes with the direction of stress.
     pub directions: Option<Directions>,
     /// How an undrained strength goes with the rate of strain.
@@ -56,7 +59,8 @@ impl StrengthCurves {
         }
     }
 
-    /// The law of a strength along these curves, on cells of a size \[m\], with the least cohesion of soil with friction \[Pa\].
+    /// The law of a strength along these curves, on cells of a size \[m\], with the least cohesion of soil with friction \[Pa\]. On none it
+    /// is that of soil that is strained evenly, where the ground around has the plastic strain of the point.
     ///
     /// # Errors
     /// [`MaterialError::InvalidParameter`], also of a strength that has no curves.
@@ -76,6 +80,10 @@ impl StrengthCurves {
             })
         };
         let undrained = |cu: f64| along(cu, self.cohesive, &|share| share * cu);
+        let seeing = |law: Softening| match self.nonlocal {
+            Some(own) if cell > 0.0 => law.with_nonlocal(own),
+            _ => Ok(law),
+        };
         let with_effects = |mut law: Softening| {
             if let Some(own) = self.directions {
                 law = law.with_directions(own)?;
@@ -83,7 +91,7 @@ impl StrengthCurves {
             if let Some(own) = self.rate {
                 law = law.with_rate(own)?;
             }
-            Ok::<_, MaterialError>(law)
+            seeing(law)
         };
         Ok(match *strength {
             Strength::VonMises { undrained_strength } => {
@@ -108,7 +116,8 @@ impl StrengthCurves {
                     friction_angle: along(friction_angle, self.friction, &|angle| angle),
                     dilation_angle: along(dilation_angle, self.dilation, &|angle| angle),
                 };
-                Arc::new(Softening::mohr_coulomb(elasticity, curves, tension_cutoff)?)
+                let law = Softening::mohr_coulomb(elasticity, curves, tension_cutoff)?;
+                Arc::new(seeing(law)?)
             }
             _ => strength.law(elasticity, least_cohesion)?,
         })
@@ -133,6 +142,10 @@ impl StrengthCurves {
         all.extend((self.friction).map(|own| words("φ", own, angle(own.residual))));
         all.extend((self.dilation).map(|own| words("ψ", own, angle(own.residual))));
         all.extend((self.band_width).map(|width| format!("in bands of {} m", number(width))));
+        all.extend(self.nonlocal.map(|own| {
+            let (length, share) = (number(own.length), number(own.over_nonlocal));
+            format!("spread over a length of {length} m, m = {share}")
+        }));
         all.extend(self.directions.map(|own| {
             let [shear, passive] = [own.simple_shear, own.passive].map(share);
             format!("c_u of active loading, {shear} of it in simple shear, {passive} passive")
@@ -190,6 +203,22 @@ mod tests {
                 assert!((one[a] - other[a]).abs() < 1e-9 * 50e3, "{cell}");
             }
         }
+        let nonlocal = Nonlocal {
+            length: 0.2,
+            over_nonlocal: 2.0,
+        };
+        let seeing = StrengthCurves {
+            band_width: None,
+            nonlocal: Some(nonlocal),
+            ..curves
+        };
+        let on = |cell| seeing.law(&strength, elasticity, (0.0, cell)).unwrap();
+        assert_eq!(
+            (on(0.6).nonlocal(), on(0.0).nonlocal()),
+            (Some(nonlocal), None)
+        );
+        let words = seeing.in_words(|number| number.to_string());
+        assert_eq!(words[1], "spread over a length of 0.2 m, m = 2");
         let frictional = Strength::MohrCoulomb {
             cohesion: 5e3,
             friction_angle: 0.5,

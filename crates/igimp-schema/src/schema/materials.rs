@@ -100,6 +100,10 @@ table! {
     cu: table(STRENGTH_CURVE: StrengthCurve), required "{ residual = 0.4, strain = 0.1 }", "undrained shear strength";
     band_width: quantity(Length, Positive), optional "strains are as stated on any cells",
         "width of the band of shear in which the strain was measured: strains of the law are times this over the size of a cell";
+    length: quantity(Length, Positive), optional "strength goes with the plastic strain of the point",
+        "length over which plastic strain is spread by an implicit gradient: bands of shear have a width of their own on cells of half of it and less";
+    over_nonlocal: number(Positive), optional "2 with `length`",
+        "share m of the plastic strain of the ground around, above 1; that of the point has 1 - m";
 }
 
 table! {
@@ -110,6 +114,10 @@ table! {
         "dilation angle, nowhere above the friction angle that is left; a residual of zero ends dilation";
     band_width: quantity(Length, Positive), optional "strains are as stated on any cells",
         "width of the band of shear in which the strains were measured: strains of the law are times this over the size of a cell";
+    length: quantity(Length, Positive), optional "strength goes with the plastic strain of the point",
+        "length over which plastic strain is spread by an implicit gradient: bands of shear have a width of their own on cells of half of it and less";
+    over_nonlocal: number(Positive), optional "2 with `length`",
+        "share m of the plastic strain of the ground around, above 1; that of the point has 1 - m";
 }
 
 table! {

@@ -13,6 +13,7 @@ mod march;
 mod march_properties;
 mod newton;
 mod newton_failures;
+mod nonlocal;
 mod one_dimension;
 mod reinforcement;
 mod softening;

@@ -59,11 +59,11 @@ impl<const D: usize> Consolidation<D> {
         pores: &Pores,
     ) -> Result<Self, AssemblyError> {
         let flow = conditions.flow.as_ref();
-        let Some(flow) = flow.filter(|_| unknowns.pressure_count() > 0) else {
+        let Some(flow) = flow.filter(|_| unknowns.scalar_count() > 0) else {
             return Ok(Self::default());
         };
         let grid = &conditions.grid;
-        let nodes: Vec<usize> = unknowns.pressure_nodes().collect();
+        let nodes: Vec<usize> = unknowns.scalar_nodes().collect();
         let mut numbers = vec![NONE; grid.node_count()];
         for (number, &node) in nodes.iter().enumerate() {
             numbers[node] = number as u32;
@@ -78,7 +78,7 @@ impl<const D: usize> Consolidation<D> {
             numbers,
         };
         let mut own = Self {
-            first: unknowns.first_pressure(),
+            first: unknowns.first_scalar(),
             place_of: vec![NONE; particles.len()],
             shares: vec![Share::default(); nodes.len()],
             nodes,
@@ -291,7 +291,7 @@ fn mean_of(means: &[(usize, f64)], node: usize) -> f64 {
 }
 
 /// The shortest side of a cell \[length\].
-fn least_side<const D: usize>(grid: &Grid<D>) -> f64 {
+pub(crate) fn least_side<const D: usize>(grid: &Grid<D>) -> f64 {
     let steps = |axis: &igimp_shape::Axis| {
         let steps = axis.nodes().windows(2).map(|ends| ends[1] - ends[0]);
         steps.fold(f64::INFINITY, f64::min)

@@ -18,6 +18,7 @@ use crate::small::{determinant, identity, inverse, transpose_apply};
 use crate::step::stencils::Stencils;
 use after::Share;
 pub use after::{PoresAfter, WaterMoved};
+pub(crate) use gathering::least_side;
 
 /// Marks a node of the grid without a pressure, and a particle that water does not flow through.
 const NONE: u32 = u32::MAX;
@@ -111,15 +112,15 @@ pub(crate) fn pressure_nodes<const D: usize>(
     let Some(flow) = &conditions.flow else {
         return Vec::new();
     };
-    let mut has_pressure = vec![false; conditions.grid.node_count()];
+    let mut has_scalar = vec![false; conditions.grid.node_count()];
     for particle in 0..particles.len() {
         if flow.permeable(particles.law[particle]).is_some() {
             for support in stencils.of(particle) {
-                has_pressure[support.node] = true;
+                has_scalar[support.node] = true;
             }
         }
     }
-    has_pressure
+    has_scalar
 }
 
 /// What a particle does to the water in it at some nodal values: the forces of its pressures, and the derivative.

@@ -1,6 +1,7 @@
 //! From the tangent of one particle into the matrix: its unknown rows as runs that lie one after the
 //! other in every column, and its columns one by one.
 
+pub(crate) mod scalar;
 pub(crate) mod water;
 
 use igimp_linear::Pattern;
@@ -40,7 +41,7 @@ pub(crate) struct Piece {
 }
 
 impl Rows {
-    /// Lists the unknown rows of some nodes, which have D rows each, and one more for their pressure if `with_pressure`.
+    /// Lists the unknown rows of some nodes, which have D rows each, and one more for their scalar if `with_scalar`.
     #[allow(
         clippy::inline_always,
         reason = "a constant where it is called, which it has to reach the loop"
@@ -50,9 +51,9 @@ impl Rows {
         &mut self,
         nodes: impl Iterator<Item = usize>,
         table: &BlockTable<D>,
-        with_pressure: bool,
+        with_scalar: bool,
     ) {
-        let of_node = D + usize::from(with_pressure);
+        let of_node = D + usize::from(with_scalar);
         self.runs.clear();
         // The row and the unknown that would make the last run longer.
         let mut next = (u32::MAX, u32::MAX);
@@ -81,15 +82,15 @@ impl Rows {
                 next = (here.0 + len, here.1 + len);
             };
             let first = (i * of_node) as u32;
-            let has_pressure = with_pressure && node.has_pressure;
-            if usize::from(node.len) == D && has_pressure == with_pressure {
+            let has_scalar = with_scalar && node.has_scalar;
+            if usize::from(node.len) == D && has_scalar == with_scalar {
                 add(first, 0, of_node as u32);
                 continue;
             }
             for (rank, axis) in node.components().enumerate() {
                 add(first + axis as u32, rank as u32, 1);
             }
-            if has_pressure {
+            if has_scalar {
                 add(first + D as u32, u32::from(node.len), 1);
             }
         }

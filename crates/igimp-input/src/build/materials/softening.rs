@@ -1,6 +1,6 @@
 //! Strength that goes with plastic strain, direction and rate: its curves from what a file states.
 
-use igimp_material::{Decay, Directions, RateEffect};
+use igimp_material::{Decay, Directions, Nonlocal, RateEffect};
 use igimp_model::{Flow, Softens, Strength, StrengthCurves};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::materials::{
@@ -48,6 +48,15 @@ fn undrained(own: &Undrained, problems: &mut Problems) -> Result<Option<Strength
         simple_shear: *own.simple_shear,
         passive: *own.passive,
     });
+    if let (Some(own), Some(_)) = (rate, curves.nonlocal) {
+        problems
+            .error(
+                own.place,
+                "`rate` does not go with the `length` of `softening`",
+            )
+            .help("scale by the `band_width` in place of a `length`, or remove `rate`");
+        return Err(Wrong);
+    }
     let rate = rate.as_ref().map(|own| RateEffect {
         per_log_cycle: *own.per_log_cycle,
         reference: *own.reference,
@@ -105,9 +114,12 @@ fn of_undrained(
             .help("remoulded clay keeps 1/sensitivity, like residual = 0.1");
         return Err(Wrong);
     }
+    let softens = *own.cu.residual < 1.0;
+    let lengths = [&own.band_width, &own.length, &own.over_nonlocal];
     Ok(StrengthCurves {
         cohesive: Some(of_strength(&own.cu)),
         band_width: own.band_width.as_ref().map(|own| **own),
+        nonlocal: nonlocal(lengths, softens, problems)?,
         ..StrengthCurves::default()
     })
 }
@@ -177,11 +189,62 @@ fn frictional(
             .help("remove it, or give the soil `friction`");
         return Err(Wrong);
     }
+    let cohesion_softens = (own.cohesion.as_ref()).is_none_or(|own| *own.residual <= 1.0);
+    let friction_softens =
+        (own.friction.as_ref()).is_none_or(|own| *own.residual <= friction_angle);
+    let lengths = [&own.band_width, &own.length, &own.over_nonlocal];
+    let nonlocal = nonlocal(lengths, cohesion_softens && friction_softens, problems)?;
     Ok(StrengthCurves {
+        nonlocal,
         cohesive: own.cohesion.as_ref().map(of_strength),
         friction: own.friction.as_ref().map(of_angle),
         dilation: own.dilation.as_ref().map(of_angle),
         band_width: own.band_width.as_ref().map(|own| **own),
         ..StrengthCurves::default()
     })
+}
+
+/// Share of the nonlocal strain where a file states none \[-\].
+const OVER_NONLOCAL: f64 = 2.0;
+
+/// How strength that softens or not sees the ground around, by the keys `band_width`, `length` and `over_nonlocal`.
+fn nonlocal(
+    [width, length, share]: [&Option<At<f64>>; 3],
+    softens: bool,
+    problems: &mut Problems,
+) -> Result<Option<Nonlocal>, Wrong> {
+    let (place, message, help) = match (length, width, share) {
+        (None, _, None) => return Ok(None),
+        (None, _, Some(share)) => (
+            share.place,
+            "`over_nonlocal` is stated without a `length`".to_owned(),
+            "length = \"0.2 m\", over which plastic strain is spread, or remove it",
+        ),
+        (Some(length), Some(_), _) => (
+            length.place,
+            "`length` and `band_width` do not go together".to_owned(),
+            "keep `band_width` to scale strains to the cells, or `length` to give bands a width on fine cells",
+        ),
+        (Some(_), None, Some(share)) if **share <= 1.0 => (
+            share.place,
+            format!(
+                "with over_nonlocal = {} slip gathers in one row of cells",
+                number(**share)
+            ),
+            "more than 1: bands are 4.7 times the length wide with 2, and 3.1 times with 1.5",
+        ),
+        (Some(length), None, _) if !softens => (
+            length.place,
+            "strength that hardens needs no `length`".to_owned(),
+            "remove it: bands of shear form where strength falls",
+        ),
+        (Some(length), None, share) => {
+            return Ok(Some(Nonlocal {
+                length: **length,
+                over_nonlocal: share.as_ref().map_or(OVER_NONLOCAL, |own| **own),
+            }));
+        }
+    };
+    problems.error(place, message).help(help);
+    Err(Wrong)
 }

@@ -1,0 +1,102 @@
+//! Strength by the over-nonlocal measure of plastic strain: what a point is to the ground around it (theory, eqs. 110a to 110c).
+
+use super::Softening;
+use super::held::Answer;
+use crate::error::{positive, required};
+use crate::law::trial_stress;
+use crate::{History, MaterialError, Nonlocal, NonlocalRates, Principal, ReturnMap};
+
+impl Nonlocal {
+    fn check(&self) -> Result<(), MaterialError> {
+        positive("length", self.length)?;
+        let is_share = self.over_nonlocal >= 1.0 && self.over_nonlocal.is_finite();
+        required(
+            "over_nonlocal",
+            self.over_nonlocal,
+            is_share,
+            "1 or more, and finite",
+        )
+    }
+
+    /// The measure $`m \bar\kappa + (1 - m) \kappa`$ \[-\] of a plastic strain and that of the ground around.
+    pub(super) fn measure(&self, kappa: f64, around: f64) -> f64 {
+        self.over_nonlocal * around + self.own_share() * kappa
+    }
+
+    /// The share 1 − m of a point's own plastic strain \[-\].
+    pub(super) fn own_share(&self) -> f64 {
+        1.0 - self.over_nonlocal
+    }
+}
+
+impl Softening {
+    /// The law with a strength that goes with the over-nonlocal measure of plastic strain in place of that of the point; the
+    /// nonlocal strain is an internal variable, and what it rises by in a step is given ([`return_map_nonlocal`]).
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`] of a length that is not positive, a share below 1, strength that stays or goes with a
+    /// rate, and strength that hardens so steeply that the stress of a point snaps back.
+    ///
+    /// [`return_map_nonlocal`]: crate::ConstitutiveModel::return_map_nonlocal
+    pub fn with_nonlocal(mut self, nonlocal: Nonlocal) -> Result<Self, MaterialError> {
+        nonlocal.check()?;
+        let goes = self.softens() && self.rate.is_none();
+        let requirement = "absent: a strength that goes with plastic strain, and not with its rate, sees the ground around";
+        required("length", nonlocal.length, goes, requirement)?;
+        self.nonlocal = Some(nonlocal);
+        self.without_snap_back()
+    }
+
+    /// Where the nonlocal strain stands among the internal variables, if the law has it.
+    pub(super) fn place_of_nonlocal(&self) -> Option<usize> {
+        (self.nonlocal).map(|_| 1 + usize::from(self.directions.is_some()))
+    }
+
+    /// What is left of elastic stiffness beside softening by a point's own plastic strain \[-\]; above 1 it hardens.
+    pub(super) fn margin(&self, answer: &Answer) -> f64 {
+        1.0 - self.own_share() * answer.by_kappa
+    }
+
+    /// The return in a step of a duration \[time\], with what plastic and nonlocal strain are to each other. The tangent is that at
+    /// held strength, and what the change of strength adds, $`\partial\tau/\partial\kappa \otimes \mathrm{d}\kappa/\mathrm{d}\varepsilon`$
+    /// (theory, eqs. 108 and 110c).
+    pub(super) fn returned(
+        &self,
+        eps_e_trial: &Principal,
+        history: &History,
+        duration: f64,
+    ) -> Result<(ReturnMap, NonlocalRates), MaterialError> {
+        trial_stress(&self.elasticity, eps_e_trial)?;
+        let moment = self.moment(history, duration);
+        let before = self.plastic_strain(history);
+        let measure = self.measure(before, history);
+        let held = self.kind.held(self.elasticity, measure, &moment)?;
+        if self.is_perfect() {
+            let map = held.return_map(eps_e_trial, history)?;
+            return Ok((map, NonlocalRates::default()));
+        }
+        let first = held.answer(&self.elasticity, eps_e_trial, history)?;
+        if !first.map.regime.is_plastic() {
+            return Ok((first.map, NonlocalRates::default()));
+        }
+        let (kappa, answer) = self.settled(eps_e_trial, (history, moment), first)?;
+        let (margin, own) = (self.margin(&answer), self.own_share());
+        let mut map = answer.map;
+        for (row, rate) in map.tangent.iter_mut().zip(answer.stress_rate) {
+            for (entry, along) in row.iter_mut().zip(answer.by_trial) {
+                *entry += own * rate * along / margin;
+            }
+        }
+        if self.softens() {
+            map.history.internal[0] = kappa;
+        }
+        let around = self.nonlocal.map_or(0.0, |own| own.over_nonlocal);
+        let rates = NonlocalRates {
+            plastic: answer.strain,
+            plastic_by_strain: answer.by_trial.map(|along| along / margin),
+            plastic_by_nonlocal: around * answer.by_kappa / margin,
+            stress_by_nonlocal: answer.stress_rate.map(|rate| around * rate / margin),
+        };
+        Ok((map, rates))
+    }
+}
