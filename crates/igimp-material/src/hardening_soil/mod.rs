@@ -35,13 +35,13 @@ const VARIABLES: [InternalVariable; 3] = [
         scaling: Scaling::Stress,
     },
     InternalVariable {
-        name: "stress of the stiffness",
-        unit: "Pa",
-        scaling: Scaling::Stress,
+        name: "stiffness ratio",
+        unit: "-",
+        scaling: Scaling::Constant,
     },
 ];
 
-/// Least stress that stiffness and preconsolidation are those of, over the reference \[-\].
+/// Least stress that stiffness and preconsolidation are those of, over that at the reference \[-\].
 const FLOOR: f64 = 0.01;
 
 /// Hardening Soil in Kirchhoff stress and Hencky strain.
@@ -116,15 +116,15 @@ impl HardeningSoil {
         [self.cap.steepness, self.cap.hardening]
     }
 
-    /// The stress that stiffness goes by, no less than its floor \[stress\].
-    fn stress_of_stiffness(&self, stress: f64) -> f64 {
-        stress.max(FLOOR * self.hyperbola.reference)
+    /// Stiffness under s over that at the reference, no less than that of the floor \[-\].
+    fn stiffness_ratio(&self, s: f64) -> f64 {
+        let floor = FLOOR * self.hyperbola.reference;
+        self.hyperbola.stiffness_ratio(s.max(floor))
     }
 
     /// The elasticity of a step \[stress\].
     fn moduli(&self, history: &History) -> Moduli {
-        let s = self.stress_of_stiffness(history.internal[2]);
-        let ratio = self.hyperbola.stiffness_ratio(s);
+        let ratio = history.internal[2].max(FLOOR);
         Moduli {
             bulk: ratio * self.reference.bulk(),
             shear: ratio * self.reference.shear(),
@@ -157,7 +157,7 @@ impl HardeningSoil {
         after.internal[0] += sheared;
         after.internal[1] = own.preconsolidation;
         let s = self.hyperbola.confinement(own.stress[2]);
-        after.internal[2] = self.stress_of_stiffness(s);
+        after.internal[2] = self.stiffness_ratio(s);
         after
     }
 }
@@ -293,7 +293,7 @@ impl ConstitutiveModel for HardeningSoil {
         let mut history = History::default();
         history.internal[0] = self.hyperbola.strain(s, share).value;
         history.internal[1] = self.parameters.overconsolidation * tip.max(floor);
-        history.internal[2] = self.stress_of_stiffness(s);
+        history.internal[2] = self.stiffness_ratio(s);
         history
     }
 
