@@ -206,6 +206,38 @@ impl Path<'_> {
         let (up, low) = (by(0), by(1));
         [[up[0], low[0]], [up[1], low[1]]]
     }
+
+    /// The derivative of the stress by the trial strain \[stress\].
+    fn tangent(&self, moduli: &Moduli, share: f64, own: &Along, planes: Planes) -> [[f64; 3]; 3] {
+        let ([multiplier, _], [y, y_by]) = (own.multiplier, own.dilatancy);
+        let [g_u, g_w] = self.paces(y);
+        let elastic = moduli.tangent();
+        let mean = |a: usize, b: usize| -> Principal {
+            std::array::from_fn(|c| 0.5 * (elastic[a][c] + elastic[b][c]))
+        };
+        let rows: [Principal; 2] = match planes {
+            Planes::Main | Planes::Apex => [elastic[0], elastic[2]],
+            Planes::Compression => [elastic[0], mean(1, 2)],
+            Planes::Extension => [mean(0, 1), elastic[2]],
+        };
+        let [multiplier_by, share_by] = self.derivatives(share, own);
+        let by = |[up, low]: [f64; 2]| -> Principal {
+            std::array::from_fn(|c| up * rows[0][c] + low * rows[1][c])
+        };
+        let (flow, turn) = (by(multiplier_by), by(share_by));
+        let moved = |row: &Principal, pace: f64, dilating: f64| -> Principal {
+            let turned = multiplier * dilating * y_by;
+            std::array::from_fn(|c| row[c] + pace * flow[c] + turned * turn[c])
+        };
+        let upper = moved(&rows[0], -g_u, self.dilating[0]);
+        let lower = moved(&rows[1], g_w, self.dilating[1]);
+        let aside = moduli.aside();
+        match planes {
+            Planes::Main | Planes::Apex => [upper, moved(&elastic[1], aside * y, aside), lower],
+            Planes::Compression => [upper, lower, lower],
+            Planes::Extension => [upper, upper, lower],
+        }
+    }
 }
 
 /// Returns a trial stress beyond what soil of this plastic shear strain bears; none where the share was not found.
@@ -247,7 +279,7 @@ fn on(
     let path = Path::new(hyperbola, moduli, trial, gamma_p, planes);
     let share = path.share()?;
     let own = path.at(share);
-    let ([multiplier, _], [y, y_by]) = (own.multiplier, own.dilatancy);
+    let ([multiplier, _], [y, _]) = (own.multiplier, own.dilatancy);
     let [g_u, g_w] = path.paces(y);
     let (up, low) = (
         path.trial[0] - multiplier * g_u,
@@ -276,47 +308,15 @@ fn on(
             )
         }
     };
-    if !valid {
-        return Some((
-            Sheared {
-                stress,
-                tangent: [[0.0; 3]; 3],
-                delta_gamma: multiplier,
-                planes,
-            },
-            false,
-        ));
-    }
-    let elastic = moduli.tangent();
-    let mean = |a: usize, b: usize| -> Principal {
-        std::array::from_fn(|c| 0.5 * (elastic[a][c] + elastic[b][c]))
-    };
-    let rows: [Principal; 2] = match planes {
-        Planes::Main | Planes::Apex => [elastic[0], elastic[2]],
-        Planes::Compression => [elastic[0], mean(1, 2)],
-        Planes::Extension => [mean(0, 1), elastic[2]],
-    };
-    let [multiplier_by, share_by] = path.derivatives(share, &own);
-    let by = |[up, low]: [f64; 2]| -> Principal {
-        std::array::from_fn(|c| up * rows[0][c] + low * rows[1][c])
-    };
-    let (flow, turn) = (by(multiplier_by), by(share_by));
-    let moved = |row: &Principal, pace: f64, dilating: f64| -> Principal {
-        std::array::from_fn(|c| row[c] + pace * flow[c] + multiplier * dilating * y_by * turn[c])
-    };
-    let upper = moved(&rows[0], -g_u, path.dilating[0]);
-    let lower = moved(&rows[1], g_w, path.dilating[1]);
-    let aside = moduli.aside();
-    let tangent = match planes {
-        Planes::Main | Planes::Apex => [upper, moved(&elastic[1], aside * y, aside), lower],
-        Planes::Compression => [upper, lower, lower],
-        Planes::Extension => [upper, upper, lower],
-    };
     let sheared = Sheared {
         stress,
-        tangent,
+        tangent: if valid {
+            path.tangent(moduli, share, &own, planes)
+        } else {
+            [[0.0; 3]; 3]
+        },
         delta_gamma: multiplier,
         planes,
     };
-    Some((sheared, true))
+    Some((sheared, valid))
 }
