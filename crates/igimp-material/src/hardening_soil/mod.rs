@@ -122,6 +122,21 @@ impl HardeningSoil {
         self.hyperbola.stiffness_ratio(s.max(floor))
     }
 
+    /// The law at another strength, with its cap: ψ stays but never exceeds φ.
+    fn at_strength(&self, cohesion: f64, friction_angle: f64) -> Self {
+        let parameters = HardeningSoilParameters {
+            cohesion,
+            friction_angle,
+            dilation_angle: self.parameters.dilation_angle.min(friction_angle),
+            ..self.parameters
+        };
+        Self {
+            hyperbola: parameters.hyperbola(friction_angle, parameters.dilation_angle),
+            parameters,
+            ..*self
+        }
+    }
+
     /// The elasticity of a step \[stress\].
     fn moduli(&self, history: &History) -> Moduli {
         let ratio = history.internal[2].max(FLOOR);
@@ -339,23 +354,27 @@ impl ConstitutiveModel for HardeningSoil {
         self.dilatancy
     }
 
+    /// ψ stays but never exceeds the new φ, and the cap is made for it.
+    fn at_friction(&self, ratio: f64) -> Result<Option<Arc<dyn ConstitutiveModel>>, MaterialError> {
+        positive("friction ratio", ratio)?;
+        let friction_angle = (self.parameters.friction_angle.tan() * ratio).atan();
+        let law = self.at_strength(self.parameters.cohesion, friction_angle);
+        if self.is_perfect {
+            return Ok(Some(Arc::new(law)));
+        }
+        let cap = law.parameters.cap(&law.hyperbola)?;
+        Ok(Some(Arc::new(Self { cap, ..law })))
+    }
+
     /// Mohr–Coulomb's surface of c and tan φ over `srf` without hardening, the stiffness held at that of the history; ψ stays but
     /// never exceeds the reduced φ.
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
         positive("srf", srf)?;
         let own = &self.parameters;
         let friction_angle = (own.friction_angle.tan() / srf).atan();
-        let parameters = HardeningSoilParameters {
-            cohesion: own.cohesion / srf,
-            friction_angle,
-            dilation_angle: own.dilation_angle.min(friction_angle),
-            ..*own
-        };
         Ok(Arc::new(Self {
-            hyperbola: parameters.hyperbola(friction_angle, parameters.dilation_angle),
-            parameters,
             is_perfect: true,
-            ..*self
+            ..self.at_strength(own.cohesion / srf, friction_angle)
         }))
     }
 }

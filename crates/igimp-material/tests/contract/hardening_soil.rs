@@ -262,6 +262,10 @@ fn a_reduction_is_that_of_mohr_coulomb() {
             }
             assert_eq!(answer.history.internal, history.internal);
         }
+        let (steeper, slope) = (reduced.at_friction(1.1).unwrap().unwrap(), friction.tan());
+        let strength = steeper.shear_strength().unwrap();
+        assert!((strength.friction_angle.tan() / slope - 1.1).abs() < 1e-12);
+        assert!((strength.cohesive - own.cohesion / srf).abs() <= 1e-12 * own.cohesion);
         assert!(law.reduced(-1.0).is_err());
     }
 }
