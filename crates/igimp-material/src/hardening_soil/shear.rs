@@ -59,7 +59,7 @@ pub(super) struct Sheared {
 }
 
 /// A return to one of the planes or to an edge: stress of the upper and the lower end of the circle,
-/// $`U = U^{tr} - \Lambda (g_U - l_U y)`$ and $`W = W^{tr} + \Lambda (g_W + l_W y)`$ with y = sin ψ.
+/// $`U = U^{tr} - \Lambda (g_U - l_U y)`$ and $`W = W^{tr} + \Lambda (g_W + l_W y)`$ with y = sin ψ, of the flow of eq. 126c.
 struct Path<'a> {
     hyperbola: &'a Hyperbola,
     trial: [f64; 2],
@@ -106,7 +106,7 @@ impl Path<'_> {
         }
     }
 
-    /// The state whose circle mobilises this share.
+    /// The state whose circle mobilises this share (eq. 127a).
     fn at(&self, share: f64) -> Along {
         let k = self.hyperbola.asymptote;
         let dilatancy @ [y, y_by] = self.hyperbola.dilatancy(share);

@@ -57,7 +57,7 @@ fn close(value: f64, expected: f64, band: f64, what: &str) {
     );
 }
 
-/// The axial strain of the hyperbola at a deviator, from the parameters alone.
+/// The axial strain of the hyperbola (eq. 126b) at a deviator, from the parameters alone.
 fn kondner(own: &HardeningSoilParameters, side: f64, q: f64) -> f64 {
     let (sin, cos) = own.friction_angle.sin_cos();
     let stress =
