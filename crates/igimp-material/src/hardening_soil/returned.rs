@@ -138,7 +138,7 @@ impl Start<'_> {
                 || (next - mu).abs() <= 2.0 * f64::EPSILON * mu
                 || high.is_finite() && high - low <= 2.0 * f64::EPSILON * high;
             if is_found {
-                return Some(closed(own));
+                return Some(closed(&own));
             }
             if excess > 0.0 {
                 low = mu;
@@ -158,7 +158,7 @@ impl Start<'_> {
 }
 
 /// The answer with the tangent along which the stress stays on the cap.
-fn closed(own: Flow) -> Returned {
+fn closed(own: &Flow) -> Returned {
     let [column, across] = own.columns;
     let hardness = -own.excess[1];
     let mut answer = own.answer;
