@@ -89,11 +89,15 @@ pub enum Regime {
     TensionCorner,
     /// All three principal stresses are $`\sigma_t`$.
     TensionApex,
+    /// The cap of soil that hardens in compression.
+    Cap,
+    /// The cap and the surface of shear together.
+    CapShear,
 }
 
 impl Regime {
     /// Every regime at the place of its code.
-    const BY_CODE: [Self; 10] = [
+    const BY_CODE: [Self; 12] = [
         Self::Elastic,
         Self::Smooth,
         Self::RightEdge,
@@ -104,10 +108,13 @@ impl Regime {
         Self::TensionEdge,
         Self::TensionCorner,
         Self::TensionApex,
+        Self::Cap,
+        Self::CapShear,
     ];
 
     /// The number of the regime, the same in every file and every version: 0 elastic, 1 smooth part, 2 right edge,
-    /// 3 left edge, 4 apex, 5 tension plane, 6 tension–shear edge, 7 tension edge, 8 tension corner, 9 tension apex.
+    /// 3 left edge, 4 apex, 5 tension plane, 6 tension–shear edge, 7 tension edge, 8 tension corner, 9 tension apex, 10 cap,
+    /// 11 cap and shear.
     pub fn code(self) -> u8 {
         self as u8
     }
@@ -216,6 +223,12 @@ pub trait ConstitutiveModel: Send + Sync + Debug {
     /// [`elastic_stiffness`](Self::elastic_stiffness).
     fn has_linear_elasticity(&self) -> bool {
         true
+    }
+
+    /// Whether the elastic strain of a stress goes with the history, as where stiffness is that of the last step's stress: it is
+    /// then found anew after every step, also where nothing yielded.
+    fn elasticity_follows_history(&self) -> bool {
+        false
     }
 
     /// The stress τ \[stress\] of an elastic strain \[-\], principal values.

@@ -8,7 +8,7 @@
 //! |---|---|
 //! | linear Hencky elasticity | [`Elasticity`] |
 //! | the seam | [`ConstitutiveModel`], [`ReturnMap`], [`History`], [`Regime`] |
-//! | laws | [`HenckyElastic`], [`VonMises`], [`Tresca`], [`MohrCoulomb`], [`DruckerPrager`], [`HoekBrown`], [`ModifiedCamClay`] |
+//! | laws | [`HenckyElastic`], [`VonMises`], [`Tresca`], [`MohrCoulomb`], [`DruckerPrager`], [`HoekBrown`], [`ModifiedCamClay`], [`HardeningSoil`] |
 //! | laws whose strength goes with plastic strain, the direction of stress, the rate of strain | [`Softening`], [`Curve`], [`Directions`], [`RateEffect`] |
 //! | soil whose strength and stiffness vary | [`Ratios`], [`ScaledLaw`] |
 //! | from principal space to tensors | [`lift_finite`], [`lift_small`], [`Lifted`], [`SpatialTangent`] |
@@ -58,6 +58,7 @@ mod cam_clay;
 mod drucker_prager;
 mod elasticity;
 mod error;
+mod hardening_soil;
 mod hencky;
 mod hoek_brown;
 mod koiter;
@@ -75,6 +76,7 @@ pub use cam_clay::{CamClayParameters, ModifiedCamClay, ShearStiffness};
 pub use drucker_prager::{Cone, DruckerPrager};
 pub use elasticity::Elasticity;
 pub use error::MaterialError;
+pub use hardening_soil::{HardeningSoil, HardeningSoilParameters};
 pub use hencky::HenckyElastic;
 pub use hoek_brown::{HoekBrown, HoekBrownParameters};
 pub use law::{

@@ -162,6 +162,10 @@ where
         self.law.has_linear_elasticity()
     }
 
+    fn elasticity_follows_history(&self) -> bool {
+        self.law.elasticity_follows_history()
+    }
+
     fn elastic_stress(&self, eps_e: &Principal, history: &History) -> Principal {
         if self.has_linear_elasticity() {
             return self.elasticity.stress(eps_e);

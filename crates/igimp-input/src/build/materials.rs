@@ -2,6 +2,7 @@
 
 mod cam_clay;
 mod frictional;
+mod hardening_soil;
 mod hoek_brown;
 mod plausible;
 pub(crate) mod profiles;
@@ -135,6 +136,7 @@ fn material<const D: usize>(
             (young.as_ref()).and_then(|young| Some([young.constant, **own.poisson.as_ref().ok()?]))
         }
         (None, Some(Strength::ModifiedCamClay(own))) => cam_clay::stiffness(own),
+        (None, Some(Strength::HardeningSoil(own))) => Some([own.unloading, own.poisson]),
         (None, _) => None,
     };
     let varies = profile(friction.as_ref()).is_some();
@@ -266,7 +268,7 @@ pub(crate) fn linear_stiffness(model: &Model) -> Option<&keys::Stiffness> {
         Model::MohrCoulomb(own) => own.as_ref().ok().map(|own| &own.stiffness),
         Model::DruckerPrager(own) => own.as_ref().ok().map(|own| &own.stiffness),
         Model::HoekBrown(own) => own.as_ref().ok().map(|own| &own.stiffness),
-        Model::CamClay(_) => None,
+        Model::CamClay(_) | Model::HardeningSoil(_) => None,
     }
 }
 
@@ -320,6 +322,14 @@ fn resistance<const D: usize>(
             let own = own.as_ref().ok();
             (
                 own.and_then(|own| cam_clay::strength(own, problems)),
+                None,
+                None,
+            )
+        }
+        Model::HardeningSoil(own) => {
+            let own = own.as_ref().ok();
+            (
+                own.and_then(|own| hardening_soil::strength(own, problems)),
                 None,
                 None,
             )
@@ -628,6 +638,9 @@ fn k0(
             ),
         ) => {
             return Ok(Some(1.0 - friction_angle.sin()));
+        }
+        (Either::Second(_), Some(Strength::HardeningSoil(own))) => {
+            return Ok(Some(1.0 - own.friction_angle.sin()));
         }
         (Either::Second(_), Some(Strength::ModifiedCamClay(own))) => {
             // sin φ of M in triaxial compression.

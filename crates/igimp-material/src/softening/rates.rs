@@ -74,6 +74,7 @@ impl Changing {
             Regime::Tension => vec![self.tension(0)],
             Regime::TensionShear => vec![self.shear(0, 2), self.tension(0)],
             Regime::TensionEdge => vec![self.tension(0), self.tension(1)],
+            Regime::Cap | Regime::CapShear => unreachable!("a law of planes has no cap"),
         };
         on_planes(elasticity, &planes, trial, tau)
     }

@@ -357,7 +357,7 @@ fn lift<const D: usize>(
             };
         }
     }
-    let eps_e = if answer.regime.is_plastic() {
+    let eps_e = if answer.regime.is_plastic() || law.elasticity_follows_history() {
         law.elastic_strain(&answer.tau, &answer.history)?
     } else {
         *strain

@@ -7,7 +7,7 @@ use igimp_material::{ConstitutiveModel, History, Principal, Regime, Tensor};
 
 use crate::random::Random;
 use crate::returns::{dot, size};
-use crate::{catalogue, hoek_brown, memory, softening, undrained};
+use crate::{catalogue, hardening_soil, hoek_brown, memory, softening, undrained};
 
 /// States of a law, all its sets of parameters together.
 pub(crate) const STATES: usize = if cfg!(debug_assertions) {
@@ -64,6 +64,14 @@ fn all() -> Vec<(&'static str, Vec<Tried>)> {
         };
         add(Arc::new(law), Box::new(draw));
     }
+    for law in hardening_soil::laws() {
+        let own = law;
+        let draw = move |random: &mut Random| {
+            let (history, elastic) = hardening_soil::start(&own, random);
+            (hardening_soil::trial(&elastic, random), history, 0.0)
+        };
+        add(Arc::new(law), Box::new(draw));
+    }
     for (law, _) in undrained::laws() {
         let own = law.clone();
         let draw = move |random: &mut Random| undrained::state(&own, random);
@@ -99,7 +107,7 @@ fn check(law: &dyn ConstitutiveModel, (strain, history, duration): &State) -> Re
 #[test]
 fn no_state_of_any_law_goes_wrong() {
     for (name, sets) in all() {
-        let mut met = [0_usize; 10];
+        let mut met = [0_usize; 12];
         let each = STATES / sets.len() + 1;
         for (set, own) in sets.iter().enumerate() {
             let mut random = Random(90 + set as u64);
@@ -121,6 +129,7 @@ fn no_state_of_any_law_goes_wrong() {
             "Hencky elastic" => 1,
             "Tresca" => 4,
             "Mohr-Coulomb" => 10,
+            "Hardening Soil" => 7,
             _ => 2,
         };
         assert!(named.len() >= least, "{name}: {named:?}");

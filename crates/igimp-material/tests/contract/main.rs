@@ -14,6 +14,7 @@
 //! | `scaled` | laws at ratios of strength and stiffness |
 //! | `hardening` | laws with memory |
 //! | `memory` | the same as `returns` and `tangents` ask, of laws with memory and with elasticity that is not linear |
+//! | `hardening_soil` | the same of Hardening Soil, whose elasticity goes with the stress of the last step |
 //! | `hoek_brown` | the same of Hoek–Brown, with its envelope and its reduction |
 //! | `softening` | the same, and closed forms, of laws whose strength goes with plastic strain |
 //! | `undrained` | strength by the direction of stress and by the rate of strain: closed forms, the contract |
@@ -28,6 +29,7 @@ mod close_eigenvalues;
 mod every_regime;
 mod flow_rule;
 mod hardening;
+mod hardening_soil;
 mod hoek_brown;
 mod lifts;
 mod memory;

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use igimp_assembly::SharedLaw;
 use igimp_material::{
-    CamClayParameters, Cone, DruckerPrager, Elasticity, HenckyElastic, HoekBrown,
-    HoekBrownParameters, MaterialError, ModifiedCamClay, MohrCoulomb, ShearStiffness, Tresca,
-    VonMises,
+    CamClayParameters, Cone, DruckerPrager, Elasticity, HardeningSoil, HardeningSoilParameters,
+    HenckyElastic, HoekBrown, HoekBrownParameters, MaterialError, ModifiedCamClay, MohrCoulomb,
+    ShearStiffness, Tresca, VonMises,
 };
 
 /// How plastic flow of frictional soil follows from its angle of dilation.
@@ -62,6 +62,8 @@ pub enum Strength {
     ModifiedCamClay(CamClayParameters),
     /// Hoek–Brown of 2002.
     HoekBrown(HoekBrownParameters),
+    /// Hardening Soil; its elasticity is of its own.
+    HardeningSoil(HardeningSoilParameters),
 }
 
 /// A parameter of a strength as it is printed.
@@ -101,6 +103,7 @@ impl Strength {
             Self::DruckerPrager { .. } => "Drucker–Prager",
             Self::ModifiedCamClay(_) => "modified Cam-clay",
             Self::HoekBrown(_) => "Hoek–Brown",
+            Self::HardeningSoil(_) => "Hardening Soil",
         }
     }
 
@@ -159,6 +162,16 @@ impl Strength {
                 parameter("D = ", ParameterValue::Number(own.disturbance)),
                 parameter("ψ = ", ParameterValue::Angle(own.dilation_angle)),
             ],
+            Self::HardeningSoil(own) => vec![
+                parameter("c = ", ParameterValue::Cohesive(own.cohesion)),
+                parameter("φ = ", ParameterValue::Friction(own.friction_angle)),
+                parameter("ψ = ", ParameterValue::Angle(own.dilation_angle)),
+                parameter("E_50 = ", ParameterValue::Stress(own.secant)),
+                parameter("E_ur = ", ParameterValue::Stress(own.unloading)),
+                parameter("E_oed = ", ParameterValue::Stress(own.oedometer)),
+                parameter("m = ", ParameterValue::Number(own.power)),
+                parameter("OCR = ", ParameterValue::Number(own.overconsolidation)),
+            ],
             Self::ModifiedCamClay(own) => {
                 let number = |label, value| parameter(label, ParameterValue::Number(value));
                 let shear = match own.shear {
@@ -189,7 +202,8 @@ impl Strength {
             | Self::Tresca { .. }
             | Self::MohrCoulomb { .. }
             | Self::DruckerPrager { .. }
-            | Self::HoekBrown(_) => None,
+            | Self::HoekBrown(_)
+            | Self::HardeningSoil(_) => None,
         }
     }
 
@@ -203,6 +217,7 @@ impl Strength {
             }
             | Self::DruckerPrager { dilation_angle, .. } => Some(dilation_angle),
             Self::HoekBrown(own) => Some(own.dilation_angle),
+            Self::HardeningSoil(own) => Some(own.dilation_angle),
             _ => None,
         }
     }
@@ -281,6 +296,10 @@ impl Strength {
                 cone,
             )?),
             Self::HoekBrown(parameters) => Arc::new(HoekBrown::new(elasticity, parameters)?),
+            Self::HardeningSoil(own) => Arc::new(HardeningSoil::new(HardeningSoilParameters {
+                cohesion: at_least(own.cohesion),
+                ..own
+            })?),
             Self::ModifiedCamClay(parameters) => Arc::new(ModifiedCamClay::new(parameters)?),
         })
     }

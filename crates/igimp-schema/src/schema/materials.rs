@@ -4,7 +4,7 @@ use super::MANY;
 use super::declare::{choices, schema, table, variants};
 
 /// What books call a field, and its keys here: of these the one that the material has is meant.
-pub static SYMBOLS: [(&str, &[&str]); 27] = [
+pub static SYMBOLS: [(&str, &[&str]); 34] = [
     ("gamma", &["unit_weight"]),
     ("γ", &["unit_weight"]),
     ("weight", &["unit_weight"]),
@@ -12,7 +12,7 @@ pub static SYMBOLS: [(&str, &[&str]); 27] = [
     ("e0", &["void_ratio"]),
     ("lambda*", &["lambda"]),
     ("kappa*", &["kappa"]),
-    ("m", &["critical_ratio"]),
+    ("m", &["critical_ratio", "power"]),
     ("g", &["shear"]),
     ("modulus", &["young"]),
     ("youngs_modulus", &["young"]),
@@ -32,6 +32,13 @@ pub static SYMBOLS: [(&str, &[&str]); 27] = [
     ("dilatancy", &["dilation"]),
     ("gamma_sat", &["saturated_unit_weight"]),
     ("nu_u", &["undrained_poisson"]),
+    ("e50_ref", &["e50"]),
+    ("eur_ref", &["eur"]),
+    ("eoed_ref", &["eoed"]),
+    ("nu_ur", &["poisson"]),
+    ("p_ref", &["reference_pressure"]),
+    ("r_f", &["failure_ratio"]),
+    ("k0_nc", &["k0_normal"]),
 ];
 
 variants! {
@@ -43,6 +50,7 @@ variants! {
     "drucker-prager" => DruckerPrager(DRUCKER_PRAGER: DruckerPrager),
     "modified-cam-clay" => CamClay(CAM_CLAY: CamClay),
     "hoek-brown" => HoekBrown(HOEK_BROWN: HoekBrown),
+    "hardening-soil" => HardeningSoil(HARDENING_SOIL: HardeningSoil),
     after MATERIAL_COMMON: MaterialCommon;
 }
 
@@ -208,6 +216,27 @@ table! {
     disturbance: number(NotNegative), default "0.0", "factor of disturbance D, from 0 of rock left whole to 1 of blasted slopes";
     dilation: quantity(Angle, NotNegative), default "\"0 deg\"", "dilation angle, nowhere above the friction angle that acts";
     stiffness: part(STIFFNESS: Stiffness);
+}
+
+table! {
+    HARDENING_SOIL: HardeningSoil,
+    "Hardening Soil of Schanz, Vermeer and Bonnier (1999): shear hardens along a hyperbola up to the strength of Mohr-Coulomb, a cap \
+     hardens in compression, and stiffness grows with the least compression.";
+    cohesion: quantity(Stress, NotNegative), required "\"0 kPa\"", "cohesion c";
+    friction: quantity(Angle, Positive), required "\"35 deg\"", "friction angle, 1 deg to 80 deg";
+    dilation: quantity(Angle, NotNegative), default "\"0 deg\"", "dilation angle at failure, nowhere above the friction angle or 30 deg";
+    e50: quantity(Stress, Positive), required "\"30 MPa\"",
+        "secant modulus at half the strength in drained triaxial compression, at a cell pressure of `reference_pressure`";
+    eur: quantity(Stress, Positive), optional "three times `e50`", "Young's modulus of unloading and reloading there";
+    eoed: quantity(Stress, Positive), optional "as `e50`",
+        "tangent modulus of first compression in the oedometer, at an axial stress of `reference_pressure`";
+    poisson: number(NotNegative), default "0.2", "Poisson's ratio of unloading, below 0.5";
+    power: number(NotNegative), default "0.5", "power m by which stiffness grows with stress, at most 1";
+    reference_pressure: quantity(Stress, Positive), default "\"100 kPa\"", "pressure at which the moduli are as stated";
+    failure_ratio: number(Positive), default "0.9", "R_f, strength over the asymptote of the hyperbola, below 1";
+    k0_normal: number(Positive), optional "1 - sin(friction)", "ratio of stresses in first one-dimensional compression, below 1";
+    ocr: number(Positive), default "1.0",
+        "preconsolidation pressure over (q^2/M^2 + p^2)^0.5 of the initial stress, 1 or more";
 }
 
 choices! {

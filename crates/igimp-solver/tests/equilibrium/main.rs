@@ -8,6 +8,7 @@ mod drag;
 mod element;
 mod faults;
 mod guarded;
+mod hardening_soil;
 mod linear_multigrid;
 mod march;
 mod march_properties;

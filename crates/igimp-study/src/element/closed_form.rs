@@ -67,12 +67,14 @@ pub(super) fn strength(
                 ..
             },
             StandardTest::TriaxialDrained,
-        ) => {
-            let passive = (0.25 * std::f64::consts::PI + 0.5 * friction_angle).tan();
-            let side = request.stress[1];
-            let value = side * (passive * passive - 1.0) + 2.0 * cohesion / volume * passive;
-            form(value, "σ_3 (K_p - 1) + 2 c √K_p")
-        }
+        ) => form(
+            passive(request.stress[1], cohesion / volume, friction_angle),
+            PASSIVE,
+        ),
+        (Strength::HardeningSoil(own), StandardTest::TriaxialDrained) => form(
+            passive(request.stress[1], own.cohesion / volume, own.friction_angle),
+            PASSIVE,
+        ),
         (
             Strength::MohrCoulomb {
                 cohesion,
@@ -115,6 +117,15 @@ pub(super) fn strength(
         ),
         _ => None,
     }
+}
+
+/// What [`passive`] is.
+const PASSIVE: &str = "σ_3 (K_p - 1) + 2 c √K_p";
+
+/// q at failure of soil with cohesion and friction between sides under a stress \[Pa\].
+fn passive(side: f64, cohesion: f64, friction_angle: f64) -> f64 {
+    let root = (0.25 * std::f64::consts::PI + 0.5 * friction_angle).tan();
+    side * (root * root - 1.0) + 2.0 * cohesion * root
 }
 
 /// p at the critical state of soil that keeps its volume (theory, eq. 92) \[Pa\].

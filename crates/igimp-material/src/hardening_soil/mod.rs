@@ -1,0 +1,380 @@
+//! Hardening Soil: shear that hardens along a hyperbola up to Mohr–Coulomb's strength, a cap that hardens in compression, and
+//! stiffness that grows with stress (Schanz, Vermeer & Bonnier 1999; theory, eqs. 126 to 128c).
+
+mod cap;
+mod hyperbola;
+mod parameters;
+mod returned;
+mod shear;
+
+use std::sync::Arc;
+
+use crate::error::positive;
+use crate::law::mobilised;
+use crate::spectral::principal::{descending, largest, mean, sorted, unsorted};
+use crate::{
+    ConstitutiveModel, ElasticStiffness, Elasticity, History, InternalVariable, MaterialError,
+    Principal, Regime, ReturnMap, Scaling, ShearStrength,
+};
+use cap::Cap;
+use hyperbola::Hyperbola;
+pub use parameters::HardeningSoilParameters;
+use returned::{Returned, Start};
+use shear::{Moduli, Planes};
+
+/// What the law remembers.
+const VARIABLES: [InternalVariable; 3] = [
+    InternalVariable {
+        name: "plastic shear strain",
+        unit: "-",
+        scaling: Scaling::Strain,
+    },
+    InternalVariable {
+        name: "preconsolidation pressure",
+        unit: "Pa",
+        scaling: Scaling::Stress,
+    },
+    InternalVariable {
+        name: "stiffness ratio",
+        unit: "-",
+        scaling: Scaling::Constant,
+    },
+];
+
+/// Least stress that stiffness and preconsolidation are those of, over that at the reference \[-\].
+const FLOOR: f64 = 0.01;
+
+/// Hardening Soil in Kirchhoff stress and Hencky strain.
+///
+/// Compression is positive here. With $`s = \sigma_3 + c \cot\varphi`$ of the least compression, moduli grow with
+/// $`(s/s_{ref})^m`$. In drained triaxial compression the axial strain of the deviator q is
+///
+/// ```math
+/// \varepsilon_1 = \frac{q}{E_i\,(1 - q/q_a)},\qquad E_i = \frac{2 E_{50}}{2 - R_f},\qquad
+/// q_a = \frac{1}{R_f}\,\frac{2 \sin\varphi}{1 - \sin\varphi}\, s
+/// ```
+///
+/// until $`q_f = R_f q_a`$, Mohr–Coulomb's strength, where soil flows on. Beside it yields the cap
+/// $`q^2/M^2 + p^2 = p_p^2`$; M and its hardening follow from $`E_{oed}`$ and $`K_0^{nc}`$.
+///
+/// Elasticity is linear within a step, with $`E_{ur}`$ of the stress at its start: it stores no energy over a closed cycle. All
+/// else is implicit.
+///
+/// ```
+/// use igimp_material::{ConstitutiveModel, HardeningSoil, HardeningSoilParameters};
+///
+/// let law = HardeningSoil::new(HardeningSoilParameters {
+///     overconsolidation: 10.0,
+///     ..HardeningSoilParameters::dense_hostun_sand()
+/// })?;
+/// let sigma = [-100e3; 3];
+/// let history = law.initial_history(&sigma);
+/// let strain = law.elastic_strain(&sigma, &history)?;
+/// let axial = law.return_map(&[strain[0] - 1e-3, strain[1], strain[2]], &history)?;
+/// assert!(axial.regime.is_plastic() && axial.history.internal[0] > 0.0);
+/// # Ok::<(), igimp_material::MaterialError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HardeningSoil {
+    parameters: HardeningSoilParameters,
+    hyperbola: Hyperbola,
+    cap: Cap,
+    /// The elasticity at the reference.
+    reference: Elasticity,
+    /// Whether hardening is over, as in a strength reduction: what yields is Mohr–Coulomb's surface.
+    is_perfect: bool,
+    /// ψ/φ as given \[-\].
+    dilatancy: f64,
+}
+
+impl HardeningSoil {
+    /// From its parameters.
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`] of a parameter out of its range, and of an oedometer modulus that no cap gives beside
+    /// the other moduli.
+    pub fn new(parameters: HardeningSoilParameters) -> Result<Self, MaterialError> {
+        parameters.check()?;
+        let hyperbola = parameters.hyperbola(parameters.friction_angle, parameters.dilation_angle);
+        Ok(Self {
+            parameters,
+            hyperbola,
+            cap: parameters.cap(&hyperbola)?,
+            reference: Elasticity::new(parameters.unloading, parameters.poisson)?,
+            is_perfect: false,
+            dilatancy: parameters.dilation_angle / parameters.friction_angle,
+        })
+    }
+
+    /// Its parameters.
+    pub fn parameters(&self) -> &HardeningSoilParameters {
+        &self.parameters
+    }
+
+    /// Steepness M of the cap \[-\], and its hardening modulus H at the reference pressure \[stress\].
+    pub fn cap(&self) -> [f64; 2] {
+        [self.cap.steepness, self.cap.hardening]
+    }
+
+    /// Stiffness under s over that at the reference, no less than that of the floor \[-\].
+    fn stiffness_ratio(&self, s: f64) -> f64 {
+        let floor = FLOOR * self.hyperbola.reference;
+        self.hyperbola.stiffness_ratio(s.max(floor))
+    }
+
+    /// The law at another strength, with its cap: ψ stays but never exceeds φ.
+    fn at_strength(&self, cohesion: f64, friction_angle: f64) -> Self {
+        let parameters = HardeningSoilParameters {
+            cohesion,
+            friction_angle,
+            dilation_angle: self.parameters.dilation_angle.min(friction_angle),
+            ..self.parameters
+        };
+        Self {
+            hyperbola: parameters.hyperbola(friction_angle, parameters.dilation_angle),
+            parameters,
+            ..*self
+        }
+    }
+
+    /// The elasticity of a step \[stress\].
+    fn moduli(&self, history: &History) -> Moduli {
+        let ratio = history.internal[2].max(FLOOR);
+        Moduli {
+            bulk: ratio * self.reference.bulk(),
+            shear: ratio * self.reference.shear(),
+        }
+    }
+
+    /// Plastic shear strain, beyond all numbers where hardening is over, and preconsolidation.
+    fn memory(&self, history: &History) -> [f64; 2] {
+        let [gamma_p, preconsolidation, ..] = history.internal;
+        let least = FLOOR * self.parameters.reference_pressure;
+        if self.is_perfect {
+            [f64::INFINITY; 2]
+        } else {
+            [gamma_p, preconsolidation.max(least)]
+        }
+    }
+
+    /// The history after a step.
+    fn after(&self, history: &History, own: &Returned, delta_eps_p: &Principal) -> History {
+        let mut after = history.after(delta_eps_p);
+        if self.is_perfect {
+            return after;
+        }
+        let sheared = if own.planes == Some(Planes::Apex) {
+            let [a, b, c] = *delta_eps_p;
+            a.max(b).max(c) - a.min(b).min(c)
+        } else {
+            own.delta_gamma
+        };
+        after.internal[0] += sheared;
+        after.internal[1] = own.preconsolidation;
+        let s = self.hyperbola.confinement(own.stress[2]);
+        after.internal[2] = self.stiffness_ratio(s);
+        after
+    }
+}
+
+/// Which part of the surface a stress is on.
+fn regime(own: &Returned) -> Regime {
+    match (own.planes, own.is_capped) {
+        (None, false) => Regime::Elastic,
+        (None, true) => Regime::Cap,
+        (Some(Planes::Apex), _) => Regime::Apex,
+        (Some(_), true) => Regime::CapShear,
+        (Some(Planes::Main), false) => Regime::Smooth,
+        (Some(Planes::Compression), false) => Regime::RightEdge,
+        (Some(Planes::Extension), false) => Regime::LeftEdge,
+    }
+}
+
+/// Stress of a strain, and strain of a stress.
+impl Moduli {
+    fn stress(&self, strain: &Principal) -> Principal {
+        let volume = mean(strain);
+        strain.map(|own| 3.0 * self.bulk * volume + 2.0 * self.shear * (own - volume))
+    }
+
+    fn strain(&self, tau: &Principal) -> Principal {
+        let mean = mean(tau);
+        tau.map(|own| mean / (3.0 * self.bulk) + (own - mean) / (2.0 * self.shear))
+    }
+}
+
+impl ConstitutiveModel for HardeningSoil {
+    fn name(&self) -> &'static str {
+        "Hardening Soil"
+    }
+
+    /// The elasticity of unloading at the reference pressure.
+    fn stiffness_bound(&self) -> &Elasticity {
+        &self.reference
+    }
+
+    fn has_linear_elasticity(&self) -> bool {
+        false
+    }
+
+    fn elasticity_follows_history(&self) -> bool {
+        !self.is_perfect
+    }
+
+    fn elastic_stress(&self, eps_e: &Principal, history: &History) -> Principal {
+        self.moduli(history).stress(eps_e)
+    }
+
+    fn elastic_strain(
+        &self,
+        tau: &Principal,
+        history: &History,
+    ) -> Result<Principal, MaterialError> {
+        Ok(self.moduli(history).strain(tau))
+    }
+
+    fn elastic_stiffness(&self, _eps_e: &Principal, history: &History) -> ElasticStiffness {
+        let moduli = self.moduli(history);
+        ElasticStiffness {
+            tangent: moduli.tangent(),
+            shear: moduli.shear,
+        }
+    }
+
+    fn return_map(
+        &self,
+        eps_e_trial: &Principal,
+        history: &History,
+    ) -> Result<ReturnMap, MaterialError> {
+        let moduli = self.moduli(history);
+        let pressure = moduli.stress(eps_e_trial).map(|own| -own);
+        if !pressure.iter().all(|own| own.is_finite()) {
+            return Err(MaterialError::NonFinite {
+                quantity: "trial stress",
+            });
+        }
+        let order = descending(&pressure);
+        let [gamma_p, preconsolidation] = self.memory(history);
+        let start = Start {
+            hyperbola: &self.hyperbola,
+            cap: (!self.is_perfect).then_some(&self.cap),
+            moduli,
+            gamma_p,
+            preconsolidation,
+        };
+        let own = start
+            .returned(&sorted(&pressure, &order))
+            .filter(Returned::is_finite)
+            .ok_or(MaterialError::NotConverged { law: self.name() })?;
+        let regime = regime(&own);
+        let tau = unsorted(&own.stress, &order).map(|own| -own);
+        let delta_eps_p = if regime.is_plastic() {
+            let elastic = moduli.strain(&tau);
+            std::array::from_fn(|a| eps_e_trial[a] - elastic[a])
+        } else {
+            [0.0; 3]
+        };
+        let mut tangent = [[0.0; 3]; 3];
+        for (a, row) in own.tangent.iter().enumerate() {
+            tangent[order[a]] = unsorted(row, &order);
+        }
+        Ok(ReturnMap {
+            tau,
+            tangent,
+            delta_eps_p,
+            history: self.after(history, &own, &delta_eps_p),
+            regime,
+        })
+    }
+
+    fn internal_variables(&self) -> &'static [InternalVariable] {
+        &VARIABLES
+    }
+
+    /// The plastic shear strain of which the stress is on the surface, and the preconsolidation by the ratio of overconsolidation
+    /// from $`\sqrt{q^2/M^2 + p^2}`$ of the stress.
+    fn initial_history(&self, sigma: &Principal) -> History {
+        let pressure = sigma.map(|own| -own);
+        let [most, _, least] = sorted(&pressure, &descending(&pressure));
+        let s = self.hyperbola.confinement(least);
+        let borne = self.hyperbola.asymptote * s;
+        let share = if most > least && borne > 0.0 {
+            ((most - least) / borne).min(self.hyperbola.failure_ratio)
+        } else {
+            0.0
+        };
+        let tip = self.cap.equivalent(&pressure);
+        let floor = FLOOR * self.parameters.reference_pressure;
+        let mut history = History::default();
+        history.internal[0] = self.hyperbola.strain(s, share).value;
+        history.internal[1] = self.parameters.overconsolidation * tip.max(floor);
+        history.internal[2] = self.stiffness_ratio(s);
+        history
+    }
+
+    /// The larger of what $`\sigma_1 - \sigma_3`$ exceeds its hyperbola by, and what $`\sqrt{q^2/M^2 + p^2}`$ exceeds $`p_p`$ by.
+    fn yield_function(&self, tau: &Principal, history: &History) -> f64 {
+        let pressure = tau.map(|own| -own);
+        let [most, _, least] = sorted(&pressure, &descending(&pressure));
+        let [gamma_p, preconsolidation] = self.memory(history);
+        let shear = self.hyperbola.excess(most, least, gamma_p);
+        shear.max(self.cap.equivalent(&pressure) - preconsolidation)
+    }
+
+    /// Twice the largest principal stress in magnitude, c cot φ and $`\sqrt{q^2/M^2 + p^2}`$ together.
+    fn stress_scale(&self, tau: &Principal) -> f64 {
+        let pressure = tau.map(|own| -own);
+        2.0 * largest(tau) + self.hyperbola.attraction + self.cap.equivalent(&pressure)
+    }
+
+    /// That of Mohr–Coulomb's law with c and φ: $`(\sigma_1 - \sigma_3) / (2c\cos\varphi + (\sigma_1 + \sigma_3)\sin\varphi)`$ of
+    /// pressures.
+    fn utilisation(&self, tau: &Principal, _history: &History) -> f64 {
+        let pressure = tau.map(|own| -own);
+        let [most, _, least] = sorted(&pressure, &descending(&pressure));
+        let ratio = self.hyperbola.asymptote * self.hyperbola.failure_ratio;
+        let sin = ratio / (ratio + 2.0);
+        let strength = sin * (most + least + 2.0 * self.hyperbola.attraction);
+        mobilised(most - least, strength, self.stress_scale(tau))
+    }
+
+    fn shear_strength(&self) -> Option<ShearStrength> {
+        Some(ShearStrength {
+            cohesive: self.parameters.cohesion,
+            friction_angle: self.parameters.friction_angle,
+        })
+    }
+
+    fn has_symmetric_tangent(&self) -> bool {
+        false
+    }
+
+    /// ψ/φ as given.
+    fn dilatancy(&self) -> f64 {
+        self.dilatancy
+    }
+
+    /// ψ stays but never exceeds the new φ, and the cap is made for it.
+    fn at_friction(&self, ratio: f64) -> Result<Option<Arc<dyn ConstitutiveModel>>, MaterialError> {
+        positive("friction ratio", ratio)?;
+        let friction_angle = (self.parameters.friction_angle.tan() * ratio).atan();
+        let law = self.at_strength(self.parameters.cohesion, friction_angle);
+        if self.is_perfect {
+            return Ok(Some(Arc::new(law)));
+        }
+        let cap = law.parameters.cap(&law.hyperbola)?;
+        Ok(Some(Arc::new(Self { cap, ..law })))
+    }
+
+    /// Mohr–Coulomb's surface of c and tan φ over `srf` without hardening, the stiffness held at that of the history; ψ stays but
+    /// never exceeds the reduced φ.
+    fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
+        positive("srf", srf)?;
+        let own = &self.parameters;
+        let friction_angle = (own.friction_angle.tan() / srf).atan();
+        Ok(Arc::new(Self {
+            is_perfect: true,
+            ..self.at_strength(own.cohesion / srf, friction_angle)
+        }))
+    }
+}

@@ -1,0 +1,171 @@
+//! The return where shear, the cap or both yield: the flow of the cap is sought about the return to shear (theory, eq. 128c).
+
+use super::cap::Cap;
+use super::hyperbola::Hyperbola;
+use super::shear::{Moduli, Planes, sheared};
+use crate::law::ON_SURFACE;
+use crate::spectral::principal::{Principal, apply, dot, largest, mean};
+
+/// Most corrections of the flow of the cap; a bisection to the last bit takes no more.
+const MOST_CORRECTIONS: usize = 100;
+
+/// What a step begins with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Start<'a> {
+    pub(super) hyperbola: &'a Hyperbola,
+    /// None: soil whose hardening is over.
+    pub(super) cap: Option<&'a Cap>,
+    pub(super) moduli: Moduli,
+    pub(super) gamma_p: f64,
+    pub(super) preconsolidation: f64,
+}
+
+/// A stress, positive in compression and in descending order, that soil bears.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Returned {
+    pub(super) stress: Principal,
+    /// Derivative by the trial strain \[stress\].
+    pub(super) tangent: [[f64; 3]; 3],
+    /// Growth of the plastic shear strain \[-\]; zero at the apex.
+    pub(super) delta_gamma: f64,
+    pub(super) preconsolidation: f64,
+    /// The planes of shear that yield.
+    pub(super) planes: Option<Planes>,
+    /// Whether the cap yields.
+    pub(super) is_capped: bool,
+}
+
+impl Returned {
+    /// Whether all of it are numbers, as they are not where hardening goes beyond them.
+    pub(super) fn is_finite(&self) -> bool {
+        // The preconsolidation of soil whose hardening is over is beyond all numbers, and has no cap.
+        let memory = !self.is_capped || self.preconsolidation.is_finite();
+        let values = self.tangent.as_flattened().iter().chain(&self.stress);
+        memory && self.delta_gamma.is_finite() && values.into_iter().all(|own| own.is_finite())
+    }
+}
+
+/// The cap at some flow.
+struct Flow {
+    answer: Returned,
+    /// By how much the stress is outside \[stress\], and its derivative by μ.
+    excess: [f64; 2],
+    /// ∂σ/∂μ and ∂(excess)/∂ε.
+    columns: [Principal; 2],
+}
+
+impl Start<'_> {
+    /// The stress that a trial stress is returned to; none where it was not found.
+    pub(super) fn returned(&self, trial: &Principal) -> Option<Returned> {
+        let first = self.without_cap(&self.moduli, trial)?;
+        let Some(cap) = self.cap else {
+            return Some(first);
+        };
+        let outside = cap.equivalent(&first.stress) - self.preconsolidation;
+        if outside <= ON_SURFACE * self.preconsolidation {
+            return Some(first);
+        }
+        self.with_cap(cap, trial)
+    }
+
+    /// The return to the planes of shear alone.
+    fn without_cap(&self, moduli: &Moduli, trial: &Principal) -> Option<Returned> {
+        let excess = self.hyperbola.excess(trial[0], trial[2], self.gamma_p);
+        let round_off = ON_SURFACE * (largest(trial) + self.hyperbola.attraction);
+        let elastic = Returned {
+            stress: *trial,
+            tangent: moduli.tangent(),
+            delta_gamma: 0.0,
+            preconsolidation: self.preconsolidation,
+            planes: None,
+            is_capped: false,
+        };
+        if excess <= round_off {
+            return Some(elastic);
+        }
+        let own = sheared(self.hyperbola, moduli, trial, self.gamma_p)?;
+        Some(Returned {
+            stress: own.stress,
+            tangent: own.tangent,
+            delta_gamma: own.delta_gamma,
+            planes: Some(own.planes),
+            ..elastic
+        })
+    }
+
+    /// The state after flow of the cap by μ.
+    fn at(&self, cap: &Cap, trial: &Principal, mu: f64) -> Option<Flow> {
+        let (moduli, softened) = cap.softened(&self.moduli, trial, mu);
+        let mut answer = self.without_cap(&moduli, &softened)?;
+        let is_pressed = mean(trial) > 0.0;
+        let p = if is_pressed {
+            mean(&answer.stress)
+        } else {
+            0.0
+        };
+        let [tip, slope] = cap.grown(self.preconsolidation, mu * p / self.moduli.bulk);
+        let equivalent = cap.equivalent(&answer.stress);
+        let normal = cap.normal(&answer.stress, is_pressed);
+        let per_volume = slope / self.moduli.bulk;
+        let own = cap.normal(&answer.stress, mean(&answer.stress) > 0.0);
+        let third = if is_pressed {
+            per_volume * mu / 3.0
+        } else {
+            0.0
+        };
+        let row: Principal = own.map(|by| 0.5 * by / equivalent - third);
+        let column = apply(&answer.tangent, &normal).map(|by| 0.5 * by / self.moduli.bulk);
+        let across: Principal =
+            std::array::from_fn(|b| (0..3).map(|a| row[a] * answer.tangent[a][b]).sum());
+        answer.preconsolidation = tip;
+        answer.is_capped = true;
+        Some(Flow {
+            answer,
+            excess: [equivalent - tip, -dot(&row, &column) - per_volume * p],
+            columns: [column, across],
+        })
+    }
+
+    /// The return with flow of the cap: of bracketed corrections, whose first ones double it until the stress is inside.
+    fn with_cap(&self, cap: &Cap, trial: &Principal) -> Option<Returned> {
+        let (mut low, mut high) = (0.0, f64::INFINITY);
+        let mut mu = 0.0;
+        for _ in 0..MOST_CORRECTIONS {
+            let own = self.at(cap, trial, mu)?;
+            let [excess, slope] = own.excess;
+            let next = mu - excess / slope;
+            let is_found = excess.abs() <= 8.0 * f64::EPSILON * own.answer.preconsolidation
+                || (next - mu).abs() <= 2.0 * f64::EPSILON * mu
+                || high.is_finite() && high - low <= 2.0 * f64::EPSILON * high;
+            if is_found {
+                return Some(closed(&own));
+            }
+            if excess > 0.0 {
+                low = mu;
+            } else {
+                high = mu;
+            }
+            mu = if next > low && next < high {
+                next
+            } else if high.is_infinite() {
+                2.0 * low + 1e-3
+            } else {
+                0.5 * (low + high)
+            };
+        }
+        None
+    }
+}
+
+/// The answer with the tangent along which the stress stays on the cap.
+fn closed(own: &Flow) -> Returned {
+    let [column, across] = own.columns;
+    let hardness = -own.excess[1];
+    let mut answer = own.answer;
+    for a in 0..3 {
+        for b in 0..3 {
+            answer.tangent[a][b] -= column[a] * across[b] / hardness;
+        }
+    }
+    answer
+}
