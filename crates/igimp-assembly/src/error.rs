@@ -76,6 +76,14 @@ pub enum AssemblyError {
         /// Position \[length\], axes beyond the dimension 0.
         position: [f64; 3],
     },
+    /// No soil stands in the cells beside a wall that would have a free field.
+    #[error("no soil touches the {} wall across axis {axis}, beside which a free field is to move", if *upper { "upper" } else { "lower" })]
+    NoFreeField {
+        /// The axis across the wall.
+        axis: usize,
+        /// Whether it is the upper one.
+        upper: bool,
+    },
     /// A part of a reinforcement is where there is no soil.
     #[error("no soil carries the reinforcement \"{name}\" at {position:?} m")]
     UnsupportedReinforcement {

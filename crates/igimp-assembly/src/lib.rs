@@ -31,7 +31,7 @@ pub use conditions::reinforcement::ReinforcementControl;
 pub use conditions::rigid_motion::{Drive, RigidMotion};
 pub use conditions::time_step::{TimeScheme, TimeStep};
 pub use conditions::unbalanced::UnbalancedForces;
-pub use conditions::walls::{AbsorbingWall, WallNode, Walls};
+pub use conditions::walls::{AbsorbingWall, FreeMotion, TiedWalls, WallNode, Walls};
 pub use conditions::water::{PoreSite, PoreState, PoreWater, Water};
 pub use contributions::consolidation::{PoresAfter, WaterMoved};
 pub use contributions::inertia::Motion;
@@ -40,6 +40,7 @@ pub use contributions::rigid::{
     AcceptedContact, CarryingTriangle, ContactNode, ContactState, Interface, Penalty, Penetration,
     Pose, RigidBody, RigidInertia, Shear, Surface, SurfaceError, SurfaceTriangle, Tension,
 };
+pub use contributions::walls::TieForce;
 pub use energy::StepEnergy;
 pub use equations::kinematics::ParticleTrial;
 pub use equations::residual::OutOfBalance;

@@ -90,6 +90,7 @@ fn ground_stays_at_rest_between_walls() {
     for walls in [
         "absorbing = [\"left\", \"right\", \"bottom\"]",
         "tied_sides = true\nabsorbing = [\"bottom\"]",
+        "free_field = [\"left\", \"right\"]\nabsorbing = [\"bottom\"]",
     ] {
         // Cells that are laid anew under particles that have moved are no equilibrium to round-off.
         let stage = format!("duration = \"1 s\"\nsteps = 10\ngeometry = \"given\"\n{walls}");
@@ -176,6 +177,12 @@ fn slope(changes: &[&str]) -> CaseFile {
     shipped.case_file(changes.iter().copied()).unwrap()
 }
 
+/// Free fields in place of tied sides.
+const FREE: [&str; 2] = [
+    "stages.earthquake.tied_sides = false",
+    "stages.earthquake.free_field = [\"left\", \"right\"]",
+];
+
 const SHORT: [&str; 4] = [
     "grid.cell = 3 m",
     "grid.domain.y = [\"0 m\", \"15 m\"]",
@@ -183,10 +190,10 @@ const SHORT: [&str; 4] = [
     "stages.earthquake.steps = 3",
 ];
 
-/// GOAL: a run in the middle of an earthquake goes on with the same bytes.
+/// GOAL: a run in the middle of an earthquake goes on with the same bytes, with what moves in free field.
 #[test]
 fn a_resumed_earthquake_leaves_the_same_files() {
-    let file = slope(&SHORT);
+    let file = slope(&[&SHORT[..], &FREE].concat());
     let whole = folder("earthquake-whole");
     let ended = |run: &Run<2>| {
         let last = run.summary.stages.last().unwrap();
@@ -214,10 +221,10 @@ fn a_resumed_earthquake_leaves_the_same_files() {
     assert_equal(&everything(&whole), &everything(&resumed), "earthquake");
 }
 
-/// GOAL: threads change no bit.
+/// GOAL: threads change no bit, free fields or not.
 #[test]
 fn threads_change_no_bit_of_an_earthquake() {
-    let file = slope(&SHORT);
+    let file = slope(&[&SHORT[..], &FREE].concat());
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -305,6 +312,18 @@ fn earthquakes_that_make_no_sense() {
         (
             "tied_sides = true\nabsorbing = [\"left\"]".to_owned(),
             "dashpots and moves with the other",
+        ),
+        (
+            "tied_sides = true\nfree_field = [\"left\"]".to_owned(),
+            "moves with the other, and is to have soil in free field",
+        ),
+        (
+            "absorbing = [\"left\"]\nfree_field = [\"left\"]".to_owned(),
+            "dashpots against still ground already",
+        ),
+        (
+            "free_field = [\"bottom\"]".to_owned(),
+            "stands beside the left or the right side",
         ),
         (
             "absorbing = [\"front\"]".to_owned(),

@@ -196,6 +196,8 @@ pub struct StageWalls {
     pub springs: f64,
     /// Whether the two walls across the first axis move together.
     pub tied: bool,
+    /// Walls with dashpots beside which a column of soil moves in free field, by axis and whether it is the upper end.
+    pub free_field: Vec<(usize, bool)>,
 }
 
 /// By how much strength is reduced.

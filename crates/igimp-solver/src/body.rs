@@ -3,6 +3,8 @@
 
 use igimp_assembly::{LoadPoint, Particles, Reinforcement, RigidBody};
 
+use crate::free_field::FreeField;
+
 /// The state that marches from one equilibrium to the next.
 #[derive(Clone, Debug)]
 pub struct Body<const D: usize> {
@@ -14,6 +16,8 @@ pub struct Body<const D: usize> {
     pub rigid: Vec<RigidBody<D>>,
     /// Anchors, nails and geotextiles in the soil.
     pub reinforcement: Vec<Reinforcement<D>>,
+    /// What stands in free field beside walls, while the body moves in time.
+    pub free_fields: Vec<FreeField<D>>,
 }
 
 impl<const D: usize> Body<D> {
@@ -24,11 +28,13 @@ impl<const D: usize> Body<D> {
             load_points: Vec::new(),
             rigid: Vec::new(),
             reinforcement: Vec::new(),
+            free_fields: Vec::new(),
         }
     }
 
-    /// Takes all motion from what moves, as before a march in statics.
+    /// Takes all motion from what moves, as before a march in statics, and with it what stands in free field.
     pub fn rest(&mut self) {
+        self.free_fields.clear();
         self.particles.rest();
         self.rigid.iter_mut().for_each(RigidBody::rest);
     }

@@ -10,6 +10,7 @@ mod continuation;
 mod corrector;
 pub mod element;
 mod free_factor;
+mod free_field;
 mod load_path;
 mod march;
 mod newton;
@@ -25,6 +26,7 @@ pub use crate::settings::NewtonSettings;
 pub use crate::workspace::Workspace;
 pub use body::Body;
 pub use continuation::{ContinuationSettings, ContinuationState, MECHANISM, follow};
+pub use free_field::FreeField;
 pub use march::{
     Accepted, MarchReport, MarchSettings, MarchState, Observer, Outcome, Pace, march, march_from,
 };

@@ -13,6 +13,7 @@ use igimp_shape::Grid;
 use crate::body::Body;
 use crate::corrector::Corrector;
 use crate::free_factor::{FreeFactor, Guess};
+use crate::free_field;
 use crate::load_path::LoadPath;
 use crate::pace;
 use crate::report::{NodalForces, StepError, StepFailure, StepReport, padded};
@@ -29,11 +30,31 @@ const GHOST_PENALTY: f64 = 1e-3;
 /// A step whose system is singular at a node that hardly touches soil is tried once more with a ghost
 /// penalty (theory, eq. 28), and the report says so. On a given geometry the penalty would be a support at a limit load: where
 /// soil has no stiffness the step is tried once more with guarded corrections and regularised tangents (theory, eq. 25e),
-/// which change no equilibrium.
+/// which change no equilibrium. In a step that takes time the free fields beside walls go ahead.
 ///
 /// # Errors
 /// [`StepError`] when no equilibrium was found, with the residuals so far.
 pub fn step<const D: usize>(
+    body: &mut Body<D>,
+    method: &Method,
+    conditions: &StepConditions<D>,
+    (from, to): (f64, f64),
+    settings: &NewtonSettings,
+    workspace: &mut Workspace<D>,
+) -> Result<(StepReport, NodalForces<D>), StepError> {
+    let factors = (from, to);
+    match free_field::go_ahead(body, method, conditions, factors, settings)? {
+        None => step_of_body(body, method, conditions, factors, settings, workspace),
+        Some((free_fields, conditions)) => {
+            let done = step_of_body(body, method, &conditions, factors, settings, workspace)?;
+            body.free_fields = free_fields;
+            Ok(done)
+        }
+    }
+}
+
+/// The same beside walls whose free fields have gone ahead.
+fn step_of_body<const D: usize>(
     body: &mut Body<D>,
     method: &Method,
     conditions: &StepConditions<D>,
@@ -247,6 +268,7 @@ fn equilibrium<const D: usize>(
     let pace = pace_after(&system, trial, &u, iterations)?;
     let energy = system.energy(trial, &u)?;
     let motion = system.motion(&u);
+    let ties = system.tie_forces(&u);
     let contact = system.bodies_at(&u)?;
     let pores = system.into_pores(&u);
     body.load_points = load_points;
@@ -282,7 +304,13 @@ fn equilibrium<const D: usize>(
         linear,
         times,
     };
-    Ok((report, NodalForces { reactions, u }))
+    let forces = NodalForces {
+        reactions,
+        u,
+        motion,
+        ties,
+    };
+    Ok((report, forces))
 }
 
 /// The start of a step: nodal displacements `u` of motion that goes on as it is, or none, and the residual there.

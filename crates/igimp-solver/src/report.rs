@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use igimp_assembly::{AssemblyError, Penetration, StepEnergy, StepWork, WaterMoved};
+use igimp_assembly::{
+    AssemblyError, Motion, Penetration, StepEnergy, StepWork, TieForce, WaterMoved,
+};
 use igimp_linear::{LinearEffort, LinearSolverError};
 use thiserror::Error;
 
@@ -99,6 +101,9 @@ pub enum StepFailure {
         /// Whether soil is near enough to touch it.
         touches: bool,
     },
+    /// The free field beside a wall finds no equilibrium.
+    #[error("the column of soil in free field beside a wall does not move on")]
+    FreeField(#[source] Box<StepFailure>),
     /// A number of the linear system that must be finite is not.
     #[error("the {what} at {position:?} m, axis {axis}, is not finite")]
     NotFinite {
@@ -134,6 +139,7 @@ impl StepFailure {
             | Self::TooDeep { .. }
             | Self::TooLong { .. }
             | Self::NotFinite { .. } => false,
+            Self::FreeField(failure) => failure.is_want_of_equilibrium(),
             Self::Assembly(error) => error.is_too_far(),
             Self::Linear(error) => {
                 error.is_singular()
@@ -258,6 +264,10 @@ pub struct NodalForces<const D: usize> {
     pub reactions: Vec<[f64; D]>,
     /// Step displacement \[length\].
     pub u: Vec<[f64; D]>,
+    /// How the nodes move; none in statics.
+    pub motion: Option<Motion<D>>,
+    /// The forces that make the nodes of two walls move together.
+    pub ties: Vec<TieForce<D>>,
 }
 
 /// A position with zeros beyond the dimension, for messages.

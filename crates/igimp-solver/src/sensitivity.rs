@@ -140,6 +140,7 @@ impl<const D: usize> Increment<'_, D> {
             load_points,
             rigid,
             reinforcement,
+            ..
         } = self.body;
         let structures = (&rigid[..], &reinforcement[..]);
         let system = System::with_structures(

@@ -63,6 +63,7 @@ fn corner(poisson: f64, method: &Method, cells: usize) -> Result<(RunRecord, f64
         load_points: LoadPoint::along_edge(PANEL[1], PANEL[2], [0.0, TRACTION], 4 * cells, 0),
         rigid: Vec::new(),
         reinforcement: Vec::new(),
+        free_fields: Vec::new(),
     };
     let law: SharedLaw = Arc::new(HenckyElastic::new(Elasticity::new(YOUNG, poisson)?));
     let mut constraints = Constraints::free(&grid);

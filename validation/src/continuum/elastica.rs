@@ -84,6 +84,7 @@ impl Bending {
             }],
             rigid: Vec::new(),
             reinforcement: Vec::new(),
+            free_fields: Vec::new(),
         };
         let elasticity = Elasticity::new(12.0 * LENGTH * LENGTH, 0.0)?;
         let law: SharedLaw = Arc::new(HenckyElastic::new(elasticity));

@@ -145,6 +145,7 @@ fn solve<const D: usize>(
         load_points,
         rigid: Vec::new(),
         reinforcement: Vec::new(),
+        free_fields: Vec::new(),
     };
     let constraints = walls(&grid, field.rollers);
     let load_path = |_from: f64, to: f64| {

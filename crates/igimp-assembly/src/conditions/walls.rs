@@ -7,10 +7,69 @@ use std::sync::Arc;
 pub struct Walls<const D: usize> {
     /// Walls with dashpots and springs.
     pub absorbing: Vec<AbsorbingWall<D>>,
-    /// The axis whose two walls move together, if any.
-    pub tied: Option<usize>,
+    /// Two walls that move together, if any do.
+    pub tied: Option<TiedWalls>,
     /// What the nodes of these walls stand at as the step begins; those that are not listed carry nothing and have not moved.
     pub nodes: Arc<Vec<WallNode<D>>>,
+    /// What the free field does beside nodes of walls with dashpots; beside those that are not listed the ground rests.
+    pub beside: Arc<Vec<FreeMotion<D>>>,
+}
+
+/// The two walls at the ends of an axis, whose nodes move together pair by pair.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TiedWalls {
+    /// The axis.
+    pub axis: usize,
+    /// Stiffness of the springs that tie them over that of the soil around them \[-\].
+    pub stiffness: f64,
+}
+
+impl TiedWalls {
+    /// The walls of a laminar box.
+    pub fn across(axis: usize) -> Self {
+        Self {
+            axis,
+            stiffness: 1e3,
+        }
+    }
+}
+
+/// What the free field does beside a node of a wall over a step, at its start and at its end (theory, eq. 77a).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeMotion<const D: usize> {
+    /// The node of the grid.
+    pub node: usize,
+    /// Displacement since the wall replaced its supports \[length\].
+    pub displacement: [[f64; D]; 2],
+    /// Velocity \[length/time\].
+    pub velocity: [[f64; D]; 2],
+    /// Force of the free field on what stands beside it, beyond that of the supports \[force\].
+    pub force: [[f64; D]; 2],
+}
+
+impl<const D: usize> FreeMotion<D> {
+    /// The same of another node.
+    #[must_use]
+    pub fn at(self, node: usize) -> Self {
+        Self { node, ..self }
+    }
+
+    /// Still ground beside a node.
+    pub(crate) fn still(node: usize) -> Self {
+        Self {
+            node,
+            displacement: [[0.0; D]; 2],
+            velocity: [[0.0; D]; 2],
+            force: [[0.0; D]; 2],
+        }
+    }
+
+    /// Whether all numbers are finite.
+    fn is_finite(&self) -> bool {
+        let all = [&self.displacement, &self.velocity, &self.force];
+        all.iter()
+            .all(|own| own.as_flattened().iter().all(|own| own.is_finite()))
+    }
 }
 
 /// A wall of the grid with dashpots and springs, by component of the displacement.
@@ -44,7 +103,8 @@ impl<const D: usize> Walls<D> {
             known(wall.normal)
                 && finite(&wall.spring)
                 && wall.spring.iter().all(|&spring| spring >= 0.0)
-        }) && self.tied.is_none_or(known)
+        }) && (self.tied).is_none_or(|own| known(own.axis) && own.stiffness > 0.0)
+            && self.beside.iter().all(FreeMotion::is_finite)
             && (self.nodes.iter()).all(|own| finite(&own.force) && finite(&own.displacement))
     }
 }

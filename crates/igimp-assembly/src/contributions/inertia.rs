@@ -338,7 +338,7 @@ impl<const D: usize> Inertia<D> {
 }
 
 /// How the nodes move over a step, and how particles take that over.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Motion<const D: usize> {
     /// Velocities at the start, by node \[length/time\].
     pub before: Vec<[f64; D]>,

@@ -1,5 +1,5 @@
-//! Forces of walls behind which the ground goes on (theory, eqs. 69 to 71): dashpots and springs at their nodes, and springs that
-//! make the nodes of two walls move together.
+//! Forces of walls behind which the ground goes on (theory, eqs. 69 to 71 and 77a): dashpots and springs at their nodes against the
+//! ground or a free field, and springs that make the nodes of two walls move together.
 //!
 //! The soil that touches a wall is what its particles leave at the nodes: with a first layer of cells of width h across the
 //! wall that is full, 2 Σ_p V_p S_ip / h is the area of a node on it.
@@ -11,14 +11,11 @@ use igimp_shape::Grid;
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::conditions::time_step::TimeStep;
-use crate::conditions::walls::AbsorbingWall;
+use crate::conditions::walls::{AbsorbingWall, FreeMotion, TiedWalls};
 use crate::contributions::inertia::Inertia;
 use crate::contributions::nodal_forces::{AddBlock, NodalForces};
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
-
-/// The stiffness of a tie of two nodes over that of the soil around them \[-\].
-const TIE: f64 = 1e3;
 
 /// Forces of walls at their nodes.
 #[derive(Debug)]
@@ -43,6 +40,18 @@ struct NodeAtWall<const D: usize> {
     velocity: [f64; D],
     /// At the start of the step \[length/time²\].
     acceleration: [f64; D],
+    /// What the free field does beside it.
+    beside: FreeMotion<D>,
+}
+
+/// The force with which two nodes are tied.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TieForce<const D: usize> {
+    /// The nodes of the grid, the lower one first.
+    pub nodes: [usize; 2],
+    /// Internal force at the first of them at the start and at the end of the step, the opposite of that at the second
+    /// \[force\].
+    pub force: [[f64; D]; 2],
 }
 
 impl<const D: usize> NodeAtWall<D> {
@@ -97,6 +106,8 @@ impl<const D: usize> WallForces<D> {
         let displaced: BTreeMap<usize, [f64; D]> = (walls.nodes.iter())
             .map(|own| (own.node, own.displacement))
             .collect();
+        let beside: BTreeMap<usize, FreeMotion<D>> =
+            walls.beside.iter().map(|own| (own.node, *own)).collect();
         let displacement = |node: usize| displaced.get(&node).copied().unwrap_or([0.0; D]);
         let mut nodes: BTreeMap<usize, NodeAtWall<D>> = BTreeMap::new();
         for wall in &walls.absorbing {
@@ -112,6 +123,7 @@ impl<const D: usize> WallForces<D> {
                     displacement: displacement(node),
                     velocity: [0.0; D],
                     acceleration: [0.0; D],
+                    beside: (beside.get(&node).copied()).unwrap_or(FreeMotion::still(node)),
                 });
                 own.join(wall, 2.0 / axis.spacing(cell), share);
             }
@@ -133,25 +145,38 @@ impl<const D: usize> WallForces<D> {
         }
     }
 
-    /// The forces at the start of a step that begins with these velocities \[force\], without those of springs and ties if
-    /// `dashpots_only`, added to `f`.
+    /// The forces at the start of a step that begins with these velocities, without those of springs and ties as the end of the
+    /// step has them before anything moves if `what_differs`, added to `f` \[force\].
     pub(crate) fn add_at_start(
         &self,
         velocity: &[[f64; D]],
-        dashpots_only: bool,
+        what_differs: bool,
         f: &mut [[f64; D]],
     ) {
         for own in &self.nodes {
+            let free = &own.beside;
             for a in 0..D {
-                f[own.node][a] += own.dashpot[a] * velocity[own.node][a];
+                f[own.node][a] += own.dashpot[a] * (velocity[own.node][a] - free.velocity[0][a]);
             }
         }
-        if dashpots_only {
+        if what_differs {
+            for own in &self.nodes {
+                let FreeMotion {
+                    displacement: [d0, d1],
+                    force: [f0, f1],
+                    ..
+                } = &own.beside;
+                for a in 0..D {
+                    f[own.node][a] += own.spring[a] * (d1[a] - d0[a]) + (f1[a] - f0[a]);
+                }
+            }
             return;
         }
         for own in &self.nodes {
+            let free = &own.beside;
             for a in 0..D {
-                f[own.node][a] += own.spring[a] * own.displacement[a];
+                f[own.node][a] += own.spring[a] * (own.displacement[a] - free.displacement[0][a])
+                    - free.force[0][a];
             }
         }
         for own in &self.ties {
@@ -161,6 +186,21 @@ impl<const D: usize> WallForces<D> {
                 f[own.nodes[1]][a] -= force;
             }
         }
+    }
+
+    /// The forces of ties over a step by nodal displacements `u` \[length\].
+    pub(crate) fn of_ties(&self, u: &[[f64; D]]) -> Vec<TieForce<D>> {
+        let force = |own: &Tie<D>| {
+            let [first, second] = own.nodes.map(|node| &u[node]);
+            TieForce {
+                nodes: own.nodes,
+                force: [
+                    own.gap.map(|gap| own.stiffness * gap),
+                    std::array::from_fn(|a| own.stiffness * (own.gap[a] + first[a] - second[a])),
+                ],
+            }
+        };
+        self.ties.iter().map(force).collect()
     }
 }
 
@@ -181,9 +221,16 @@ impl<const D: usize> NodalForces<D> for WallForces<D> {
             let velocity = self.step.map_or(still, |step| {
                 step.after(&own.velocity, &own.acceleration, by).0
             });
+            let free = &own.beside;
+            let of_free = if self.step.is_some() {
+                free.velocity[1]
+            } else {
+                still
+            };
             for a in 0..D {
-                f[own.node][a] +=
-                    own.dashpot[a] * velocity[a] + own.spring[a] * (own.displacement[a] + by[a]);
+                f[own.node][a] += own.dashpot[a] * (velocity[a] - of_free[a])
+                    + own.spring[a] * (own.displacement[a] + by[a] - free.displacement[1][a])
+                    - free.force[1][a];
             }
         }
         for own in &self.ties {
@@ -226,7 +273,7 @@ impl<const D: usize> NodalForces<D> for WallForces<D> {
 /// The pairs of nodes at the two ends of an axis, both with soil.
 fn ties<const D: usize>(
     grid: &Grid<D>,
-    axis: usize,
+    TiedWalls { axis, stiffness }: TiedWalls,
     shares: &BTreeMap<usize, Shares>,
     displacement: impl Fn(usize) -> [f64; D],
 ) -> Vec<Tie<D>> {
@@ -243,7 +290,7 @@ fn ties<const D: usize>(
             let (a, b) = (displacement(node), displacement(other));
             Some(Tie {
                 nodes: [node, other],
-                stiffness: TIE * modulus / (cell * cell),
+                stiffness: stiffness * modulus / (cell * cell),
                 gap: std::array::from_fn(|k| a[k] - b[k]),
             })
         })

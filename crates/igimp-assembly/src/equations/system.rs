@@ -24,7 +24,7 @@ use crate::contributions::reinforcement::{Members, Reinforcement};
 use crate::contributions::rigid::{
     AcceptedContact, Contact, NODES_PER_BODY, Penetration, RigidBody,
 };
-use crate::contributions::walls::WallForces;
+use crate::contributions::walls::{TieForce, WallForces};
 use crate::equations::blocks::BlockTable;
 use crate::equations::damping::StiffnessDamping;
 use crate::equations::kinematics::{Linearisation, ParticleTrial};
@@ -771,6 +771,11 @@ impl<'a, const D: usize> System<'a, D> {
         let mean = |own: &ParticleTrial<D>| (own.tau[0][0] + own.tau[1][1] + own.tau[2][2]) / 3.0;
         let stress = trial.particles.iter().map(|own| mean(own).abs());
         self.consolidation.time_error(u, stress.fold(0.0, f64::max))
+    }
+
+    /// The forces that make the nodes of two walls move together over a step by nodal step displacements `u` \[length\].
+    pub fn tie_forces(&self, u: &[[f64; D]]) -> Vec<TieForce<D>> {
+        self.walls.of_ties(u)
     }
 
     /// How the nodes move over a step by nodal step displacements `u` \[length\], for [`Particles::accelerate`]; none in statics.

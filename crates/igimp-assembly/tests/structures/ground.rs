@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use crate::common::{Random, conditions, displacements, grid, laws, particles};
 use igimp_assembly::{
-    AbsorbingWall, GroundMotion, Method, Rayleigh, Stencils, System, TimeScheme, TimeStep,
-    WallNode, Walls,
+    AbsorbingWall, GroundMotion, Method, Rayleigh, Stencils, System, TiedWalls, TimeScheme,
+    TimeStep, WallNode, Walls,
 };
 use igimp_material::TangentKind;
 
@@ -44,7 +44,7 @@ fn the_tangent_of_walls_and_damping_is_the_derivative_of_the_force() {
             .unwrap()
             .with_walls(Some(Walls {
                 absorbing: vec![wall(1, false), wall(0, true)],
-                tied: Some(0),
+                tied: Some(TiedWalls::across(0)),
                 nodes: Arc::new(Vec::clone(&nodes)),
             }))
             .unwrap()

@@ -1,6 +1,7 @@
 //! Where a run was left, as checkpoints tell it.
 
 pub(crate) mod fingerprint;
+pub(crate) mod free_field;
 pub(crate) mod reinforcement;
 pub(crate) mod rigid;
 
@@ -15,6 +16,7 @@ use igimp_solver::{Body, MarchState};
 use serde::{Deserialize, Serialize};
 
 use super::state::{Controls, State};
+use free_field::SavedFreeField;
 use reinforcement::SavedMember;
 use rigid::SavedBody;
 
@@ -110,6 +112,9 @@ pub(crate) struct Notes {
     pub(crate) rigid: BTreeMap<String, Vec<SavedBody>>,
     /// The reinforcement of each state, by its name.
     pub(crate) reinforcement: BTreeMap<String, Vec<SavedMember>>,
+    /// What moves in free field beside the current state.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) free_fields: Vec<SavedFreeField>,
     pub(crate) convergence_rows: usize,
     pub(crate) frames: usize,
     pub(crate) steps: usize,

@@ -192,6 +192,13 @@ fn ground_in_words(dynamic: &Dynamic) -> Vec<String> {
             "dashpots at {count} side(s), springs of {springs} M/L"
         ));
     }
+    if !dynamic.walls.free_field.is_empty() {
+        let count = dynamic.walls.free_field.len();
+        let springs = short(dynamic.walls.springs);
+        parts.push(format!(
+            "soil in free field beside {count} side(s), springs of {springs} M/L"
+        ));
+    }
     if dynamic.walls.tied {
         parts.push("left and right side tied".to_owned());
     }

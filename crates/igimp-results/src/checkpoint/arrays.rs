@@ -77,6 +77,7 @@ pub(super) fn to_body<const D: usize>(
         load_points,
         rigid: Vec::new(),
         reinforcement: Vec::new(),
+        free_fields: Vec::new(),
     })
 }
 

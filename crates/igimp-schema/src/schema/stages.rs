@@ -145,6 +145,8 @@ table! {
         "stiffness of the springs beside dashpots, as a multiple of the soil's modulus over the length of the model";
     tied_sides: flag, default "false",
         "whether the left and the right side move together, as those of a laminar box, in place of their supports";
+    free_field: list(choice(Wall), 0, 2), default "[]",
+        "sides beside which a column of the soil there moves on its own, with dashpots between: left, right or both";
     ground_motion: table(GROUND_MOTION: GroundMotion), optional "the ground stands still",
         "motion of the ground below; displacement and velocity are then those against it";
     rayleigh: table(RAYLEIGH: Rayleigh), optional "soil is not damped beside its plastic work",

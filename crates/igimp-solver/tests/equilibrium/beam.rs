@@ -41,6 +41,7 @@ fn bent(cells: usize, points: usize, steps: usize, method: &Method) -> (Body<2>,
         }],
         rigid: Vec::new(),
         reinforcement: Vec::new(),
+        free_fields: Vec::new(),
     };
     let law: SharedLaw = Arc::new(HenckyElastic::new(Elasticity::new(12e6, 0.2).unwrap()));
     let mut constraints = Constraints::free(&grid);

@@ -457,6 +457,7 @@ fn corrections_hardly_grow() {
                 load_points: Vec::new(),
                 rigid: Vec::new(),
                 reinforcement: Vec::new(),
+                free_fields: Vec::new(),
             };
             let mut workspace = Workspace::new(kind.build());
             let (report, _) = step(

@@ -9,21 +9,21 @@ use std::sync::Arc;
 use crate::body_support::{POISSON, YOUNG, block, elastic, unit_grid, workspace};
 use igimp_assembly::{
     AbsorbingWall, Constraints, Geometry, GroundMotion, Kinematics, Method, ParticleSeed,
-    Particles, Rayleigh, SharedLaw, StepConditions, StepLoads, TimeScheme, TimeStep, WallNode,
-    Walls,
+    Particles, Rayleigh, SharedLaw, StepConditions, StepLoads, TiedWalls, TimeScheme, TimeStep,
+    WallNode, Walls,
 };
 use igimp_material::{Elasticity, HenckyElastic};
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Body, NewtonSettings, NodalForces, StepReport, step};
 
-const TIGHT: NewtonSettings = NewtonSettings {
+pub(crate) const TIGHT: NewtonSettings = NewtonSettings {
     tolerance: 1e-11,
     max_iterations: 50,
     divergence: 1e6,
 };
 
 /// Small strain about the places where particles are: the wave equation.
-fn linear() -> Method {
+pub(crate) fn linear() -> Method {
     Method {
         geometry: Geometry::Given,
         kinematics: Kinematics::SmallStrain,
@@ -63,17 +63,17 @@ fn bar(cells: usize, rock: usize) -> (Body<1>, StepConditions<1>) {
 }
 
 /// A body that steps of equal time take further, with what stands at its walls.
-struct Motion<const D: usize> {
-    body: Body<D>,
-    conditions: StepConditions<D>,
-    walls: Walls<D>,
-    method: Method,
+pub(crate) struct Motion<const D: usize> {
+    pub(crate) body: Body<D>,
+    pub(crate) conditions: StepConditions<D>,
+    pub(crate) walls: Walls<D>,
+    pub(crate) method: Method,
     time: TimeStep,
     steps: usize,
 }
 
 impl<const D: usize> Motion<D> {
-    fn new(
+    pub(crate) fn new(
         body: Body<D>,
         conditions: StepConditions<D>,
         absorbing: Vec<AbsorbingWall<D>>,
@@ -105,7 +105,7 @@ impl<const D: usize> Motion<D> {
     }
 
     /// One step on ground of this acceleration at a time along the first axis.
-    fn step(&mut self, acceleration: impl Fn(f64) -> f64) -> StepReport {
+    pub(crate) fn step(&mut self, acceleration: impl Fn(f64) -> f64) -> StepReport {
         let along = |t: f64| {
             let mut all = [0.0; D];
             all[0] = acceleration(t);
@@ -463,7 +463,7 @@ fn a_layer_between_tied_sides_is_a_column() {
         Vec::new(),
         (period / 60.0, TimeScheme::Newmark),
     );
-    motion.walls.tied = Some(0);
+    motion.walls.tied = Some(TiedWalls::across(0));
     let particles = &motion.body.particles;
     let highest = particles.x.iter().map(|x| x[1]).fold(0.0, f64::max);
     let row: Vec<usize> = (0..particles.len())

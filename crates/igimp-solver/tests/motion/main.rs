@@ -5,5 +5,6 @@ mod body_support;
 mod contact;
 mod contact_in_space;
 mod dynamics;
+mod free_field;
 mod ground;
 mod impact;

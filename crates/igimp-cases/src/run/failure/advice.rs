@@ -69,6 +69,13 @@ pub(crate) fn advice<const D: usize>(
             ),
             finer_cell(case),
         ],
+        StepFailure::FreeField(_) => vec![
+            format!(
+                "absorbing in place of free_field in stage \"{}\", where the soil at a side does not stand by itself",
+                stage.name
+            ),
+            finer_cell(case),
+        ],
         StepFailure::NotFinite { .. } => vec![more_steps(stage), finer_cell(case)],
         StepFailure::MaxIterations { .. } | StepFailure::Diverged | StepFailure::Stagnated => {
             no_equilibrium(case, stage, error, near_worst)

@@ -17,7 +17,7 @@ use crate::error::CaseError;
 use crate::run::Target;
 use crate::run::output::records::Records;
 use crate::run::resume::{
-    End, Notes, ResumePoint, Resumption, Search, end_of_stage, fingerprint, notes_of,
+    End, Notes, ResumePoint, Resumption, Search, end_of_stage, fingerprint, free_field, notes_of,
     reinforcement, rigid,
 };
 use crate::run::state::{Controls, State};
@@ -116,6 +116,9 @@ impl<const D: usize> Output<D> {
                 .map_err(|why| damaged("meta.json".to_owned(), why))?;
             Ok(body)
         };
+        let mut current = body("current", &notes.controls)?;
+        current.free_fields = free_field::taken_up(&notes.free_fields, &found.states)
+            .map_err(|why| damaged("meta.json".to_owned(), why))?;
         for (name, body) in &found.states {
             unfit(case, records, body).map_or(Ok(()), |(array, why)| {
                 Err(damaged(format!("{name}/{array}.npy"), why))
@@ -153,7 +156,7 @@ impl<const D: usize> Output<D> {
             unknowns: notes.unknowns,
             stage: notes.stage.clone(),
             state: State {
-                body: body("current", &notes.controls)?,
+                body: current,
                 controls: notes.controls.clone(),
             },
             resumption: notes.resumption.clone(),
@@ -209,7 +212,8 @@ impl<const D: usize> Output<D> {
             };
             let found = checkpoint::read::<D>(&path, None)?;
             let notes = notes_of(&path, &found.meta)?;
-            if let Some((name, mut body)) = found.states.into_iter().next() {
+            let mut states = found.states.into_iter();
+            if let Some((name, mut body)) = states.next() {
                 if let Some((array, why)) = unfit(case, records, &body) {
                     let file = format!("{name}/{array}.npy");
                     return Err(CheckpointError::Damaged { path, file, why }.into());
@@ -227,6 +231,9 @@ impl<const D: usize> Output<D> {
                 let saved = saved.map_or(&[][..], Vec::as_slice);
                 body.reinforcement =
                     reinforcement::taken_up(case, &controls, saved).map_err(damaged)?;
+                let columns: Vec<_> = states.collect();
+                body.free_fields =
+                    free_field::taken_up(&notes.free_fields, &columns).map_err(damaged)?;
                 ends.insert(number, State { body, controls });
             }
         }

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::Output;
 use crate::error::CaseError;
-use crate::run::resume::{Notes, end_of_stage, fingerprint, reinforcement, rigid};
+use crate::run::resume::{Notes, end_of_stage, fingerprint, free_field, reinforcement, rigid};
 use crate::run::state::Controls;
 
 impl<const D: usize> Output<D> {
@@ -42,6 +42,7 @@ impl<const D: usize> Output<D> {
             energy_rows: self.energy.as_ref().map_or(0, RowWriter::len),
             rigid: BTreeMap::new(),
             reinforcement: BTreeMap::new(),
+            free_fields: Vec::new(),
             convergence_rows: self.convergence.len(),
             frames: self.frames.len(),
             steps: self.steps,
@@ -71,6 +72,9 @@ impl<const D: usize> Output<D> {
         let notes = Notes {
             rigid: saved.collect(),
             reinforcement: members.collect(),
+            free_fields: states
+                .first()
+                .map_or_else(Vec::new, |(_, body)| free_field::all(body)),
             ..notes.clone()
         };
         let data = serde_json::to_value(notes).map_err(|source| ResultsError::File {
@@ -85,7 +89,11 @@ impl<const D: usize> Output<D> {
     pub(super) fn save(&self, states: &[(&str, &Body<D>)], notes: &Notes) -> Result<(), CaseError> {
         let name = format!("step-{:06}", self.steps);
         let (folder, meta) = (self.folder.checkpoint(), self.meta(notes, states)?);
-        checkpoint::write_quickly(&folder, &name, states, &meta, self.checkpoint_keep)?;
+        let columns = states
+            .first()
+            .map_or_else(Vec::new, |(_, body)| free_field::states(body));
+        let states = with_columns(states, &columns);
+        checkpoint::write_quickly(&folder, &name, &states, &meta, self.checkpoint_keep)?;
         Ok(())
     }
 
@@ -110,7 +118,18 @@ impl<const D: usize> Output<D> {
         rows.and(frames)?;
         let states = [("current", body)];
         let (folder, meta) = (self.folder.checkpoint(), self.meta(notes, &states)?);
+        let columns = free_field::states(body);
+        let states = with_columns(&states, &columns);
         checkpoint::write(&folder, &end_of_stage(stage), &states, &meta, 1)?;
         Ok(())
     }
+}
+
+/// States with those of the columns that move in free field behind them.
+fn with_columns<'s, const D: usize>(
+    states: &[(&'s str, &'s Body<D>)],
+    columns: &'s [(String, Body<D>)],
+) -> Vec<(&'s str, &'s Body<D>)> {
+    let columns = columns.iter().map(|(name, body)| (name.as_str(), body));
+    states.iter().copied().chain(columns).collect()
 }

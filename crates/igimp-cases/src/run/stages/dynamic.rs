@@ -59,7 +59,9 @@ pub(crate) fn dynamic<const D: usize>(
         ..method.small_cuts
     };
     if resumption.is_none() {
-        state.controls.walls = walls::begin(model, state, &method, dynamic)?;
+        let walls = walls::begin(model, state, &method, dynamic)?;
+        state.body.free_fields = walls::free_fields(model, state, &method, dynamic)?;
+        state.controls.walls = walls;
     }
     let mut from = resumption.map_or_else(|| state.controls.clone(), |left| left.from.clone());
     if let Some((materials, reduction)) = &dynamic.reduction {

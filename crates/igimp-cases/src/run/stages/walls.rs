@@ -5,19 +5,30 @@ use std::sync::Arc;
 
 use igimp_assembly::{
     AbsorbingWall, AssemblyError, Constraints, GroundMotion, Method, Stencils, StepConditions,
-    System, TimeScheme, WallNode, Walls,
+    System, TiedWalls, TimeScheme, WallNode, Walls,
 };
 use igimp_material::TangentKind;
-use igimp_model::{Base, Dynamic};
+use igimp_model::{Base, Dynamic, StageWalls};
 use igimp_shape::Grid;
+use igimp_solver::FreeField;
 
 use crate::error::CaseError;
 use crate::run::model::Model;
 use crate::run::state::{Controls, State, WallTrack};
 
+/// The walls with dashpots, by axis and whether it is the upper end.
+fn with_dashpots(dynamic: &Dynamic) -> Vec<(usize, bool)> {
+    let StageWalls {
+        absorbing,
+        free_field,
+        ..
+    } = &dynamic.walls;
+    absorbing.iter().chain(free_field).copied().collect()
+}
+
 /// The walls whose supports a stage lets go, by axis and whether it is the upper end.
 fn released(dynamic: &Dynamic) -> Vec<(usize, bool)> {
-    let mut walls = dynamic.walls.absorbing.clone();
+    let mut walls = with_dashpots(dynamic);
     if dynamic.walls.tied {
         walls.extend([(0, false), (0, true)]);
     }
@@ -93,6 +104,50 @@ pub(super) fn begin<const D: usize>(
         .collect())
 }
 
+/// Lets go what the supports of these walls alone hold.
+fn let_go<const D: usize>(
+    model: &Model<'_, D>,
+    walls: &[(usize, bool)],
+    conditions: &mut StepConditions<D>,
+) -> Result<(), AssemblyError> {
+    for (node, is_held) in held_by_walls(model, &conditions.grid, walls)? {
+        for axis in (0..D).filter(|&axis| is_held[axis]) {
+            conditions.constraints.release(node, axis)?;
+        }
+    }
+    Ok(())
+}
+
+/// What moves in free field beside the walls of a stage as it begins: a column that a motion before had goes on.
+pub(super) fn free_fields<const D: usize>(
+    model: &Model<'_, D>,
+    state: &State<D>,
+    method: &Method,
+    dynamic: &Dynamic,
+) -> Result<Vec<FreeField<D>>, CaseError> {
+    let sides = &dynamic.walls.free_field;
+    if sides.is_empty() {
+        return Ok(Vec::new());
+    }
+    let controls = &state.controls;
+    let mut conditions = model.conditions(controls, controls, 0.0)?;
+    let_go(model, &released(dynamic), &mut conditions)?;
+    let body = &state.body;
+    let beside = |&side: &(usize, bool)| {
+        let mut before = body.free_fields.iter();
+        match before.find(|own| (own.normal, own.upper) == side) {
+            Some(own) => Ok(own.clone()),
+            None => Ok(FreeField::beside(
+                &body.particles,
+                method,
+                &conditions,
+                side,
+            )?),
+        }
+    };
+    sides.iter().map(beside).collect()
+}
+
 /// The conditions of a step with the walls, the motion of the ground and the damping of its stage.
 pub(crate) fn shaken<const D: usize>(
     model: &Model<'_, D>,
@@ -101,11 +156,7 @@ pub(crate) fn shaken<const D: usize>(
     mut conditions: StepConditions<D>,
 ) -> Result<StepConditions<D>, AssemblyError> {
     let walls = released(dynamic);
-    for (node, is_held) in held_by_walls(model, &conditions.grid, &walls)? {
-        for axis in (0..D).filter(|&axis| is_held[axis]) {
-            conditions.constraints.release(node, axis)?;
-        }
-    }
+    let_go(model, &walls, &mut conditions)?;
     let walls = (!walls.is_empty()).then(|| walls_of(model, dynamic, before));
     let scheme = dynamic.scheme;
     let ground = dynamic.ground_motion.as_ref().map(|motion| {
@@ -158,8 +209,9 @@ fn walls_of<const D: usize>(
         displacement: std::array::from_fn(|axis| own.displacement[axis]),
     };
     Walls {
-        absorbing: dynamic.walls.absorbing.iter().map(wall).collect(),
-        tied: dynamic.walls.tied.then_some(0),
+        absorbing: with_dashpots(dynamic).iter().map(wall).collect(),
+        tied: dynamic.walls.tied.then(|| TiedWalls::across(0)),
         nodes: Arc::new(controls.walls.iter().map(node).collect()),
+        beside: Arc::default(),
     }
 }

@@ -34,12 +34,14 @@ pub(super) fn walls<const D: usize>(
             absorbing.push(known);
         }
     }
+    let free_field = beside_free_field::<D>(own, &absorbing, problems)?;
     let motion = own.ground_motion.as_ref();
     let below = (D - 1, false);
     if motion.is_some_and(|own| *own.base == BaseKind::Compliant) && !absorbing.contains(&below) {
         absorbing.push(below);
     }
-    let first = own.absorbing.iter().next().map(|wall| wall.place);
+    let mut sides = own.absorbing.iter().chain(own.free_field.iter());
+    let first = sides.next().map(|wall| wall.place);
     let tied = own.tied_sides.then_some(own.tied_sides.place);
     if about.index == 0
         && let Some(place) = first.or(tied).or(motion.map(|own| own.place))
@@ -56,7 +58,49 @@ pub(super) fn walls<const D: usize>(
         absorbing,
         springs: *own.wall_springs,
         tied: *own.tied_sides,
+        free_field,
     })
+}
+
+/// The sides beside which soil moves in free field.
+fn beside_free_field<const D: usize>(
+    own: &Dynamic,
+    absorbing: &[(usize, bool)],
+    problems: &mut Problems,
+) -> Option<Vec<(usize, bool)>> {
+    let mut sides = Vec::new();
+    for wall in own.free_field.iter() {
+        let known = side::<D>(wall, problems).ok()?;
+        let (message, help) = if D == 3 {
+            (
+                "soil moves in free field beside a model in plane strain alone",
+                "write absorbing = [...] in space, with the sides far away",
+            )
+        } else if known.0 != 0 {
+            (
+                "soil in free field stands beside the left or the right side",
+                "write base = \"compliant\" for rock below",
+            )
+        } else if *own.tied_sides {
+            (
+                "this side moves with the other, and is to have soil in free field beside it",
+                "keep tied_sides for level ground, free_field for all other",
+            )
+        } else if absorbing.contains(&known) {
+            (
+                "this side has dashpots against still ground already",
+                "name it in free_field alone: its dashpots come with it",
+            )
+        } else {
+            if !sides.contains(&known) {
+                sides.push(known);
+            }
+            continue;
+        };
+        problems.error(wall.place, message).help(help);
+        return None;
+    }
+    Some(sides)
 }
 
 /// The motion of the ground.
