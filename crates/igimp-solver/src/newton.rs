@@ -230,10 +230,7 @@ fn equilibrium<const D: usize>(
         corrector = corrector.on_path(factor);
         u.clone_from(&guess.u);
     }
-    let mut residual = start(&mut corrector, &mut u)?;
-    if corrector.system.prescribes_motion() {
-        carry_prescribed_motion(&corrector.system, &mut residual, &mut u)?;
-    }
+    let mut residual = begin(&mut corrector, &mut u)?;
     while !corrector.is_found(&u, &residual) {
         corrector.correct(&mut u, &mut residual)?;
     }
@@ -260,26 +257,23 @@ fn equilibrium<const D: usize>(
     let false_support = system.false_support(&reactions);
     let drag_share = system.drag_share(&u);
     let plastic_share = plastic_share(trial);
-    let external_work = system.work_of_loads(&u);
-    let gross_work = system.gross_work_of_loads(&u);
     let work = (attempt.measures_work)
         .then(|| system.work(trial, &u))
         .transpose()?;
     let pace = pace_after(&system, trial, &u, iterations)?;
     let energy = system.energy(trial, &u)?;
-    let motion = system.motion(&u);
-    let ties = system.tie_forces(&u);
+    let (external_work, gross_work) = (system.work_of_loads(&u), system.gross_work_of_loads(&u));
+    let (motion, ties) = (system.motion(&u), system.tie_forces(&u));
     let contact = system.bodies_at(&u)?;
     let pores = system.into_pores(&u);
-    body.load_points = load_points;
-    body.rigid = contact.bodies;
-    body.reinforcement = reinforcement;
     body.particles.commit(&stencils, method, trial, &u);
     if let Some(motion) = &motion {
         body.particles.accelerate(&stencils, motion);
     }
     body.particles.fill_pores(&pores);
     body.particles.push_out(&contact.push_out);
+    (body.load_points, body.rigid) = (load_points, contact.bodies);
+    body.reinforcement = reinforcement;
     times.commit = clock.elapsed();
     let report = StepReport {
         from: attempt.from,
@@ -311,6 +305,18 @@ fn equilibrium<const D: usize>(
         ties,
     };
     Ok((report, forces))
+}
+
+/// The start of a step, and what is prescribed of its motion carried through the body.
+fn begin<const D: usize>(
+    corrector: &mut Corrector<'_, '_, D>,
+    u: &mut Vec<[f64; D]>,
+) -> Result<OutOfBalance, StepFailure> {
+    let mut residual = start(corrector, u)?;
+    if corrector.system.prescribes_motion() {
+        carry_prescribed_motion(&corrector.system, &mut residual, u)?;
+    }
+    Ok(residual)
 }
 
 /// The start of a step: nodal displacements `u` of motion that goes on as it is, or none, and the residual there.

@@ -46,6 +46,7 @@ fn the_tangent_of_walls_and_damping_is_the_derivative_of_the_force() {
                 absorbing: vec![wall(1, false), wall(0, true)],
                 tied: Some(TiedWalls::across(0)),
                 nodes: Arc::new(Vec::clone(&nodes)),
+                beside: Arc::new(Vec::new()),
             }))
             .unwrap()
             .with_ground(Some(GroundMotion {
