@@ -280,11 +280,10 @@ fn on(
     let share = path.share()?;
     let own = path.at(share);
     let ([multiplier, _], [y, _]) = (own.multiplier, own.dilatancy);
-    let [g_u, g_w] = path.paces(y);
-    let (up, low) = (
-        path.trial[0] - multiplier * g_u,
-        path.trial[1] + multiplier * g_w,
-    );
+    let [_, g_w] = path.paces(y);
+    let low = path.trial[1] + multiplier * g_w;
+    // By the circle, and not by the way from a trial stress that may be far larger: the stress is on the surface to the last bit.
+    let up = low + hyperbola.asymptote * share * hyperbola.confinement(low);
     let middle = trial[1] + multiplier * moduli.aside() * y;
     let inside = own.confinement > 0.0 && multiplier >= 0.0;
     let slack = 1e-14 * (trial[0].abs() + trial[2].abs());
