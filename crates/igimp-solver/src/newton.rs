@@ -221,8 +221,8 @@ fn equilibrium<const D: usize>(
     let set_up = clock.elapsed();
     let mut u = vec![[0.0; D]; system.node_count()];
     let of_step = (system, &stencils);
-    let mut corrector = Corrector::new(of_step, grid, settings, workspace, history, set_up);
-    corrector = corrector.guarded_if(attempt.is_guarded);
+    let mut corrector = Corrector::new(of_step, grid, settings, workspace, history, set_up)
+        .guarded_if(attempt.is_guarded);
     if let Some((load_path, work, guess)) = attempt.on_path {
         let points = &body.load_points;
         let asked = (attempt.from, work);
@@ -254,8 +254,7 @@ fn equilibrium<const D: usize>(
     let clock = Instant::now();
     let reactions = system.reactions(trial);
     let unknowns = system.unknowns().len();
-    let false_support = system.false_support(&reactions);
-    let drag_share = system.drag_share(&u);
+    let (false_support, drag_share) = (system.false_support(&reactions), system.drag_share(&u));
     let plastic_share = plastic_share(trial);
     let work = (attempt.measures_work)
         .then(|| system.work(trial, &u))

@@ -35,7 +35,8 @@ pub struct HardeningSoilParameters {
 }
 
 impl HardeningSoilParameters {
-    /// Dense Hostun sand as Schanz, Vermeer and Bonnier (1999) give it, normally consolidated, in Pa.
+    /// Dense Hostun sand, normally consolidated, in Pa, by values commonly quoted from Schanz, Vermeer and Bonnier (1999); the paper was
+    /// not at hand.
     pub fn dense_hostun_sand() -> Self {
         Self {
             cohesion: 0.0,
@@ -53,7 +54,7 @@ impl HardeningSoilParameters {
         }
     }
 
-    /// Loose Hostun sand of the same paper, in Pa.
+    /// Loose Hostun sand, likewise, in Pa.
     pub fn loose_hostun_sand() -> Self {
         Self {
             friction_angle: 34_f64.to_radians(),
