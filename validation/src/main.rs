@@ -15,6 +15,7 @@ mod limit_equilibrium;
 mod manufactured;
 mod mesh_study;
 mod mohr_coulomb_slope;
+mod motion;
 mod pictures;
 mod pseudo_static;
 mod reinforcement;
@@ -135,6 +136,7 @@ enum Case {
     ContactSpace,
     ContactSphere,
     ContactCircle,
+    Motion,
     Comparisons,
 }
 
@@ -204,6 +206,7 @@ impl Case {
             Self::ContactSpace => contact::space::study(level, out),
             Self::ContactSphere => contact::space::sphere::study(level, out),
             Self::ContactCircle => contact::space::circle::study(level, out),
+            Self::Motion => motion::study(level, out),
             Self::Comparisons => comparisons::study(level, out),
         }
     }

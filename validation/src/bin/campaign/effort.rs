@@ -79,6 +79,7 @@ fn cause(failure: &StepFailure) -> &'static str {
         ) => "singular tangent",
         StepFailure::Linear(LinearSolverError::Inaccurate { .. }) => "inaccurate solution",
         StepFailure::Linear(_) => "linear solver fails",
+        StepFailure::FreeField(within) => cause(within),
     }
 }
 
