@@ -8,9 +8,7 @@ pub(crate) mod stage;
 use std::sync::Arc;
 
 use igimp_assembly::{SurfaceError, Tension};
-use igimp_model::{
-    Adhesion, Material, RigidForm, RigidInterface, RigidPart, RigidShape, RigidShear, Strength,
-};
+use igimp_model::{Adhesion, Material, RigidForm, RigidInterface, RigidPart, RigidShear, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::rigid::{self as keys, Interface, Limited, RigidBody, RigidCommon};
@@ -274,9 +272,6 @@ fn in_grid<const D: usize>(
                 "make it {} m thick, or the cells there smaller",
                 number(LEAST_CELLS * cell)
             ));
-    } else if let Some(RigidShape::Polygon(corners)) = part.shape.in_plane() {
-        let within = [frame.lower, frame.upper].map(|corner| [corner[0], corner[1]]);
-        narrow::warn((&name, own.name.place), corners, cell, within, problems);
     }
     match part.surface(cell) {
         Ok(_) => {}

@@ -10,7 +10,7 @@ use igimp_schema::schema::stages::Stage;
 use igimp_schema::text::{clip, point};
 use igimp_schema::tree::read::At;
 
-use super::{Basis, Room, Sides};
+use super::{Basis, Room, Sides, narrow};
 use crate::build::Thing;
 use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Site;
@@ -58,6 +58,7 @@ impl Room<2> for Around<'_> {
 
     fn check(&self, own: &RigidBody<2>, part: &RigidPart<2>, problems: &mut Problems) {
         beside_soil(own, part, self, problems);
+        narrow_in_soil(own, part, self.site, problems);
     }
 
     fn followed(&self) -> (bool, &'static str) {
@@ -199,6 +200,28 @@ fn thickness(shape: &RigidShape) -> f64 {
 
 /// Corners up to which every pair is looked at for the thickness of a body.
 const MOST_PAIRED: usize = 100;
+
+/// Warns of a corner of a body that is narrower than two cells, in the box around the soil or less than a cell beyond it.
+fn narrow_in_soil(own: &RigidBody<2>, part: &RigidPart<2>, site: &Site, problems: &mut Problems) {
+    let (Some(frame), Some(RigidShape::Polygon(corners))) = (&site.frame, part.shape.in_plane())
+    else {
+        return;
+    };
+    let (lower, upper) = part.bounds();
+    let axes = frame.axes.iter().enumerate();
+    let cell = axes
+        .map(|(axis, own)| own.smallest_between(lower[axis], upper[axis]))
+        .fold(f64::INFINITY, f64::min);
+    let mut within = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    for corner in site.polygons.iter().flatten() {
+        for axis in 0..2 {
+            within[0][axis] = within[0][axis].min(corner[axis] - cell);
+            within[1][axis] = within[1][axis].max(corner[axis] + cell);
+        }
+    }
+    let name = clip(&part.name, 40);
+    narrow::warn((&name, own.name.place), corners, cell, within, problems);
+}
 
 /// Refuses a body that overlaps soil as it starts, or that is placed while it is there.
 fn beside_soil(
