@@ -8,10 +8,10 @@ use igimp_assembly::Method;
 
 use crate::body::Body;
 use crate::free_factor::Guess;
-use crate::load_path::LoadPath;
 use crate::march::{Accepted, MarchState, Observer};
 use crate::newton::{Target, step_on_path};
 use crate::report::{NodalForces, StepError, StepReport};
+use crate::settings::LoadPath;
 use crate::settings::NewtonSettings;
 use crate::workspace::Workspace;
 

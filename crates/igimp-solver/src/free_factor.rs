@@ -5,7 +5,7 @@ use igimp_assembly::{AssemblyError, LoadPoint, OutOfBalance, System, Trial};
 use igimp_linear::TangentMatrix;
 use igimp_material::TangentKind;
 
-use crate::load_path::LoadPath;
+use crate::settings::LoadPath;
 
 /// Relative change of the load factor in a difference quotient \[-\].
 const DIFFERENCE: f64 = 1e-6;

@@ -13,14 +13,14 @@ use igimp_assembly::{
     AssemblyError, Constraints, FreeMotion, Geometry, Method, Particles, Stencils, StepConditions,
     System, TieForce, TiedWalls, WallNode, Walls,
 };
-use igimp_linear::SolverKind;
 use igimp_material::TangentKind;
 use igimp_shape::{Axis, Grid};
 
-use crate::body::Body;
-use crate::newton::step;
 use crate::report::{NodalForces, StepError, StepFailure};
-use crate::{NewtonSettings, Workspace};
+
+/// A step of particles alone under conditions: the particles after it, and its nodal forces.
+pub(crate) type StepOfColumn<'s, const D: usize> = dyn Fn(Particles<D>, &StepConditions<D>) -> Result<(Particles<D>, NodalForces<D>), StepFailure>
+    + 's;
 
 /// The stiffness of the ties of a column over that of its soil \[-\]: the shear of soil that is tied across a cell is softer by
 /// about a third of its inverse.
@@ -146,20 +146,10 @@ impl<const D: usize> FreeField<D> {
         &self,
         method: &Method,
         of_body: &StepConditions<D>,
-        settings: &NewtonSettings,
+        step: &StepOfColumn<'_, D>,
     ) -> Result<(Self, Vec<FreeMotion<D>>), StepFailure> {
         let conditions = self.conditions(of_body)?;
-        let mut body = Body::new(self.particles.clone());
-        let mut workspace = Workspace::new(SolverKind::Auto.build());
-        let (_, forces) = step(
-            &mut body,
-            method,
-            &conditions,
-            (0.0, 1.0),
-            settings,
-            &mut workspace,
-        )
-        .map_err(|error| *error.failure)?;
+        let (particles, forces) = step(self.particles.clone(), &conditions)?;
         let nodes: Vec<_> = std::iter::zip(self.nodes.iter(), &forces.u)
             .map(|(own, u)| WallNode {
                 displacement: std::array::from_fn(|a| own.displacement[a] + u[a]),
@@ -168,8 +158,8 @@ impl<const D: usize> FreeField<D> {
             .collect();
         let beside = self.beside_wall((&conditions.grid, &of_body.grid), &nodes, &forces);
         let particles = match method.geometry {
-            Geometry::Given => body.particles,
-            Geometry::Moving => self.put_back(body.particles)?,
+            Geometry::Given => particles,
+            Geometry::Moving => self.push_out(particles)?,
         };
         let after = Self {
             particles,
@@ -180,7 +170,7 @@ impl<const D: usize> FreeField<D> {
     }
 
     /// The particles at their places across the wall: the column is the same everywhere along that axis.
-    fn put_back(&self, particles: Particles<D>) -> Result<Particles<D>, AssemblyError> {
+    fn push_out(&self, particles: Particles<D>) -> Result<Particles<D>, AssemblyError> {
         let mut fields = particles.into_fields();
         let normal = self.normal;
         for (x, before) in fields.x.iter_mut().zip(&self.particles.x) {
@@ -241,28 +231,28 @@ impl<const D: usize> FreeField<D> {
     }
 }
 
-/// What stands beside the walls of a body after a step, and the conditions of that step with what it does there; none for a body
+/// The free fields of a body after a step, and the conditions of that step with what it does there; none for a body
 /// without free fields, and in statics.
 ///
 /// # Errors
 /// [`StepError`] of a column that finds no equilibrium.
 pub(crate) fn go_ahead<const D: usize>(
-    body: &Body<D>,
+    free_fields: &[FreeField<D>],
     method: &Method,
     conditions: &StepConditions<D>,
     (from, to): (f64, f64),
-    settings: &NewtonSettings,
+    step: &StepOfColumn<'_, D>,
 ) -> Result<Option<(Vec<FreeField<D>>, StepConditions<D>)>, StepError> {
     let Some(walls) = &conditions.walls else {
         return Ok(None);
     };
-    if body.free_fields.is_empty() || conditions.time.is_none() {
+    if free_fields.is_empty() || conditions.time.is_none() {
         return Ok(None);
     }
     let (mut after, mut beside) = (Vec::new(), Vec::new());
     let mut advance = || {
-        for column in &body.free_fields {
-            let (own, motion) = column.advanced(method, conditions, settings)?;
+        for column in free_fields {
+            let (own, motion) = column.advanced(method, conditions, step)?;
             after.push(own);
             beside.extend(motion);
         }

@@ -11,7 +11,6 @@ mod corrector;
 pub mod element;
 mod free_factor;
 mod free_field;
-mod load_path;
 mod march;
 mod newton;
 mod pace;
@@ -21,7 +20,7 @@ mod sensitivity;
 mod settings;
 mod workspace;
 
-pub use crate::load_path::LoadPath;
+pub use crate::settings::LoadPath;
 pub use crate::settings::NewtonSettings;
 pub use crate::workspace::Workspace;
 pub use body::Body;

@@ -4,9 +4,10 @@
 use std::time::Instant;
 
 use igimp_assembly::{
-    AssemblyError, Geometry, LoadPoint, Method, OutOfBalance, Reinforcement, Stencils,
+    AssemblyError, Geometry, LoadPoint, Method, OutOfBalance, Particles, Reinforcement, Stencils,
     StepConditions, System, Trial,
 };
+use igimp_linear::SolverKind;
 use igimp_material::{Regime, TangentKind};
 use igimp_shape::Grid;
 
@@ -14,10 +15,10 @@ use crate::body::Body;
 use crate::corrector::Corrector;
 use crate::free_factor::{FreeFactor, Guess};
 use crate::free_field;
-use crate::load_path::LoadPath;
 use crate::pace;
 use crate::report::{NodalForces, StepError, StepFailure, StepReport, padded};
 use crate::residual_history::ResidualHistory;
+use crate::settings::LoadPath;
 use crate::{NewtonSettings, Workspace};
 
 /// The ghost penalty of a step that is singular at a node which hardly touches soil \[-\].
@@ -43,7 +44,21 @@ pub fn step<const D: usize>(
     workspace: &mut Workspace<D>,
 ) -> Result<(StepReport, NodalForces<D>), StepError> {
     let factors = (from, to);
-    match free_field::go_ahead(body, method, conditions, factors, settings)? {
+    let of_column = |particles: Particles<D>, own: &StepConditions<D>| {
+        let mut column = Body::new(particles);
+        let mut workspace = Workspace::new(SolverKind::Auto.build());
+        step_of_body(
+            &mut column,
+            method,
+            own,
+            (0.0, 1.0),
+            settings,
+            &mut workspace,
+        )
+        .map(|(_, forces)| (column.particles, forces))
+        .map_err(|error| *error.failure)
+    };
+    match free_field::go_ahead(&body.free_fields, method, conditions, factors, &of_column)? {
         None => step_of_body(body, method, conditions, factors, settings, workspace),
         Some((free_fields, conditions)) => {
             let done = step_of_body(body, method, &conditions, factors, settings, workspace)?;

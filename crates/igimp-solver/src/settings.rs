@@ -1,6 +1,15 @@
-//! When Newton's method stops.
+//! What a march is given: conditions of its steps by the load factor, and when Newton's method stops.
 
-use igimp_assembly::OutOfBalance;
+use igimp_assembly::{AssemblyError, OutOfBalance, StepConditions};
+
+/// What holds between two load factors. Closures are load paths.
+pub trait LoadPath<const D: usize> {
+    /// Grid, constraints, loads and laws of the step from load factor `from` to `to`.
+    ///
+    /// # Errors
+    /// [`AssemblyError`] when the conditions cannot be stated.
+    fn conditions(&self, from: f64, to: f64) -> Result<StepConditions<D>, AssemblyError>;
+}
 
 /// When a step counts as converged, and when it is given up.
 #[derive(Clone, Copy, Debug, PartialEq)]

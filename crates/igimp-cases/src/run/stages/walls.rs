@@ -105,7 +105,7 @@ pub(super) fn begin<const D: usize>(
 }
 
 /// Lets go what the supports of these walls alone hold.
-fn let_go<const D: usize>(
+fn release<const D: usize>(
     model: &Model<'_, D>,
     walls: &[(usize, bool)],
     conditions: &mut StepConditions<D>,
@@ -131,7 +131,7 @@ pub(super) fn free_fields<const D: usize>(
     }
     let controls = &state.controls;
     let mut conditions = model.conditions(controls, controls, 0.0)?;
-    let_go(model, &released(dynamic), &mut conditions)?;
+    release(model, &released(dynamic), &mut conditions)?;
     let body = &state.body;
     let beside = |&side: &(usize, bool)| {
         let mut before = body.free_fields.iter();
@@ -156,7 +156,7 @@ pub(crate) fn shaken<const D: usize>(
     mut conditions: StepConditions<D>,
 ) -> Result<StepConditions<D>, AssemblyError> {
     let walls = released(dynamic);
-    let_go(model, &walls, &mut conditions)?;
+    release(model, &walls, &mut conditions)?;
     let walls = (!walls.is_empty()).then(|| walls_of(model, dynamic, before));
     let scheme = dynamic.scheme;
     let ground = dynamic.ground_motion.as_ref().map(|motion| {
