@@ -44,7 +44,7 @@ struct Mode {
 fn go_on(
     variant: &str,
     body: &mut Body<1>,
-    (scheme, count, begins): (TimeScheme, usize, bool),
+    (scheme, count): (TimeScheme, usize),
 ) -> Result<(RunRecord, Mode), CaseError> {
     let grid = grid_of(1.0, [CELLS + 2])?;
     let mut constraints = Constraints::free(&grid);
@@ -58,7 +58,6 @@ fn go_on(
     };
     let continuous = 0.5 * PI * compression() / CELLS as f64;
     let steps = Steps {
-        begins,
         tolerance: 1e-12,
         ..Steps::of(scheme, OMEGA / continuous, count)
     };
@@ -85,7 +84,7 @@ pub(super) fn hold(study: &mut Study) -> Result<(), CaseError> {
     let mut body = moving(&bar(CELLS), |x| [1e-3 * compression() * shape(x[0])])?;
     let euler = TimeScheme::BackwardEuler;
     let variant = "bar, backward Euler";
-    let (run, mode) = go_on(variant, &mut body, (euler, DAMPED + 2, true))?;
+    let (run, mode) = go_on(variant, &mut body, (euler, DAMPED + 2))?;
     let run = study.run_to_end(run);
     let [before, after] = [DAMPED, DAMPED + 1];
     let left = mode.energy[after] / mode.energy[before];
@@ -110,7 +109,7 @@ pub(super) fn hold(study: &mut Study) -> Result<(), CaseError> {
         OMEGA / omega,
     );
     let variant = "bar, Newmark's method";
-    let (run, mode) = go_on(variant, &mut body, (TimeScheme::Newmark, 40, true))?;
+    let (run, mode) = go_on(variant, &mut body, (TimeScheme::Newmark, 40))?;
     let run = study.run_to_end(run);
     let quantity = "energy after 39 steps / energy after one [-]";
     let ratio = mode.energy[39] / mode.energy[0];

@@ -34,8 +34,6 @@ struct Steps {
     /// How long one takes \[time\].
     duration: f64,
     count: usize,
-    /// Whether the first of them is the first of the motion.
-    begins: bool,
     tolerance: f64,
 }
 
@@ -47,7 +45,6 @@ impl Steps {
             lumped: 0.0,
             duration,
             count,
-            begins: true,
             tolerance: 1e-11,
         }
     }
@@ -68,7 +65,7 @@ fn moved<const D: usize>(
             duration: steps.duration,
             scheme: steps.scheme,
             lumped: steps.lumped,
-            is_first: steps.begins && from == 0.0,
+            is_first: from == 0.0,
             must_resolve: false,
         }))
     };
