@@ -8,7 +8,7 @@ use igimp_assembly::SharedLaw;
 use igimp_benchmarks::states::{BenchLaw, COUNT, Side, laws, trial_strains, turned};
 use igimp_benchmarks::{BenchResult, elements, run};
 use igimp_material::{
-    History, MaterialError, Principal, TangentKind, Tensor, lift_finite, lift_small,
+    History, MaterialError, PointContext, Principal, TangentKind, Tensor, lift_finite, lift_small,
 };
 
 fn main() -> BenchResult {
@@ -32,7 +32,7 @@ fn bench(criterion: &mut Criterion, name: &str, law: &SharedLaw, side: Side) {
         .collect();
 
     pass(criterion, "return_map", name, &strains, |strain| {
-        law.return_map(strain, &history)
+        law.return_map(strain, &history, &PointContext::STATIC)
     });
     pass(criterion, "lift_small", name, &turned(&strains), |eps_e| {
         lift_small::<2>(&**law, eps_e, &history, kind)

@@ -122,14 +122,16 @@ pub fn turned(values: &[Principal]) -> Vec<Tensor> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use igimp_material::{TangentKind, lift_finite, lift_small};
+    use igimp_material::{PointContext, TangentKind, lift_finite, lift_small};
 
     #[test]
     fn states_are_on_their_side() {
         for BenchLaw { name, law, sides } in laws().unwrap() {
             for &side in sides {
                 for strain in trial_strains(&law, side) {
-                    let answer = law.return_map(&strain, &History::default()).unwrap();
+                    let answer = law
+                        .return_map(&strain, &History::default(), &PointContext::STATIC)
+                        .unwrap();
                     let plastic = answer.regime.is_plastic();
                     assert_eq!(plastic, side == Side::Plastic, "{name}: {strain:?}");
                 }
@@ -148,7 +150,9 @@ mod tests {
                 .collect();
             let tensors = turned(&strains).into_iter().zip(turned(&stretches));
             for (strain, (small, finite)) in strains.iter().zip(tensors) {
-                let expected = law.return_map(strain, &history).unwrap();
+                let expected = law
+                    .return_map(strain, &history, &PointContext::STATIC)
+                    .unwrap();
                 let trace: f64 = expected.tau.iter().sum();
                 let small = lift_small::<2>(&*law, &small, &history, kind).unwrap();
                 let finite = lift_finite::<2>(&*law, &finite, &history, kind).unwrap();

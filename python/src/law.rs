@@ -4,9 +4,7 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use igimp_material::{
-    ConstitutiveModel, Elasticity, History, MaterialError, Principal, Regime, ReturnMap,
-};
+use igimp_material::{Batches, ConstitutiveModel, Elasticity, History, MaterialError, Principal, Regime, ReturnMap, NonlocalRates, PointContext, Strength};
 use igimp_model::{Case, GivenLaw};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -158,6 +156,7 @@ impl InPython {
             } else {
                 Regime::Smooth
             },
+            nonlocal: NonlocalRates::NONE,
         }
     }
 }
@@ -175,21 +174,29 @@ impl ConstitutiveModel for InPython {
         &self,
         eps_e_trial: &Principal,
         history: &History,
+        context: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
-        let own = self.return_maps(&[*eps_e_trial], &[*history])?;
+        let own = self.return_maps(&[*eps_e_trial], &[*history], context)?;
         own.into_iter().next().ok_or(MaterialError::NonFinite {
             quantity: "stress of the law in Python",
         })
     }
 
-    fn prefers_batches(&self) -> bool {
-        true
+    fn batches(&self) -> Option<&dyn Batches> {
+        Some(self)
     }
 
+    fn has_symmetric_tangent(&self) -> bool {
+        self.symmetric
+    }
+}
+
+impl Batches for InPython {
     fn return_maps(
         &self,
         eps_e_trial: &[Principal],
         histories: &[History],
+        _: &PointContext,
     ) -> Result<Vec<ReturnMap>, MaterialError> {
         if self.trouble.is_there() {
             return Err(MaterialError::NonFinite {
@@ -204,7 +211,9 @@ impl ConstitutiveModel for InPython {
             .map(|((strain, history), answer)| self.returned(strain, *history, answer))
             .collect())
     }
+}
 
+impl Strength for InPython {
     fn yield_function(&self, _: &Principal, _: &History) -> f64 {
         f64::NEG_INFINITY
     }
@@ -219,10 +228,6 @@ impl ConstitutiveModel for InPython {
 
     fn yields(&self) -> bool {
         self.yields
-    }
-
-    fn has_symmetric_tangent(&self) -> bool {
-        self.symmetric
     }
 
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {

@@ -103,7 +103,7 @@ impl<const D: usize> System<'_, D> {
             own.add(at, &mut force, None);
             product(&force, u)
         };
-        let [ghost, drag, contact, reinforcement, ..] = (self.forces())
+        let [ghost, drag, contact, reinforcement, ..] = (self.beside.forces())
             .map(|own| theta * work_of(own, u) + (1.0 - theta) * work_of(own, &still));
         let ground = self.work_of_ground(inertia, u);
         let mut energy = StepEnergy {
@@ -209,7 +209,7 @@ impl<const D: usize> System<'_, D> {
                 .sum()
         });
         let dot = |strain: &[f64; 3]| (0..3).map(|k| principal[k] * strain[k]).sum::<f64>();
-        let response = self.pores.response(
+        let response = self.loads.pores.response(
             particles,
             &self.conditions().water,
             self.method,
@@ -226,7 +226,7 @@ impl<const D: usize> System<'_, D> {
             }
             determinant(&mean).ln()
         };
-        let mass = particles.mass[particle] + self.pores.mass(particle);
+        let mass = particles.mass[particle] + self.loads.pores.mass(particle);
         let kinetic = |v: &[f64; D]| 0.5 * mass * v.iter().map(|v| v * v).sum::<f64>();
         Ok(ParticleEnergy {
             kinetic_before: kinetic(&particles.velocity[particle]),

@@ -11,7 +11,8 @@ use igimp_input::CaseFile;
 use igimp_input::shipped::find;
 use igimp_linear::SolverKind;
 use igimp_material::{
-    ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap, ShearStrength,
+    Batches, ConstitutiveModel, Elasticity, History, MaterialError, PointContext, Principal,
+    ReturnMap, ShearStrength, Strength,
 };
 use igimp_model::{Case, Field, GivenLaw, GivenSolver};
 use igimp_results::fields::{internal_variables, value};
@@ -41,23 +42,21 @@ impl ConstitutiveModel for Batched {
         &self,
         eps_e_trial: &Principal,
         history: &History,
+        context: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
-        self.law.return_map(eps_e_trial, history)
+        self.law.return_map(eps_e_trial, history, context)
     }
 
-    fn prefers_batches(&self) -> bool {
-        true
+    fn batches(&self) -> Option<&dyn Batches> {
+        Some(self)
     }
 
-    fn return_maps(
-        &self,
-        eps_e_trial: &[Principal],
-        histories: &[History],
-    ) -> Result<Vec<ReturnMap>, MaterialError> {
-        self.asked.fetch_add(1, Ordering::Relaxed);
-        self.law.return_maps(eps_e_trial, histories)
+    fn has_symmetric_tangent(&self) -> bool {
+        self.law.has_symmetric_tangent()
     }
+}
 
+impl Strength for Batched {
     fn yield_function(&self, tau: &Principal, history: &History) -> f64 {
         self.law.yield_function(tau, history)
     }
@@ -74,12 +73,22 @@ impl ConstitutiveModel for Batched {
         self.law.shear_strength()
     }
 
-    fn has_symmetric_tangent(&self) -> bool {
-        self.law.has_symmetric_tangent()
-    }
-
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
         self.law.reduced(srf)
+    }
+}
+
+impl Batches for Batched {
+    fn return_maps(
+        &self,
+        eps_e_trial: &[Principal],
+        histories: &[History],
+        context: &PointContext,
+    ) -> Result<Vec<ReturnMap>, MaterialError> {
+        self.asked.fetch_add(1, Ordering::Relaxed);
+        std::iter::zip(eps_e_trial, histories)
+            .map(|(strain, history)| self.law.return_map(strain, history, context))
+            .collect()
     }
 }
 

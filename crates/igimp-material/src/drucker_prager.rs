@@ -10,8 +10,8 @@ use crate::error::{positive, required};
 use crate::law::{ON_SURFACE, mobilised, trial_stress};
 use crate::spectral::principal::{deviator, deviator_norm, largest, mean};
 use crate::{
-    ConstitutiveModel, Dissipation, Elasticity, History, MaterialError, Principal, Regime,
-    ReturnMap, ShearStrength,
+    ConstitutiveModel, Dissipation, Elasticity, History, MaterialError, NonlocalRates,
+    PointContext, Principal, Regime, ReturnMap, ShearStrength, Strength,
 };
 
 /// Where the cone of [`DruckerPrager`] agrees with Mohr–Coulomb of the same c, φ and ψ.
@@ -43,7 +43,7 @@ pub enum Cone {
 /// let friction = 20_f64.to_radians();
 /// let law = DruckerPrager::new(elasticity, 10.0, friction, 0.0, Cone::PlaneStrain)?;
 /// let history = History::default();
-/// let answer = law.return_map(&[2e-4, 0.0, -4e-4], &history)?;
+/// let answer = law.return_map(&[2e-4, 0.0, -4e-4], &history, &PointContext::STATIC)?;
 /// assert_eq!(answer.regime, Regime::Smooth);
 /// assert!(law.yield_function(&answer.tau, &history).abs() < 1e-12);
 /// # Ok::<(), igimp_material::MaterialError>(())
@@ -161,6 +161,7 @@ impl DruckerPrager {
             delta_eps_p,
             history: history.after(&delta_eps_p),
             regime: Regime::Apex,
+            nonlocal: NonlocalRates::NONE,
         }
     }
 }
@@ -178,6 +179,7 @@ impl ConstitutiveModel for DruckerPrager {
         &self,
         eps_e_trial: &Principal,
         history: &History,
+        _: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
         let trial = trial_stress(&self.elasticity, eps_e_trial)?;
         let (bulk, shear) = (self.elasticity.bulk(), self.elasticity.shear());
@@ -216,9 +218,25 @@ impl ConstitutiveModel for DruckerPrager {
             delta_eps_p,
             history: history.after(&delta_eps_p),
             regime: Regime::Smooth,
+            nonlocal: NonlocalRates::NONE,
         })
     }
 
+    #[expect(
+        clippy::float_cmp,
+        reason = "flow is associated only where the angles are the same"
+    )]
+    fn has_symmetric_tangent(&self) -> bool {
+        self.dilation_angle == self.strength.friction_angle
+    }
+
+    /// ψ/φ as given; 1 without friction.
+    fn dilatancy(&self) -> f64 {
+        self.dilatancy
+    }
+}
+
+impl Strength for DruckerPrager {
     /// $`q + M p - k`$.
     fn yield_function(&self, tau: &Principal, _history: &History) -> f64 {
         deviator_norm(&deviator(tau)) + self.slope * mean(tau) - self.shear
@@ -251,19 +269,6 @@ impl ConstitutiveModel for DruckerPrager {
             power: self.shear * shearing,
             dilation: self.slope * shearing,
         })
-    }
-
-    #[expect(
-        clippy::float_cmp,
-        reason = "flow is associated only where the angles are the same"
-    )]
-    fn has_symmetric_tangent(&self) -> bool {
-        self.dilation_angle == self.strength.friction_angle
-    }
-
-    /// ψ/φ as given; 1 without friction.
-    fn dilatancy(&self) -> f64 {
-        self.dilatancy
     }
 
     /// ψ stays but never exceeds the new φ; c stays, and the cone is matched anew.

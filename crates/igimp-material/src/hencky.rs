@@ -4,7 +4,10 @@ use std::sync::Arc;
 
 use crate::error::positive;
 use crate::law::trial_stress;
-use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap};
+use crate::{
+    ConstitutiveModel, Elasticity, History, MaterialError, PointContext, Principal, ReturnMap,
+    Strength,
+};
 
 /// The elastic law: every stress is admissible.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,11 +35,18 @@ impl ConstitutiveModel for HenckyElastic {
         &self,
         eps_e_trial: &Principal,
         history: &History,
+        _: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
         let tau = trial_stress(&self.elasticity, eps_e_trial)?;
         Ok(ReturnMap::elastic(&self.elasticity, tau, *history))
     }
 
+    fn has_symmetric_tangent(&self) -> bool {
+        true
+    }
+}
+
+impl Strength for HenckyElastic {
     /// Always `-∞`.
     fn yield_function(&self, _tau: &Principal, _history: &History) -> f64 {
         f64::NEG_INFINITY
@@ -54,10 +64,6 @@ impl ConstitutiveModel for HenckyElastic {
 
     fn yields(&self) -> bool {
         false
-    }
-
-    fn has_symmetric_tangent(&self) -> bool {
-        true
     }
 
     /// The law itself: there is no strength to reduce.

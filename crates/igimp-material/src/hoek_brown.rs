@@ -8,10 +8,13 @@ use std::sync::Arc;
 
 use crate::error::{positive, required};
 use crate::law::{ON_SURFACE, mobilised, trial_stress};
-use crate::pyramid::{Pyramid, Strength};
+use crate::pyramid::{PlaneStrength, Pyramid};
 use crate::softening::rates::Changing;
 use crate::spectral::principal::{Principal, descending, largest, mean, sorted, unsorted};
-use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Regime, ReturnMap};
+use crate::{
+    ConstitutiveModel, Elasticity, History, MaterialError, NonlocalRates, PointContext, Regime,
+    ReturnMap, Strength,
+};
 
 /// Most corrections of a touching point.
 const MOST_CORRECTIONS: usize = 200;
@@ -84,7 +87,7 @@ impl HoekBrownParameters {
 ///     intact_strength: 30e6, gsi: 45.0, intact_ratio: 10.0, disturbance: 0.0, dilation_angle: 0.0,
 /// };
 /// let law = HoekBrown::new(Elasticity::new(5e9, 0.3)?, rock)?;
-/// let answer = law.return_map(&[0.0, 0.0, -0.01], &Default::default())?;
+/// let answer = law.return_map(&[0.0, 0.0, -0.01], &Default::default(), &PointContext::STATIC)?;
 /// assert!(law.yield_function(&answer.tau, &answer.history).abs() < 1e-9 * 30e6);
 /// # Ok::<(), igimp_material::MaterialError>(())
 /// ```
@@ -178,7 +181,7 @@ impl HoekBrown {
         let dilation = self.parameters.dilation_angle.sin();
         let is_capped = dilation > sin;
         // 2 c cos φ = 2 (R − p sin φ), of compression positive p.
-        let strength = Strength {
+        let strength = PlaneStrength {
             sin_friction: sin,
             sin_dilation: if is_capped { sin } else { dilation },
             shear: 2.0 * (shear - normal * tangent) / secant,
@@ -186,7 +189,7 @@ impl HoekBrown {
             tension_cutoff: None,
         };
         let offset = shear - normal * tangent;
-        let rate = Strength {
+        let rate = PlaneStrength {
             sin_friction: sin_rate,
             sin_dilation: if is_capped { sin_rate } else { 0.0 },
             shear: -2.0 * (normal * tangent_rate + offset * secant_rate / secant) / secant,
@@ -294,6 +297,7 @@ impl HoekBrown {
             delta_eps_p,
             history: history.after(&delta_eps_p),
             regime: Regime::Apex,
+            nonlocal: NonlocalRates::NONE,
         }
     }
 }
@@ -324,6 +328,7 @@ impl ConstitutiveModel for HoekBrown {
         &self,
         eps_e_trial: &Principal,
         history: &History,
+        _: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
         let order = descending(eps_e_trial);
         let strain = sorted(eps_e_trial, &order);
@@ -357,6 +362,19 @@ impl ConstitutiveModel for HoekBrown {
         })
     }
 
+    fn has_symmetric_tangent(&self) -> bool {
+        false
+    }
+
+    /// ψ over the friction angle at no confinement; none without dilation.
+    fn dilatancy(&self) -> f64 {
+        let [_, share, _] = self.powers;
+        let sine = self.touching(share).changing.strength.sin_friction;
+        (self.parameters.dilation_angle / sine.asin()).min(1.0)
+    }
+}
+
+impl Strength for HoekBrown {
     /// $`(1 - \sin\varphi)`$ times $`\sigma_1 - \sigma_3`$ less what strength admits at σ3, compression positive, with φ of the pyramid that
     /// touches there: what f of that pyramid is. Beyond the tensile strength t, $`-\sigma_3 - t`$.
     fn yield_function(&self, tau: &Principal, _history: &History) -> f64 {
@@ -379,17 +397,6 @@ impl ConstitutiveModel for HoekBrown {
         let [first, _, last] = sorted(tau, &descending(tau));
         let admitted = self.admitted(-first).map_or(0.0, |[admitted, _]| admitted);
         mobilised(first - last, admitted, self.stress_scale(tau))
-    }
-
-    fn has_symmetric_tangent(&self) -> bool {
-        false
-    }
-
-    /// ψ over the friction angle at no confinement; none without dilation.
-    fn dilatancy(&self) -> f64 {
-        let [_, share, _] = self.powers;
-        let sine = self.touching(share).changing.strength.sin_friction;
-        (self.parameters.dilation_angle / sine.asin()).min(1.0)
     }
 
     /// Divides the envelope of shear strength over normal stress by `srf`; ψ stays but never exceeds φ.

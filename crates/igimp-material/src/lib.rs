@@ -7,7 +7,8 @@
 //! | module story | types |
 //! |---|---|
 //! | linear Hencky elasticity | [`Elasticity`] |
-//! | the seam | [`ConstitutiveModel`], [`ReturnMap`], [`History`], [`Regime`] |
+//! | the seam | [`ConstitutiveModel`], [`PointContext`], [`ReturnMap`], [`History`], [`Regime`] |
+//! | strength and its reduction | [`Strength`], [`ShearStrength`], [`Dissipation`] |
 //! | laws | [`HenckyElastic`], [`VonMises`], [`Tresca`], [`MohrCoulomb`], [`DruckerPrager`], [`HoekBrown`], [`ModifiedCamClay`], [`HardeningSoil`] |
 //! | laws whose strength goes with plastic strain, the direction of stress, the rate of strain | [`Softening`], [`Curve`], [`Directions`], [`RateEffect`] |
 //! | soil whose strength and stiffness vary | [`Ratios`], [`ScaledLaw`] |
@@ -41,7 +42,7 @@
 //!
 //! # A new law
 //!
-//! One file with an implementation of [`ConstitutiveModel`], and its lines in the catalogue of
+//! One file with an implementation of [`ConstitutiveModel`] and [`Strength`], and its lines in the catalogue of
 //! `tests/contract`, which tries every law on a million trial states.
 //!
 //! # Sources
@@ -80,8 +81,9 @@ pub use hardening_soil::{HardeningSoil, HardeningSoilParameters};
 pub use hencky::HenckyElastic;
 pub use hoek_brown::{HoekBrown, HoekBrownParameters};
 pub use law::{
-    ConstitutiveModel, Dissipation, ElasticStiffness, History, INTERNAL_VARIABLES,
-    InternalVariable, Nonlocal, NonlocalRates, Regime, ReturnMap, Scaling, ShearStrength,
+    Batches, ConstitutiveModel, Dissipation, ElasticStiffness, History, INTERNAL_VARIABLES,
+    InternalVariable, Nonlocal, NonlocalRates, PointContext, Regime, ReturnMap, Scaling,
+    ShearStrength, Strength,
 };
 pub use mohr_coulomb::MohrCoulomb;
 pub use scaled::{Ratios, ScaledLaw};

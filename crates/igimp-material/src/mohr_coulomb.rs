@@ -9,9 +9,10 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use crate::error::{positive, required};
-use crate::pyramid::{Pyramid, Strength};
+use crate::pyramid::{PlaneStrength, Pyramid};
 use crate::{
-    ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap, ShearStrength,
+    ConstitutiveModel, Elasticity, History, MaterialError, PointContext, Principal, ReturnMap,
+    ShearStrength, Strength,
 };
 
 /// Elastic and perfectly plastic with the yield function
@@ -35,7 +36,7 @@ use crate::{
 /// let elasticity = Elasticity::new(1e5, 0.3)?;
 /// let law = MohrCoulomb::new(elasticity, 10.0, 20_f64.to_radians(), 0.0)?;
 /// let history = History::default();
-/// let answer = law.return_map(&[2e-4, 0.0, -4e-4], &history)?;
+/// let answer = law.return_map(&[2e-4, 0.0, -4e-4], &history, &PointContext::STATIC)?;
 /// assert_eq!(answer.regime, Regime::Smooth);
 /// assert!(law.yield_function(&answer.tau, &history).abs() < 1e-12);
 /// # Ok::<(), igimp_material::MaterialError>(())
@@ -212,7 +213,7 @@ impl MohrCoulomb {
             };
             (strength, dilation_angle)
         };
-        let surface = Strength {
+        let surface = PlaneStrength {
             sin_friction: strength.friction_angle.sin(),
             sin_dilation: flows_by.sin(),
             shear: 2.0 * strength.cohesive * strength.friction_angle.cos(),
@@ -275,10 +276,26 @@ impl ConstitutiveModel for MohrCoulomb {
         &self,
         eps_e_trial: &Principal,
         history: &History,
+        _: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
         self.pyramid.return_map(eps_e_trial, *history)
     }
 
+    #[expect(
+        clippy::float_cmp,
+        reason = "flow is associated only where the angles are the same"
+    )]
+    fn has_symmetric_tangent(&self) -> bool {
+        self.given.is_davis || self.given.dilation_angle == self.given.friction_angle
+    }
+
+    /// ψ/φ as given; 1 without friction, and where flow is Davis's.
+    fn dilatancy(&self) -> f64 {
+        self.dilatancy
+    }
+}
+
+impl Strength for MohrCoulomb {
     /// The larger of $`(1+\sin\varphi)\,\sigma_1 - (1-\sin\varphi)\,\sigma_3 - 2c\cos\varphi`$,
     /// twice a distance in shear stress, and $`\sigma_1 - \sigma_t`$.
     fn yield_function(&self, tau: &Principal, _history: &History) -> f64 {
@@ -299,19 +316,6 @@ impl ConstitutiveModel for MohrCoulomb {
 
     fn shear_strength(&self) -> Option<ShearStrength> {
         Some(self.strength)
-    }
-
-    #[expect(
-        clippy::float_cmp,
-        reason = "flow is associated only where the angles are the same"
-    )]
-    fn has_symmetric_tangent(&self) -> bool {
-        self.given.is_davis || self.given.dilation_angle == self.given.friction_angle
-    }
-
-    /// ψ/φ as given; 1 without friction, and where flow is Davis's.
-    fn dilatancy(&self) -> f64 {
-        self.dilatancy
     }
 
     /// ψ stays but never exceeds the new φ; c and the cut-off stay.

@@ -9,7 +9,7 @@ use crate::koiter::Plane;
 use crate::law::{ON_SURFACE, mobilised, trial_stress};
 use crate::spectral::principal::{Principal, descending, sorted, unsorted};
 use crate::surface::PlanarSurface;
-use crate::{Elasticity, History, MaterialError, Regime, ReturnMap};
+use crate::{Elasticity, History, MaterialError, NonlocalRates, Regime, ReturnMap};
 
 const SHEAR_13: usize = 0;
 const SHEAR_12: usize = 1;
@@ -20,7 +20,7 @@ const TENSION_3: usize = 5;
 
 /// Strength in the terms of the planes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Strength {
+pub(crate) struct PlaneStrength {
     /// sin φ, in \[0, 1).
     pub(crate) sin_friction: f64,
     /// sin ψ, in \[0, sin φ\].
@@ -33,7 +33,7 @@ pub(crate) struct Strength {
     pub(crate) tension_cutoff: Option<f64>,
 }
 
-/// An elastic, perfectly plastic body with a [`Strength`].
+/// An elastic, perfectly plastic body with a [`PlaneStrength`].
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Pyramid {
     elasticity: Elasticity,
@@ -44,7 +44,7 @@ pub(crate) struct Pyramid {
 }
 
 impl Pyramid {
-    pub(crate) fn new(elasticity: Elasticity, strength: &Strength) -> Self {
+    pub(crate) fn new(elasticity: Elasticity, strength: &PlaneStrength) -> Self {
         let shear = [[0, 2], [0, 1], [1, 2]].map(|[major, minor]| {
             let direction = |sine: f64| {
                 let mut direction = [0.0; 3];
@@ -118,6 +118,7 @@ impl Pyramid {
             delta_eps_p,
             history: history.after(&delta_eps_p),
             regime: returned.regime,
+            nonlocal: NonlocalRates::NONE,
         })
     }
 }
@@ -197,7 +198,7 @@ mod tests {
 
     /// Strengths with cohesion 1 for pairs of angles in degrees and cut-offs as shares of the
     /// apex, or of the cohesion where there is none.
-    fn strengths() -> Vec<Strength> {
+    fn strengths() -> Vec<PlaneStrength> {
         let mut strengths = Vec::new();
         for (friction, dilation) in [
             (0.0, 0.0),
@@ -215,7 +216,7 @@ mod tests {
                 f64::INFINITY
             };
             for cutoff in [None, Some(0.0), Some(0.3), Some(0.99)] {
-                strengths.push(Strength {
+                strengths.push(PlaneStrength {
                     sin_friction: friction.sin(),
                     sin_dilation: f64::to_radians(dilation).sin(),
                     shear: 2.0 * friction.cos(),

@@ -7,7 +7,8 @@ use std::sync::Arc;
 use crate::spectral::principal::{Principal, Tensor};
 use crate::{
     ConstitutiveModel, Dissipation, ElasticStiffness, Elasticity, History, INTERNAL_VARIABLES,
-    InternalVariable, MaterialError, Nonlocal, NonlocalRates, ReturnMap, Scaling, ShearStrength,
+    InternalVariable, MaterialError, Nonlocal, NonlocalRates, PointContext, ReturnMap, Scaling,
+    ShearStrength, Strength,
 };
 
 /// Strength, friction and stiffness of a piece of soil over those of its material.
@@ -61,7 +62,7 @@ impl Default for Ratios {
 /// let tresca = Tresca::new(Elasticity::new(100.0, 0.3)?, 1.0)?;
 /// let law: &dyn ConstitutiveModel = &tresca;
 /// let scaled = ScaledLaw::new(law, Ratios { strength: 3.0, stiffness: 2.0, ..Ratios::ONE })?;
-/// let answer = scaled.return_map(&[0.1, 0.0, -0.1], &History::default())?;
+/// let answer = scaled.return_map(&[0.1, 0.0, -0.1], &History::default(), &PointContext::STATIC)?;
 /// assert!((answer.tau[0] - answer.tau[2] - 6.0).abs() < 1e-12);
 /// # Ok::<(), igimp_material::MaterialError>(())
 /// ```
@@ -114,6 +115,7 @@ impl<L: Deref<Target = dyn ConstitutiveModel>> ScaledLaw<L> {
             ..
         } = self.ratios;
         let delta_eps_p = answer.delta_eps_p.map(|strain| strain / ratio);
+        let nonlocal = answer.nonlocal;
         ReturnMap {
             tau: answer.tau.map(|component| component * strength),
             tangent: answer
@@ -126,6 +128,11 @@ impl<L: Deref<Target = dyn ConstitutiveModel>> ScaledLaw<L> {
                 ..history.after(&delta_eps_p)
             },
             regime: answer.regime,
+            nonlocal: NonlocalRates {
+                plastic: nonlocal.plastic / ratio,
+                stress_by_nonlocal: (nonlocal.stress_by_nonlocal).map(|own| own * stiffness),
+                ..nonlocal
+            },
         }
     }
 
@@ -206,50 +213,28 @@ where
         }
     }
 
+    /// The other law has its strains over a time that is as many times longer, so that rates are those of the soil, and the ground
+    /// around it strained as many times more.
     fn return_map(
         &self,
         eps_e_trial: &Principal,
         history: &History,
-    ) -> Result<ReturnMap, MaterialError> {
-        self.return_map_over(eps_e_trial, history, 0.0)
-    }
-
-    /// The other law has its strains over a time that is as many times longer, so that rates are those of the soil.
-    fn return_map_over(
-        &self,
-        eps_e_trial: &Principal,
-        history: &History,
-        duration: f64,
+        context: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
         let ratio = self.strain_ratio();
         let trial = eps_e_trial.map(|strain| strain * ratio);
         let own = self.unscaled_history(*history);
-        let answer = self.law.return_map_over(&trial, &own, duration * ratio)?;
+        let context = PointContext {
+            duration: context.duration * ratio,
+            nonlocal_rise: context.nonlocal_rise * ratio,
+        };
+        let answer = self.law.return_map(&trial, &own, &context)?;
         Ok(self.scaled_answer(&answer, history))
     }
 
     /// That of the other law: lengths do not go with the ratios.
     fn nonlocal(&self) -> Option<Nonlocal> {
         self.law.nonlocal()
-    }
-
-    fn return_map_nonlocal(
-        &self,
-        eps_e_trial: &Principal,
-        history: &History,
-        rise: f64,
-    ) -> Result<(ReturnMap, NonlocalRates), MaterialError> {
-        let ratio = self.strain_ratio();
-        let trial = eps_e_trial.map(|strain| strain * ratio);
-        let own = self.unscaled_history(*history);
-        let (answer, rates) = (self.law).return_map_nonlocal(&trial, &own, rise * ratio)?;
-        let rates = NonlocalRates {
-            plastic: rates.plastic / ratio,
-            stress_by_nonlocal: (rates.stress_by_nonlocal)
-                .map(|modulus| modulus * self.ratios.stiffness),
-            ..rates
-        };
-        Ok((self.scaled_answer(&answer, history), rates))
     }
 
     fn internal_variables(&self) -> &'static [InternalVariable] {
@@ -276,6 +261,19 @@ where
         }
     }
 
+    fn has_symmetric_tangent(&self) -> bool {
+        self.law.has_symmetric_tangent()
+    }
+
+    fn dilatancy(&self) -> f64 {
+        self.law.dilatancy()
+    }
+}
+
+impl<L> Strength for ScaledLaw<L>
+where
+    L: Deref<Target = dyn ConstitutiveModel> + Send + Sync + Debug,
+{
     fn yield_function(&self, tau: &Principal, history: &History) -> f64 {
         let history = self.unscaled_history(*history);
         self.ratios.strength * self.law.yield_function(&self.unscaled(tau), &history)
@@ -308,14 +306,6 @@ where
 
     fn yields(&self) -> bool {
         self.law.yields()
-    }
-
-    fn has_symmetric_tangent(&self) -> bool {
-        self.law.has_symmetric_tangent()
-    }
-
-    fn dilatancy(&self) -> f64 {
-        self.law.dilatancy()
     }
 
     fn at_friction(&self, ratio: f64) -> Result<Option<Arc<dyn ConstitutiveModel>>, MaterialError> {

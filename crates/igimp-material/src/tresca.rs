@@ -4,9 +4,10 @@
 use std::sync::Arc;
 
 use crate::error::positive;
-use crate::pyramid::{Pyramid, Strength};
+use crate::pyramid::{PlaneStrength, Pyramid};
 use crate::{
-    ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap, ShearStrength,
+    ConstitutiveModel, Elasticity, History, MaterialError, PointContext, Principal, ReturnMap,
+    ShearStrength, Strength,
 };
 
 /// Elastic and perfectly plastic with associated flow and the yield function
@@ -26,7 +27,7 @@ impl Tresca {
     /// [`MaterialError::InvalidParameter`] unless `undrained_strength` is positive and finite.
     pub fn new(elasticity: Elasticity, undrained_strength: f64) -> Result<Self, MaterialError> {
         positive("undrained_strength", undrained_strength)?;
-        let strength = Strength {
+        let strength = PlaneStrength {
             sin_friction: 0.0,
             sin_dilation: 0.0,
             shear: 2.0 * undrained_strength,
@@ -58,10 +59,17 @@ impl ConstitutiveModel for Tresca {
         &self,
         eps_e_trial: &Principal,
         history: &History,
+        _: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
         self.pyramid.return_map(eps_e_trial, *history)
     }
 
+    fn has_symmetric_tangent(&self) -> bool {
+        true
+    }
+}
+
+impl Strength for Tresca {
     /// $`f = \sigma_1 - \sigma_3 - 2 c_u`$: twice the distance in shear stress.
     fn yield_function(&self, tau: &Principal, _history: &History) -> f64 {
         self.pyramid.yield_function(tau)
@@ -82,10 +90,6 @@ impl ConstitutiveModel for Tresca {
             cohesive: self.undrained_strength,
             friction_angle: 0.0,
         })
-    }
-
-    fn has_symmetric_tangent(&self) -> bool {
-        true
     }
 
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {

@@ -8,8 +8,8 @@ use crate::error::positive;
 use crate::law::{ON_SURFACE, mobilised, trial_stress};
 use crate::spectral::principal::{deviator, deviator_norm, largest, mean};
 use crate::{
-    ConstitutiveModel, Dissipation, Elasticity, History, MaterialError, Principal, Regime,
-    ReturnMap, ShearStrength,
+    ConstitutiveModel, Dissipation, Elasticity, History, MaterialError, NonlocalRates,
+    PointContext, Principal, Regime, ReturnMap, ShearStrength, Strength,
 };
 
 /// Elastic and perfectly plastic with associated flow and the yield function
@@ -72,6 +72,7 @@ impl ConstitutiveModel for VonMises {
         &self,
         eps_e_trial: &Principal,
         history: &History,
+        _: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
         let trial = trial_stress(&self.elasticity, eps_e_trial)?;
         // From strain, where a large mean stress costs no digits.
@@ -99,9 +100,16 @@ impl ConstitutiveModel for VonMises {
             delta_eps_p,
             history: history.after(&delta_eps_p),
             regime: Regime::Smooth,
+            nonlocal: NonlocalRates::NONE,
         })
     }
 
+    fn has_symmetric_tangent(&self) -> bool {
+        true
+    }
+}
+
+impl Strength for VonMises {
     /// $`f = q - q_y`$: the distance to yield in uniaxial stress.
     fn yield_function(&self, tau: &Principal, _history: &History) -> f64 {
         deviator_norm(&deviator(tau)) - self.yield_stress
@@ -131,10 +139,6 @@ impl ConstitutiveModel for VonMises {
             power: self.yield_stress * deviator_norm(&deviator(rate)) / 1.5,
             dilation: 0.0,
         })
-    }
-
-    fn has_symmetric_tangent(&self) -> bool {
-        true
     }
 
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use igimp_material::{
     Cone, ConstitutiveModel, DruckerPrager, Elasticity, HenckyElastic, History, MohrCoulomb,
-    Ratios, ScaledLaw, Tresca, VonMises,
+    PointContext, Ratios, ScaledLaw, Strength, Tresca, VonMises,
 };
 
 /// Trial strains to a side, an edge and in between, far beyond yield and under pressure, far from an apex \[-\].
@@ -47,7 +47,9 @@ fn is_the_work_of_the_stress_on_plastic_strain() {
     for law in laws() {
         for strain in STRAINS {
             let strain = strain.map(|strain| strain - 0.01);
-            let answer = law.return_map(&strain, &History::default()).unwrap();
+            let answer = law
+                .return_map(&strain, &History::default(), &PointContext::STATIC)
+                .unwrap();
             assert!(answer.regime.is_plastic());
             let flow = answer.delta_eps_p;
             let work: f64 = std::iter::zip(answer.tau, flow)

@@ -1,7 +1,7 @@
 //! What a step changes: the particles, the points that carry loads, rigid bodies and
 //! reinforcement.
 
-use igimp_assembly::{LoadPoint, Particles, Reinforcement, RigidBody};
+use igimp_assembly::{LoadPoint, Particles, Reinforcement, RigidBody, Structures};
 
 use crate::free_field::FreeField;
 
@@ -29,6 +29,15 @@ impl<const D: usize> Body<D> {
             rigid: Vec::new(),
             reinforcement: Vec::new(),
             free_fields: Vec::new(),
+        }
+    }
+
+    /// What stands in its soil and on it.
+    pub fn structures(&self) -> Structures<'_, D> {
+        Structures {
+            bodies: &self.rigid,
+            members: &self.reinforcement,
+            points: &self.load_points,
         }
     }
 

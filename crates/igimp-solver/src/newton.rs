@@ -227,10 +227,9 @@ fn equilibrium<const D: usize>(
     let grid = &conditions.grid;
     let clock = Instant::now();
     let stencils = Stencils::build_under(&body.particles, method, conditions, &body.load_points)?;
-    let structures = (&body.rigid[..], &body.reinforcement[..]);
+    let structures = body.structures();
     let system =
-        System::with_structures(&body.particles, structures, &stencils, conditions, method)?
-            .with_load_points(&body.load_points)?
+        System::with_structures(&body.particles, &structures, &stencils, conditions, method)?
             .in_motion()?
             .sharing(workspace.pattern());
     let set_up = clock.elapsed();

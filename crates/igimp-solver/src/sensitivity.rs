@@ -135,22 +135,15 @@ impl<const D: usize> Increment<'_, D> {
         stencils: &'s Stencils<D>,
         pattern: Option<&Arc<Pattern>>,
     ) -> Result<System<'s, D>, StepFailure> {
-        let Body {
-            particles,
-            load_points,
-            rigid,
-            reinforcement,
-            ..
-        } = self.body;
-        let structures = (&rigid[..], &reinforcement[..]);
+        let structures = self.body.structures();
         let system = System::with_structures(
-            particles,
-            structures,
+            &self.body.particles,
+            &structures,
             stencils,
             self.conditions,
             self.method,
         )?;
-        Ok(system.with_load_points(load_points)?.sharing(pattern))
+        Ok(system.sharing(pattern))
     }
 
     /// What keeps equilibrium at no work of the external force after each change of the out-of-balance force: by how much the

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use igimp_assembly::SharedLaw;
 use igimp_cases::CaseError;
-use igimp_material::ConstitutiveModel;
+use igimp_material::Strength;
 use igimp_model::check::Band;
 use rayon::prelude::*;
 

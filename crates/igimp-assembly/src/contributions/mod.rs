@@ -1,5 +1,6 @@
 //! What acts at the nodes beside the stress of the soil: ghost penalty, inertia, water, nonlocal strain, reinforcement, rigid bodies.
 
+pub(crate) mod beside;
 pub(crate) mod consolidation;
 pub(crate) mod couplings;
 pub(crate) mod dropped;

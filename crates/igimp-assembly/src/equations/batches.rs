@@ -1,7 +1,7 @@
 //! Laws that are asked for many particles at once: their trial strains are gathered before a pass, and the
 //! pass finds the answers there. What is computed is the same.
 
-use igimp_material::{History, Principal, ReturnMap};
+use igimp_material::{History, PointContext, Principal, ReturnMap};
 use rayon::prelude::*;
 
 use crate::equations::system::System;
@@ -12,7 +12,7 @@ impl<const D: usize> System<'_, D> {
     /// law does. A particle of another strength or stiffness than its law is not among them.
     pub(crate) fn answers(&self, u: &[[f64; D]]) -> Result<Vec<Option<ReturnMap>>, AssemblyError> {
         let laws = &self.conditions.laws;
-        if !laws.iter().any(|law| law.prefers_batches()) {
+        if !laws.iter().any(|law| law.batches().is_some()) {
             return Ok(Vec::new());
         }
         let particles = self.particles;
@@ -20,14 +20,18 @@ impl<const D: usize> System<'_, D> {
             .into_par_iter()
             .map(|particle| {
                 let law = &laws[particles.law[particle]];
-                let is_asked = law.prefers_batches() && particles.ratios[particle].are_one();
+                let is_asked = law.batches().is_some() && particles.ratios[particle].are_one();
                 // What is wrong with the step is said in the pass.
                 let strained = is_asked.then(|| self.strain_particle(particle, u).ok())??;
                 Some(*strained.1.principal())
             })
             .collect();
         let mut answers = vec![None; particles.len()];
+        let context = PointContext::over(self.conditions.duration());
         for (number, law) in laws.iter().enumerate() {
+            let Some(batches) = law.batches() else {
+                continue;
+            };
             let is_own = |&particle: &usize| particles.law[particle] == number;
             let (own, asked): (Vec<usize>, Vec<Principal>) = (0..particles.len())
                 .filter(is_own)
@@ -35,12 +39,12 @@ impl<const D: usize> System<'_, D> {
                 .unzip();
             let Some(&first) = own.first() else { continue };
             let histories: Vec<History> = own.iter().map(|&own| particles.history(own)).collect();
-            let found =
-                law.return_maps(&asked, &histories)
-                    .map_err(|source| AssemblyError::Material {
-                        particle: first,
-                        source,
-                    })?;
+            let found = batches
+                .return_maps(&asked, &histories, &context)
+                .map_err(|source| AssemblyError::Material {
+                    particle: first,
+                    source,
+                })?;
             for (particle, answer) in std::iter::zip(own, found) {
                 answers[particle] = Some(answer);
             }

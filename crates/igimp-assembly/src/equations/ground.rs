@@ -32,14 +32,14 @@ impl<const D: usize> System<'_, D> {
             for carrier in self.stencils.carriers(own.node) {
                 if self.stencils.node_volume(carrier.node) > 0.0 {
                     for a in 0..D {
-                        self.f_ext[carrier.node][a] += carrier.weight * own.force[a];
+                        self.loads.f_ext[carrier.node][a] += carrier.weight * own.force[a];
                     }
                 }
             }
         }
         if let Some(ground) = conditions.ground {
             let force = inertia.times(&self.uniform(&ground.after));
-            for (f_ext, force) in self.f_ext.iter_mut().zip(force) {
+            for (f_ext, force) in self.loads.f_ext.iter_mut().zip(force) {
                 *f_ext = std::array::from_fn(|a| f_ext[a] - force[a]);
             }
         }
@@ -65,7 +65,8 @@ impl<const D: usize> System<'_, D> {
         damping: Option<&StiffnessDamping>,
     ) -> Vec<[f64; D]> {
         let mut force = vec![[0.0; D]; self.node_count()];
-        self.walls
+        self.beside
+            .walls
             .add_at_start(inertia.velocity(), true, &mut force);
         let others = [
             inertia.damping_force(inertia.velocity()),
@@ -159,9 +160,10 @@ impl<const D: usize> System<'_, D> {
         let theta = inertia.step().scheme.weights().sum;
         let over = |after: f64, before: f64| theta * after + (1.0 - theta) * before;
         let mut at_end = vec![[0.0; D]; u.len()];
-        self.walls.add(u, &mut at_end, None);
+        self.beside.walls.add(u, &mut at_end, None);
         let mut at_start = vec![[0.0; D]; u.len()];
-        self.walls
+        self.beside
+            .walls
             .add_at_start(inertia.velocity(), false, &mut at_start);
         let carried = (self.conditions.walls.iter())
             .flat_map(|own| own.nodes.iter())

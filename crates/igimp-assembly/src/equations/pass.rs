@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 use igimp_linear::Pattern;
-use igimp_material::{ConstitutiveModel, ReturnMap, TangentKind};
+use igimp_material::{ConstitutiveModel, PointContext, ReturnMap, TangentKind};
 use igimp_shape::Support;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -147,7 +147,7 @@ impl<const D: usize> System<'_, D> {
                     sum[axis] += force[axis];
                 }
             }
-            let water = self.consolidation.of_particle(particle, supports, u);
+            let water = self.beside.consolidation.of_particle(particle, supports, u);
             if let Some(water) = &water {
                 water.add_forces(strip.first_scalar, strip.f_of_scalars);
             }
@@ -215,20 +215,17 @@ impl<const D: usize> System<'_, D> {
         let kinematics = self.method.kinematics_of_step();
         let supports = self.stencils.of(particle);
         let rise = (self.nonlocal).rise(self.particles.law[particle], supports, u);
+        let context = PointContext {
+            duration: self.conditions.duration(),
+            nonlocal_rise: rise.unwrap_or(0.0),
+        };
         let ask = |law: &dyn ConstitutiveModel| {
             let (state, straining) = self.strain_particle(particle, u)?;
             let history = self.particles.history(particle);
-            let mut rates = None;
-            let answer = match (known, rise) {
-                (Some(answer), _) => *answer,
-                (None, Some(rise)) => {
-                    let asked = law.return_map_nonlocal(straining.principal(), &history, rise);
-                    let (answer, own) = asked.map_err(material)?;
-                    rates = Some(own);
-                    answer
-                }
-                (None, None) => law
-                    .return_map_over(straining.principal(), &history, self.conditions.duration())
+            let answer = match known {
+                Some(answer) => *answer,
+                None => law
+                    .return_map(straining.principal(), &history, &context)
                     .map_err(material)?,
             };
             let own = answered(state, straining, law, &answer, (kind, kinematics), trial)?;
@@ -237,8 +234,8 @@ impl<const D: usize> System<'_, D> {
                 TangentKind::Consistent => 0.0,
                 TangentKind::Regularised { elastic } => elastic,
             };
-            let spatial = |rates| SpatialRates::of(&rates, &own.lifted.frame, elastic);
-            let nonlocal = rates.map(spatial);
+            let nonlocal =
+                rise.map(|_| SpatialRates::of(&answer.nonlocal, &own.lifted.frame, elastic));
             Ok(Linearisation { nonlocal, ..own })
         };
         let laws = &self.conditions.laws;
@@ -271,11 +268,11 @@ impl<const D: usize> System<'_, D> {
         particle: usize,
         u: &[[f64; D]],
     ) -> Result<(ParticleState<'_>, Straining<D>), AssemblyError> {
-        let unknown = self.consolidation.pressure(particle, u);
+        let unknown = self.beside.consolidation.pressure(particle, u);
         let state = ParticleState {
             particle,
             b_e: &self.particles.b_e[particle],
-            pores: self.pores.response(
+            pores: self.loads.pores.response(
                 self.particles,
                 &self.conditions.water,
                 self.method,

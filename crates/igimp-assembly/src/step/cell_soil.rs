@@ -301,7 +301,7 @@ fn own_share(law: &dyn ConstitutiveModel, geometry: Geometry) -> f64 {
 mod tests {
     use std::sync::Arc;
 
-    use igimp_material::{Elasticity, HenckyElastic, MohrCoulomb, VonMises};
+    use igimp_material::{Elasticity, HenckyElastic, MohrCoulomb, Strength, VonMises};
 
     use super::*;
 

@@ -3,7 +3,7 @@
 use crate::common::{Random, conditions, grid, laws, particles};
 use igimp_assembly::{
     AssemblyError, Constraints, LoadPoint, Method, ParticleSeed, Particles, Stencils,
-    StepConditions, StepLoads, System,
+    StepConditions, StepLoads, Structures, System,
 };
 use igimp_material::TangentKind;
 
@@ -187,10 +187,17 @@ fn a_load_on_empty_cells() {
         force: [1.0, 0.0],
         load: 0,
     };
-    let error = System::new(&body, &stencils, &conditions, &method)
-        .unwrap()
-        .with_load_points(&[point])
-        .unwrap_err();
+    let error = System::with_structures(
+        &body,
+        &Structures {
+            points: &[point],
+            ..Structures::default()
+        },
+        &stencils,
+        &conditions,
+        &method,
+    )
+    .unwrap_err();
     assert_eq!(
         error.to_string(),
         "load point 0 at [5.5, 5.5, 0.0] m acts on a part of the grid that holds no soil"
@@ -233,10 +240,17 @@ fn an_edge_load_keeps_resultant_and_moment() {
     conditions.loads.gravity = [0.0; 2];
     conditions.loads.factors = vec![2.0];
     let points = LoadPoint::along_edge([1.3, 4.1], [4.4, 3.7], [3.0, -5.0], 11, 0);
-    let system = System::new(&body, &stencils, &conditions, &method)
-        .unwrap()
-        .with_load_points(&points)
-        .unwrap();
+    let system = System::with_structures(
+        &body,
+        &Structures {
+            points: &points,
+            ..Structures::default()
+        },
+        &stencils,
+        &conditions,
+        &method,
+    )
+    .unwrap();
     let length = 3.1_f64.hypot(0.4);
     let (mut force, mut moment) = ([0.0; 2], 0.0);
     for (node, f) in system.f_ext().iter().enumerate() {

@@ -7,7 +7,7 @@
 use crate::common::{Random, conditions, grid, laws, methods, particles};
 use igimp_assembly::{
     AssemblyError, Constraints, Geometry, Kinematics, LoadPoint, Method, ParticleSeed, Particles,
-    SharedLaw, Stencils, StepLoads, System,
+    SharedLaw, Stencils, StepLoads, Structures, System,
 };
 use igimp_material::{TangentKind, lift_finite, lift_small};
 use igimp_shape::{Axis, Grid};
@@ -272,7 +272,12 @@ fn out_of_balance_under_tractions(
     let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
     let tau = trial.particles[0].tau;
     let points = pressed_rectangle(to, &tau);
-    let system = system.with_load_points(&points).unwrap();
+    let structures = Structures {
+        points: &points,
+        ..Structures::default()
+    };
+    let system =
+        System::with_structures(&body, &structures, &stencils, &conditions, method).unwrap();
     let left = system.out_of_balance(&trial).unwrap().force;
     let largest = |values: &mut dyn Iterator<Item = f64>| {
         values.fold(0.0, |most: f64, own| most.max(own.abs()))
@@ -294,8 +299,12 @@ fn points_that_left_their_soil_by_a_little_act_on_its_face() {
         let x = 4.0 + beyond;
         let points = LoadPoint::along_edge([x, 1.0], [x, 4.0], [-3.0, 1.0], 12, 0);
         let stencils = Stencils::build_under(&body, &method, &conditions, &points).unwrap();
-        let system = System::new(&body, &stencils, &conditions, &method).unwrap();
-        let forces = system.with_load_points(&points)?.f_ext().to_vec();
+        let structures = Structures {
+            points: &points,
+            ..Structures::default()
+        };
+        let system = System::with_structures(&body, &structures, &stencils, &conditions, &method)?;
+        let forces = system.f_ext().to_vec();
         let u = vec![[0.5, 0.0]; grid.node_count()];
         Ok::<_, AssemblyError>((forces, points[0].carried(&grid, &stencils, 0, &u)?.x[0]))
     };

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use crate::common::{Random, by_particle, displacements, laws, methods};
 use igimp_assembly::{
     Constraints, Kinematics, LoadPoint, Method, ParticleSeed, Particles, Remedy, SharedLaw,
-    Stencils, StepConditions, StepLoads, System, Trial, UnbalancedForces,
+    Stencils, StepConditions, StepLoads, Structures, System, Trial, UnbalancedForces,
 };
 use igimp_linear::TangentMatrix;
 use igimp_material::TangentKind;
@@ -450,10 +450,17 @@ fn loads_on_a_sliver_keep_their_resultant_and_move_along() {
     let points = LoadPoint::along_edge([1.5, 4.002], [3.5, 4.002], [3.0, -5.0], 7, 0);
     for method in [Method::igimp(), Method::igimp_bbar()] {
         let stencils = Stencils::build(&body, &method, &conditions).unwrap();
-        let system = System::new(&body, &stencils, &conditions, &method)
-            .unwrap()
-            .with_load_points(&points)
-            .unwrap();
+        let system = System::with_structures(
+            &body,
+            &Structures {
+                points: &points,
+                ..Structures::default()
+            },
+            &stencils,
+            &conditions,
+            &method,
+        )
+        .unwrap();
         let mut resultant = [0.0; 2];
         for (node, force) in system.f_ext().iter().enumerate() {
             for axis in 0..2 {
@@ -494,10 +501,17 @@ fn loads_beside_dropped_nodes_keep_resultant_and_moment() {
             let points =
                 LoadPoint::along_edge([1.2, height], [3.7, height - 0.001], [3.0, -5.0], 7, 0);
             let stencils = Stencils::build(&body, &method, &conditions).unwrap();
-            let system = System::new(&body, &stencils, &conditions, &method)
-                .unwrap()
-                .with_load_points(&points)
-                .unwrap();
+            let system = System::with_structures(
+                &body,
+                &Structures {
+                    points: &points,
+                    ..Structures::default()
+                },
+                &stencils,
+                &conditions,
+                &method,
+            )
+            .unwrap();
             let mut sums = [0.0; 3];
             for (node, force) in system.f_ext().iter().enumerate() {
                 let x = grid.node_position(node);

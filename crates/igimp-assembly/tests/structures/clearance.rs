@@ -6,7 +6,8 @@
 use crate::common::laws;
 use igimp_assembly::{
     AcceptedContact, Constraints, Geometry, Interface, Method, ParticleSeed, Particles,
-    Penetration, RigidBody, RigidMotion, Stencils, StepConditions, StepLoads, Surface, System,
+    Penetration, RigidBody, RigidMotion, Stencils, StepConditions, StepLoads, Structures, Surface,
+    System,
 };
 use igimp_shape::{Axis, Grid};
 
@@ -52,8 +53,17 @@ fn lifted(by: f64, geometry: Geometry) -> Result<AcceptedContact<2>, Penetration
         ..Method::igimp_bbar()
     };
     let stencils = Stencils::build(&soil, &method, &conditions).unwrap();
-    let system =
-        System::with_rigid_bodies(&soil, &bodies, &stencils, &conditions, &method).unwrap();
+    let system = System::with_structures(
+        &soil,
+        &Structures {
+            bodies: &bodies,
+            ..Structures::default()
+        },
+        &stencils,
+        &conditions,
+        &method,
+    )
+    .unwrap();
     let mut u = vec![[0.0, by]; system.node_count()];
     let nodes = u.len();
     u[nodes - 2..].fill([0.0; 2]);

@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_4;
 use crate::common::{Random, displacements, grid, laws, particles};
 use igimp_assembly::{
     Constraints, ContactNode, Drive, Interface, Method, Particles, Pose, RigidBody, RigidMotion,
-    SharedLaw, Shear, Stencils, StepConditions, StepLoads, Surface, System, Tension,
+    SharedLaw, Shear, Stencils, StepConditions, StepLoads, Structures, Surface, System, Tension,
 };
 use igimp_linear::TangentMatrix;
 use igimp_material::TangentKind;
@@ -193,7 +193,17 @@ fn tangent_error<const D: usize>(
     let conditions = conditions(grid, &law, motion);
     let stencils = Stencils::build(soil, &method, &conditions).unwrap();
     let bodies = [body];
-    let system = System::with_rigid_bodies(soil, &bodies, &stencils, &conditions, &method).unwrap();
+    let system = System::with_structures(
+        soil,
+        &Structures {
+            bodies: &bodies,
+            ..Structures::default()
+        },
+        &stencils,
+        &conditions,
+        &method,
+    )
+    .unwrap();
     for knot in &system.bodies_at(u).unwrap().bodies[0].contact.knots {
         if knot.area > 0.0 {
             met.open += usize::from(knot.gap >= 0.0);
@@ -293,10 +303,19 @@ fn balance<const D: usize>(surface: &Surface<D>, cells: usize, depth: f64) {
         let stencils = Stencils::build(&soil, &method, &conditions).unwrap();
         let u = moved(&grid, &mut random);
         let force = |bodies: &[RigidBody<D>]| {
-            System::with_rigid_bodies(&soil, bodies, &stencils, &conditions, &method)
-                .and_then(|system| system.evaluate(&u, TangentKind::Consistent))
-                .unwrap()
-                .f_int
+            System::with_structures(
+                &soil,
+                &Structures {
+                    bodies,
+                    ..Structures::default()
+                },
+                &stencils,
+                &conditions,
+                &method,
+            )
+            .and_then(|system| system.evaluate(&u, TangentKind::Consistent))
+            .unwrap()
+            .f_int
         };
         let (with, without) = (force(&[body]), force(&[]));
         let nodes = grid.node_count();
@@ -366,8 +385,17 @@ fn bits<const D: usize>(threads: usize, cells: usize, surface: &Surface<D>) -> V
             let method = Method::shared_strain();
             let conditions = conditions(&grid, &law, motion);
             let stencils = Stencils::build(&soil, &method, &conditions).unwrap();
-            let system =
-                System::with_rigid_bodies(&soil, &bodies, &stencils, &conditions, &method).unwrap();
+            let system = System::with_structures(
+                &soil,
+                &Structures {
+                    bodies: &bodies,
+                    ..Structures::default()
+                },
+                &stencils,
+                &conditions,
+                &method,
+            )
+            .unwrap();
             let u = moved(&grid, &mut random);
             let (trial, matrix) = system.linearise(&u, TangentKind::Consistent).unwrap();
             let border = &matrix.border;
@@ -434,7 +462,17 @@ fn left_of(
     let conditions = conditions(grid, &law, RigidMotion::held());
     let stencils = Stencils::build(soil, &method, &conditions).unwrap();
     let bodies = std::slice::from_ref(body);
-    let system = System::with_rigid_bodies(soil, bodies, &stencils, &conditions, &method).unwrap();
+    let system = System::with_structures(
+        soil,
+        &Structures {
+            bodies,
+            ..Structures::default()
+        },
+        &stencils,
+        &conditions,
+        &method,
+    )
+    .unwrap();
     let moved = system.bodies_at(u).unwrap();
     moved.bodies[0].contact.knots.clone()
 }

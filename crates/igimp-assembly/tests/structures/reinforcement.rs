@@ -5,7 +5,7 @@
 use crate::common::{Random, conditions, displacements, grid, laws, particles};
 use igimp_assembly::{
     AssemblyError, Geometry, Hold, Kinematics, Method, Reinforcement, ReinforcementControl,
-    Segment, SegmentState, Station, Stencils, StepConditions, System,
+    Segment, SegmentState, Station, Stencils, StepConditions, Structures, System,
 };
 use igimp_material::TangentKind;
 use igimp_shape::Grid;
@@ -85,7 +85,10 @@ fn error_of_tangent<const D: usize>(
     let members = [member.clone()];
     let system = System::with_structures(
         &scene.body,
-        (&[], &members),
+        &Structures {
+            members: &members,
+            ..Structures::default()
+        },
         &stencils,
         &scene.conditions,
         method,
@@ -133,9 +136,12 @@ fn accepted<const D: usize>(
     let stencils = Stencils::build(&scene.body, method, &conditions).unwrap();
     let members = [member.clone()];
     let force = |members: &[Reinforcement<D>]| {
-        let structures = (&[][..], members);
+        let structures = Structures {
+            members,
+            ..Structures::default()
+        };
         let system =
-            System::with_structures(&scene.body, structures, &stencils, &conditions, method);
+            System::with_structures(&scene.body, &structures, &stencils, &conditions, method);
         let system = system.unwrap();
         let trial = system.evaluate(u, TangentKind::Consistent).unwrap();
         (system.reinforcement_at(u), trial.f_int)
@@ -335,10 +341,13 @@ fn members_without_soil_are_named() {
     let stencils = Stencils::build(&scene.body, &method, &scene.conditions).unwrap();
     let error = |member: &Reinforcement<2>| {
         let members = [member.clone()];
-        let structures = (&[][..], &members[..]);
+        let structures = Structures {
+            members: &members,
+            ..Structures::default()
+        };
         let conditions = &scene.conditions;
         let system =
-            System::with_structures(&scene.body, structures, &stencils, conditions, &method);
+            System::with_structures(&scene.body, &structures, &stencils, conditions, &method);
         system.map(|_| ()).unwrap_err()
     };
     let mut away = scene.member.clone();

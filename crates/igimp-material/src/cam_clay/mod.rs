@@ -9,7 +9,7 @@ use crate::error::{positive, required};
 use crate::law::{ON_SURFACE, mobilised};
 use crate::{
     ConstitutiveModel, ElasticStiffness, Elasticity, History, InternalVariable, MaterialError,
-    Principal, Regime, ReturnMap, Scaling,
+    NonlocalRates, PointContext, Principal, Regime, ReturnMap, Scaling, Strength,
 };
 use elastic::{Invariants, PressureElasticity, assembled};
 use flow::Flow;
@@ -75,7 +75,7 @@ pub struct CamClayParameters {
 /// let sigma = [-100.0; 3];
 /// let history = law.initial_history(&sigma);
 /// let strain = law.elastic_strain(&sigma, &history)?;
-/// let answer = law.return_map(&strain.map(|e| e - 0.1 * 2f64.ln() / 3.0), &history)?;
+/// let answer = law.return_map(&strain.map(|e| e - 0.1 * 2f64.ln() / 3.0), &history, &PointContext::STATIC)?;
 /// assert!((answer.tau[0] + 200.0).abs() < 1e-9); // twice the pressure along the compression line
 /// # Ok::<(), igimp_material::MaterialError>(())
 /// ```
@@ -204,6 +204,7 @@ impl ConstitutiveModel for ModifiedCamClay {
         &self,
         eps_e_trial: &Principal,
         history: &History,
+        _: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
         let trial = Invariants::of_strain(eps_e_trial);
         let [p_c, ..] = history.internal;
@@ -226,6 +227,7 @@ impl ConstitutiveModel for ModifiedCamClay {
                 delta_eps_p: [0.0; 3],
                 history: *history,
                 regime: Regime::Elastic,
+                nonlocal: NonlocalRates::NONE,
             });
         }
         let returned = self.flow.return_to(&self.elastic, &trial, p_c)?;
@@ -238,6 +240,7 @@ impl ConstitutiveModel for ModifiedCamClay {
             delta_eps_p,
             history: after,
             regime: Regime::Smooth,
+            nonlocal: NonlocalRates::NONE,
         })
     }
 
@@ -259,6 +262,13 @@ impl ConstitutiveModel for ModifiedCamClay {
         history
     }
 
+    /// Flow is associated, but $`p_c`$ grows by plastic volume and no energy of its own.
+    fn has_symmetric_tangent(&self) -> bool {
+        false
+    }
+}
+
+impl Strength for ModifiedCamClay {
     /// $`f = p + q^2/(M^2 p) - p_c`$; the distance from the tip of the surface where p is not positive.
     fn yield_function(&self, tau: &Principal, history: &History) -> f64 {
         let stress = Invariants::of_stress(tau);
@@ -285,11 +295,6 @@ impl ConstitutiveModel for ModifiedCamClay {
         let stress = Invariants::of_stress(tau);
         let strength = self.flow.critical_ratio * stress.volume;
         mobilised(stress.shear, strength, stress.shear + stress.volume.abs())
-    }
-
-    /// Flow is associated, but $`p_c`$ grows by plastic volume and no energy of its own.
-    fn has_symmetric_tangent(&self) -> bool {
-        false
     }
 
     /// Refused: with M/F the stresses that are there lie outside of the surface of the same $`p_c`$, which hardens at once, and

@@ -14,7 +14,7 @@ use crate::law::mobilised;
 use crate::spectral::principal::{descending, largest, mean, sorted, unsorted};
 use crate::{
     ConstitutiveModel, ElasticStiffness, Elasticity, History, InternalVariable, MaterialError,
-    Principal, Regime, ReturnMap, Scaling, ShearStrength,
+    NonlocalRates, PointContext, Principal, Regime, ReturnMap, Scaling, ShearStrength, Strength,
 };
 use cap::Cap;
 use hyperbola::Hyperbola;
@@ -70,7 +70,7 @@ const FLOOR: f64 = 0.01;
 /// let sigma = [-100e3; 3];
 /// let history = law.initial_history(&sigma);
 /// let strain = law.elastic_strain(&sigma, &history)?;
-/// let axial = law.return_map(&[strain[0] - 1e-3, strain[1], strain[2]], &history)?;
+/// let axial = law.return_map(&[strain[0] - 1e-3, strain[1], strain[2]], &history, &PointContext::STATIC)?;
 /// assert!(axial.regime.is_plastic() && axial.history.internal[0] > 0.0);
 /// # Ok::<(), igimp_material::MaterialError>(())
 /// ```
@@ -245,6 +245,7 @@ impl ConstitutiveModel for HardeningSoil {
         &self,
         eps_e_trial: &Principal,
         history: &History,
+        _: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
         let moduli = self.moduli(history);
         let pressure = moduli.stress(eps_e_trial).map(|own| -own);
@@ -284,6 +285,7 @@ impl ConstitutiveModel for HardeningSoil {
             delta_eps_p,
             history: self.after(history, &own, &delta_eps_p),
             regime,
+            nonlocal: NonlocalRates::NONE,
         })
     }
 
@@ -312,6 +314,17 @@ impl ConstitutiveModel for HardeningSoil {
         history
     }
 
+    fn has_symmetric_tangent(&self) -> bool {
+        false
+    }
+
+    /// ψ/φ as given.
+    fn dilatancy(&self) -> f64 {
+        self.dilatancy
+    }
+}
+
+impl Strength for HardeningSoil {
     /// The larger of what $`\sigma_1 - \sigma_3`$ exceeds its hyperbola by, and what $`\sqrt{q^2/M^2 + p^2}`$ exceeds $`p_p`$ by.
     fn yield_function(&self, tau: &Principal, history: &History) -> f64 {
         let pressure = tau.map(|own| -own);
@@ -343,15 +356,6 @@ impl ConstitutiveModel for HardeningSoil {
             cohesive: self.parameters.cohesion,
             friction_angle: self.parameters.friction_angle,
         })
-    }
-
-    fn has_symmetric_tangent(&self) -> bool {
-        false
-    }
-
-    /// ψ/φ as given.
-    fn dilatancy(&self) -> f64 {
-        self.dilatancy
     }
 
     /// ψ stays but never exceeds the new φ, and the cap is made for it.

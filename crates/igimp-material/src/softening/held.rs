@@ -4,10 +4,11 @@
 use super::curve::Curve;
 use super::rates::Changing;
 use super::undrained::Moment;
-use crate::pyramid::{Pyramid, Strength};
+use crate::pyramid::{PlaneStrength, Pyramid};
 use crate::spectral::principal::{descending, deviator, dot, sorted, unsorted};
 use crate::{
-    ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap, VonMises,
+    ConstitutiveModel, Elasticity, History, MaterialError, PointContext, Principal, ReturnMap,
+    VonMises,
 };
 
 /// The curves of a law; angles by their tangents.
@@ -52,7 +53,7 @@ impl Held {
         history: &History,
     ) -> Result<ReturnMap, MaterialError> {
         match self {
-            Self::Cylinder(law, _) => law.return_map(trial, history),
+            Self::Cylinder(law, _) => law.return_map(trial, history, &PointContext::STATIC),
             Self::Pyramid(pyramid, _) => pyramid.return_map(trial, *history),
         }
     }
@@ -126,7 +127,7 @@ impl Kind {
             }
             Self::Tresca(curve) => {
                 let [shear, rate] = moment.of(curve.at(kappa)).map(|value| 2.0 * value);
-                let prism = |shear, apex| Strength {
+                let prism = |shear, apex| PlaneStrength {
                     sin_friction: 0.0,
                     sin_dilation: 0.0,
                     shear,
@@ -181,14 +182,14 @@ fn frictional(
     };
     let cutoff = cutoff.filter(|[cutoff, _]| *cutoff < apex);
     Changing {
-        strength: Strength {
+        strength: PlaneStrength {
             sin_friction: tangent * cos,
             sin_dilation: dilation * cos_dilation,
             shear: 2.0 * c * cos,
             apex,
             tension_cutoff: cutoff.map(|[cutoff, _]| cutoff),
         },
-        rate: Strength {
+        rate: PlaneStrength {
             sin_friction: tangent_rate * cos.powi(3),
             sin_dilation: dilation_rate * cos_dilation.powi(3),
             shear: 2.0 * cos * (c_rate - c * tangent * tangent_rate * cos * cos),

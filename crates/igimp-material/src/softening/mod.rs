@@ -16,8 +16,8 @@ use crate::error::{positive, required};
 use crate::spectral::principal::largest;
 use crate::{
     ConstitutiveModel, Dissipation, Elasticity, History, InternalVariable, MaterialError,
-    MohrCoulomb, Nonlocal, NonlocalRates, Principal, ReturnMap, Scaling, ShearStrength, Tensor,
-    Tresca, VonMises,
+    MohrCoulomb, Nonlocal, PointContext, Principal, ReturnMap, Scaling, ShearStrength, Strength,
+    Tensor, Tresca, VonMises,
 };
 
 pub use curve::{Curve, Decay};
@@ -79,7 +79,7 @@ pub struct FrictionalCurves {
 ///
 /// let cu = Curve { initial: 2.0, residual: 0.5, strain: 0.1, decay: Decay::Linear };
 /// let law = Softening::tresca(Elasticity::new(100.0, 0.3)?, cu)?;
-/// let answer = law.return_map(&[0.2, 0.0, -0.2], &law.initial_history(&[0.0; 3]))?;
+/// let answer = law.return_map(&[0.2, 0.0, -0.2], &law.initial_history(&[0.0; 3]), &PointContext::STATIC)?;
 /// assert!((answer.tau[0] - answer.tau[2] - 2.0 * 0.5).abs() < 1e-12); // sheared far
 /// # Ok::<(), igimp_material::MaterialError>(())
 /// ```
@@ -476,44 +476,44 @@ impl ConstitutiveModel for Softening {
         history
     }
 
-    /// That of a step at the reference rate.
+    /// The tangent is that at held strength, and what the change of strength adds,
+    /// $`\partial\tau/\partial\kappa \otimes \mathrm{d}\kappa/\mathrm{d}\varepsilon`$ (theory, eq. 108). Strength by the ground
+    /// around is that of eq. 105 with $`\hat\kappa = m\bar\kappa + (1 - m)\kappa`$ (theory, eq. 110c); a step without duration is at
+    /// the reference rate.
     fn return_map(
         &self,
         eps_e_trial: &Principal,
         history: &History,
+        context: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
-        self.return_map_over(eps_e_trial, history, 0.0)
-    }
-
-    /// The tangent is that at held strength, and what the change of strength adds,
-    /// $`\partial\tau/\partial\kappa \otimes \mathrm{d}\kappa/\mathrm{d}\varepsilon`$ (theory, eq. 108).
-    fn return_map_over(
-        &self,
-        eps_e_trial: &Principal,
-        history: &History,
-        duration: f64,
-    ) -> Result<ReturnMap, MaterialError> {
-        Ok(self.returned(eps_e_trial, history, duration)?.0)
+        let mut risen = *history;
+        if let Some(place) = self.place_of_nonlocal() {
+            risen.internal[place] += context.nonlocal_rise;
+        }
+        self.returned(eps_e_trial, &risen, context.duration)
     }
 
     fn nonlocal(&self) -> Option<Nonlocal> {
         self.nonlocal
     }
 
-    /// With $`\hat\kappa = m\bar\kappa + (1 - m)\kappa`$ the strength of eq. 105 (theory, eq. 110c).
-    fn return_map_nonlocal(
-        &self,
-        eps_e_trial: &Principal,
-        history: &History,
-        rise: f64,
-    ) -> Result<(ReturnMap, NonlocalRates), MaterialError> {
-        let mut risen = *history;
-        if let Some(place) = self.place_of_nonlocal() {
-            risen.internal[place] += rise;
+    /// That of von Mises is, and that of Tresca with a strength that stays in a step; where strength goes with plastic strain, it is not
+    /// along the edges of planes, with associated flow either.
+    fn has_symmetric_tangent(&self) -> bool {
+        match self.kind {
+            Kind::VonMises(_) => true,
+            Kind::Tresca(_) => self.is_perfect(),
+            Kind::MohrCoulomb { .. } => false,
         }
-        self.returned(eps_e_trial, &risen, 0.0)
     }
 
+    /// Initial ψ/φ as given; 1 without friction.
+    fn dilatancy(&self) -> f64 {
+        self.dilatancy
+    }
+}
+
+impl Strength for Softening {
     /// That of the law at the strength that is left.
     fn yield_function(&self, tau: &Principal, history: &History) -> f64 {
         match self.held(history) {
@@ -550,21 +550,6 @@ impl ConstitutiveModel for Softening {
     /// the reference rate.
     fn dissipation(&self, rate: &Principal) -> Option<Dissipation> {
         self.strongest.dissipation(rate)
-    }
-
-    /// That of von Mises is, and that of Tresca with a strength that stays in a step; where strength goes with plastic strain, it is not
-    /// along the edges of planes, with associated flow either.
-    fn has_symmetric_tangent(&self) -> bool {
-        match self.kind {
-            Kind::VonMises(_) => true,
-            Kind::Tresca(_) => self.is_perfect(),
-            Kind::MohrCoulomb { .. } => false,
-        }
-    }
-
-    /// Initial ψ/φ as given; 1 without friction.
-    fn dilatancy(&self) -> f64 {
-        self.dilatancy
     }
 
     /// tan φ times the ratio all along its curve; c, ψ and the cut-off stay, and ψ never exceeds φ.

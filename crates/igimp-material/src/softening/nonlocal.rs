@@ -31,13 +31,13 @@ impl Nonlocal {
 
 impl Softening {
     /// The law with a strength that goes with the over-nonlocal measure of plastic strain in place of that of the point; the
-    /// nonlocal strain is an internal variable, and what it rises by in a step is given ([`return_map_nonlocal`]).
+    /// nonlocal strain is an internal variable, and what it rises by in a step is given ([`nonlocal_rise`]).
     ///
     /// # Errors
     /// [`MaterialError::InvalidParameter`] of a length that is not positive, a share below 1, strength that stays or goes with a
     /// rate, and strength that hardens so steeply that the stress of a point snaps back.
     ///
-    /// [`return_map_nonlocal`]: crate::ConstitutiveModel::return_map_nonlocal
+    /// [`nonlocal_rise`]: crate::PointContext::nonlocal_rise
     pub fn with_nonlocal(mut self, nonlocal: Nonlocal) -> Result<Self, MaterialError> {
         nonlocal.check()?;
         let goes = self.softens() && self.rate.is_none();
@@ -65,19 +65,18 @@ impl Softening {
         eps_e_trial: &Principal,
         history: &History,
         duration: f64,
-    ) -> Result<(ReturnMap, NonlocalRates), MaterialError> {
+    ) -> Result<ReturnMap, MaterialError> {
         trial_stress(&self.elasticity, eps_e_trial)?;
         let moment = self.moment(history, duration);
         let before = self.plastic_strain(history);
         let measure = self.measure(before, history);
         let held = self.kind.held(self.elasticity, measure, &moment)?;
         if self.is_perfect() {
-            let map = held.return_map(eps_e_trial, history)?;
-            return Ok((map, NonlocalRates::default()));
+            return held.return_map(eps_e_trial, history);
         }
         let first = held.answer(&self.elasticity, eps_e_trial, history)?;
         if !first.map.regime.is_plastic() {
-            return Ok((first.map, NonlocalRates::default()));
+            return Ok(first.map);
         }
         let (kappa, answer) = self.settled(eps_e_trial, (history, moment), first)?;
         let (margin, own) = (self.margin(&answer), self.own_share());
@@ -91,12 +90,12 @@ impl Softening {
             map.history.internal[0] = kappa;
         }
         let around = self.nonlocal.map_or(0.0, |own| own.over_nonlocal);
-        let rates = NonlocalRates {
+        map.nonlocal = NonlocalRates {
             plastic: answer.strain,
             plastic_by_strain: answer.by_trial.map(|along| along / margin),
             plastic_by_nonlocal: around * answer.by_kappa / margin,
             stress_by_nonlocal: answer.stress_rate.map(|rate| around * rate / margin),
         };
-        Ok((map, rates))
+        Ok(map)
     }
 }

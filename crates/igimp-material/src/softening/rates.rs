@@ -1,6 +1,6 @@
 //! How the stress on a pyramid moves with its strength, the trial strain being kept (theory, eq. 107).
 
-use crate::pyramid::Strength;
+use crate::pyramid::PlaneStrength;
 use crate::spectral::principal::{Principal, dot};
 use crate::{Elasticity, Regime};
 
@@ -17,8 +17,8 @@ struct Moving {
 /// A strength, and its derivative by plastic strain.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Changing {
-    pub(crate) strength: Strength,
-    pub(crate) rate: Strength,
+    pub(crate) strength: PlaneStrength,
+    pub(crate) rate: PlaneStrength,
 }
 
 impl Changing {

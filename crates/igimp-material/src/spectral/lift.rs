@@ -19,7 +19,8 @@
 use crate::spectral::eigen::{compose, principal_axes};
 use crate::spectral::principal::{Principal, Tensor};
 use crate::{
-    ConstitutiveModel, Elasticity, History, MaterialError, Regime, ReturnMap, SpatialTangent,
+    ConstitutiveModel, Elasticity, History, MaterialError, PointContext, Regime, ReturnMap,
+    SpatialTangent,
 };
 
 /// Which tangent a lift answers; the stress is that of the return map either way.
@@ -204,7 +205,7 @@ pub fn lift_finite<const D: usize>(
     kind: TangentKind,
 ) -> Result<Lifted<D>, MaterialError> {
     let trial = TrialStrain::finite::<D>(b_e_trial)?;
-    let answer = law.return_map(trial.strain(), history)?;
+    let answer = law.return_map(trial.strain(), history, &PointContext::STATIC)?;
     trial.lift(law, &answer, kind)
 }
 
@@ -223,7 +224,7 @@ pub fn lift_small<const D: usize>(
     kind: TangentKind,
 ) -> Result<Lifted<D>, MaterialError> {
     let trial = TrialStrain::small::<D>(eps_e_trial)?;
-    let answer = law.return_map(trial.strain(), history)?;
+    let answer = law.return_map(trial.strain(), history, &PointContext::STATIC)?;
     trial.lift(law, &answer, kind)
 }
 

@@ -1,7 +1,9 @@
 //! Returns to planes held against an independent method: every set of up to three planes is tried,
 //! and the one whose multipliers are not negative and whose stress is admissible is the answer.
 
-use igimp_material::{ConstitutiveModel, Elasticity, History, MohrCoulomb, Principal};
+use igimp_material::{
+    ConstitutiveModel, Elasticity, History, MohrCoulomb, PointContext, Principal,
+};
 
 use crate::random::Random;
 use crate::returns::dot;
@@ -132,7 +134,9 @@ fn returns_agree_with_all_sets_of_planes() {
                 let mean = size * random.symmetric();
                 let strain = random.values::<3>(size).map(|value| value + mean);
                 let trial = elasticity.stress(&strain);
-                let answer = law.return_map(&strain, &History::default()).unwrap();
+                let answer = law
+                    .return_map(&strain, &History::default(), &PointContext::STATIC)
+                    .unwrap();
                 let (tau, miss) = projected(&elasticity, &planes, &trial);
                 let scale = 1.0 + largest(&trial);
                 assert!(miss <= 1e-9 * scale, "the oracle itself: {miss:e}");

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use igimp_material::{
     Cone, ConstitutiveModel, DruckerPrager, Elasticity, HenckyElastic, History, MohrCoulomb,
-    Principal, Regime, Tresca, VonMises,
+    PointContext, Principal, Regime, Tresca, VonMises,
 };
 
 use crate::random::Random;
@@ -250,7 +250,10 @@ impl Entry {
 
     /// The elastic strain that the law returns a trial strain to.
     fn returned(&self, strain: &Principal) -> Principal {
-        let answer = self.law.return_map(strain, &History::default()).unwrap();
+        let answer = self
+            .law
+            .return_map(strain, &History::default(), &PointContext::STATIC)
+            .unwrap();
         self.law.stiffness_bound().strain(&answer.tau)
     }
 }

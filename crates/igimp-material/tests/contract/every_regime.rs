@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use igimp_material::{ConstitutiveModel, History, Principal, Regime, Tensor};
+use igimp_material::{ConstitutiveModel, History, PointContext, Principal, Regime, Tensor};
 
 use crate::random::Random;
 use crate::returns::{dot, size};
@@ -84,7 +84,7 @@ fn all() -> Vec<(&'static str, Vec<Tried>)> {
 fn check(law: &dyn ConstitutiveModel, (strain, history, duration): &State) -> Regime {
     let about = || format!("{law:?} {strain:?} {history:?} {duration:e}");
     let answer = law
-        .return_map_over(strain, history, *duration)
+        .return_map(strain, history, &PointContext::over(*duration))
         .unwrap_or_else(|error| panic!("{} {error}", about()));
     let tangent: &Tensor = &answer.tangent;
     let mut numbers = tangent.as_flattened().iter().chain(&answer.tau);

@@ -1,6 +1,6 @@
 //! Koiter's flow rule, checked against planes and cones written out anew.
 
-use igimp_material::{History, Principal, Regime};
+use igimp_material::{History, PointContext, Principal, Regime};
 
 use crate::catalogue::{Planes, all};
 use crate::random::Random;
@@ -17,7 +17,10 @@ fn plastic_strain_obeys_the_flow_rule() {
         let mut random = Random(6);
         for _ in 0..10_000 {
             let strain = entry.any(&mut random);
-            let answer = entry.law.return_map(&strain, &History::default()).unwrap();
+            let answer = entry
+                .law
+                .return_map(&strain, &History::default(), &PointContext::STATIC)
+                .unwrap();
             if !answer.regime.is_plastic() {
                 continue;
             }

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use igimp_material::{ConstitutiveModel, Elasticity, Principal, Ratios, ScaledLaw};
+use igimp_material::{
+    ConstitutiveModel, Elasticity, PointContext, Principal, Ratios, ScaledLaw, Strength,
+};
 
 use crate::random::Random;
 
@@ -42,7 +44,9 @@ fn a_scaled_law_remembers_what_the_law_with_scaled_parameters_does() {
             let step: Principal = random.values(0.06);
             for k in 0..2 {
                 let trial = std::array::from_fn(|a| elastic[k][a] + step[a]);
-                let answer = laws[k].return_map(&trial, &histories[k]).unwrap();
+                let answer = laws[k]
+                    .return_map(&trial, &histories[k], &PointContext::STATIC)
+                    .unwrap();
                 elastic[k] = laws[k]
                     .elastic_strain(&answer.tau, &answer.history)
                     .unwrap();
@@ -69,7 +73,7 @@ fn a_reduction_acts_on_what_is_remembered() {
     let law = hardening(1.0, 1.0);
     let mut history = law.initial_history(&[0.0; 3]);
     history = law
-        .return_map(&[0.05, 0.0, -0.05], &history)
+        .return_map(&[0.05, 0.0, -0.05], &history, &PointContext::STATIC)
         .unwrap()
         .history;
     let reduced = law.reduced(2.0).unwrap();
@@ -89,13 +93,17 @@ fn its_tangent_is_the_derivative_of_its_stress() {
     let law = hardening(1.0, 1.0);
     let history = law.initial_history(&[0.0; 3]);
     let strain = [0.03, -0.01, -0.05];
-    let answer = law.return_map(&strain, &history).unwrap();
+    let answer = law
+        .return_map(&strain, &history, &PointContext::STATIC)
+        .unwrap();
     assert!(answer.regime.is_plastic());
     for b in 0..3 {
         let at = |sign: f64| {
             let mut moved = strain;
             moved[b] += sign * 1e-6;
-            law.return_map(&moved, &history).unwrap().tau
+            law.return_map(&moved, &history, &PointContext::STATIC)
+                .unwrap()
+                .tau
         };
         let (up, down) = (at(1.0), at(-1.0));
         for a in 0..3 {

@@ -1,8 +1,8 @@
 //! Hardening Soil: what `returns` and `tangents` ask of the others, and what its calibration promises.
 
 use igimp_material::{
-    ConstitutiveModel, HardeningSoil, HardeningSoilParameters, History, MaterialError, Principal,
-    Regime,
+    ConstitutiveModel, HardeningSoil, HardeningSoilParameters, History, MaterialError,
+    PointContext, Principal, Regime, Strength,
 };
 
 use crate::random::Random;
@@ -91,7 +91,9 @@ fn returns_are_admissible_and_dissipate() {
         for _ in 0..5_000 {
             let (history, elastic) = start(&law, &mut random);
             let strain = trial(&elastic, &mut random);
-            let answer = law.return_map(&strain, &history).unwrap();
+            let answer = law
+                .return_map(&strain, &history, &PointContext::STATIC)
+                .unwrap();
             let about = || format!("{law:?} {strain:?} {history:?} {answer:?}");
             let excess = law.yield_function(&answer.tau, &answer.history);
             let scale = law.stress_scale(&answer.tau);
@@ -105,7 +107,9 @@ fn returns_are_admissible_and_dissipate() {
             let flow = size(&answer.delta_eps_p);
             assert!(work >= -1e-13 * size(&answer.tau) * flow, "{}", about());
             let next = law.elastic_strain(&answer.tau, &answer.history).unwrap();
-            let again = law.return_map(&next, &answer.history).unwrap();
+            let again = law
+                .return_map(&next, &answer.history, &PointContext::STATIC)
+                .unwrap();
             assert!(size(&again.delta_eps_p) < 1e-13, "{} {again:?}", about());
             seen[usize::from(answer.regime.code())] += 1;
         }
@@ -134,7 +138,9 @@ fn tangents_are_derivatives() {
         for _ in 0..2_000 {
             let (history, elastic) = start(&law, &mut random);
             let strain = trial(&elastic, &mut random);
-            let answer = law.return_map(&strain, &history).unwrap();
+            let answer = law
+                .return_map(&strain, &history, &PointContext::STATIC)
+                .unwrap();
             let stiffness = law.elastic_stiffness(&strain, &history);
             let largest = stiffness.tangent[0][0];
             let step: f64 = (0..3).map(|a| (strain[a] - elastic[a]).abs()).sum();
@@ -143,7 +149,9 @@ fn tangents_are_derivatives() {
                 let at = |k: f64| {
                     let mut moved = strain;
                     moved[b] += k * h;
-                    let other = law.return_map(&moved, &history).unwrap();
+                    let other = law
+                        .return_map(&moved, &history, &PointContext::STATIC)
+                        .unwrap();
                     (other.regime == answer.regime).then_some(other.tau)
                 };
                 let taus = [-2.0, -1.0, 1.0, 2.0].map(at);
@@ -184,9 +192,13 @@ fn answers_are_isotropic() {
         for _ in 0..500 {
             let (history, elastic) = start(&law, &mut random);
             let strain = trial(&elastic, &mut random);
-            let answer = law.return_map(&strain, &history).unwrap();
+            let answer = law
+                .return_map(&strain, &history, &PointContext::STATIC)
+                .unwrap();
             let turned = [strain[2], strain[0], strain[1]];
-            let other = law.return_map(&turned, &history).unwrap();
+            let other = law
+                .return_map(&turned, &history, &PointContext::STATIC)
+                .unwrap();
             for a in 0..3 {
                 let error = (other.tau[(a + 1) % 3] - answer.tau[a]).abs();
                 let scale = law.stress_scale(&answer.tau)
@@ -207,7 +219,7 @@ fn far_trial_states_are_answered_or_refused() {
             let reach = 10_f64.powf(random.between(-1.0, 4.0));
             let far: Principal = random.values(reach);
             let strain = std::array::from_fn(|a| elastic[a] + far[a]);
-            match law.return_map(&strain, &history) {
+            match law.return_map(&strain, &history, &PointContext::STATIC) {
                 Ok(answer) => {
                     let tangent = answer.tangent.as_flattened().iter();
                     assert!(tangent.chain(&answer.tau).all(|own| own.is_finite()));
@@ -223,7 +235,11 @@ fn far_trial_states_are_answered_or_refused() {
                 Err(other) => panic!("{other}"),
             }
         }
-        let answer = law.return_map(&[f64::NAN; 3], &law.initial_history(&[-1.0; 3]));
+        let answer = law.return_map(
+            &[f64::NAN; 3],
+            &law.initial_history(&[-1.0; 3]),
+            &PointContext::STATIC,
+        );
         assert!(matches!(answer, Err(MaterialError::NonFinite { .. })));
     }
 }
@@ -248,8 +264,12 @@ fn a_reduction_is_that_of_mohr_coulomb() {
             let oracle =
                 MohrCoulomb::new(elasticity, own.cohesion / srf, friction, dilation).unwrap();
             let (expected, answer) = (
-                oracle.return_map(&strain, &history).unwrap(),
-                reduced.return_map(&strain, &history).unwrap(),
+                oracle
+                    .return_map(&strain, &history, &PointContext::STATIC)
+                    .unwrap(),
+                reduced
+                    .return_map(&strain, &history, &PointContext::STATIC)
+                    .unwrap(),
             );
             let scale = law.stress_scale(&answer.tau) + shear * size(&strain);
             for a in 0..3 {

@@ -1,7 +1,8 @@
 //! Hoek–Brown: the contract, its envelope, and its reduction by shear strength.
 
 use igimp_material::{
-    ConstitutiveModel, Elasticity, History, HoekBrown, HoekBrownParameters, Principal, Regime,
+    ConstitutiveModel, Elasticity, History, HoekBrown, HoekBrownParameters, PointContext,
+    Principal, Regime, Strength,
 };
 
 use crate::random::Random;
@@ -67,7 +68,7 @@ fn returns_are_admissible_and_dissipate() {
         for _ in 0..STATES / 15 {
             let strain = trial(row, &mut random);
             let answer = law
-                .return_map(&strain, &History::default())
+                .return_map(&strain, &History::default(), &PointContext::STATIC)
                 .unwrap_or_else(|error| panic!("{row} {srf} {strain:?} {error}"));
             let about = || format!("{row} {srf} {strain:?} {answer:?}");
             let scale = law.stress_scale(&answer.tau);
@@ -83,7 +84,9 @@ fn returns_are_admissible_and_dissipate() {
                 let error = strain[a] - elastic[a] - answer.delta_eps_p[a];
                 assert!(error.abs() <= 1e-13 * (1.0 + size(&strain)), "{}", about());
             }
-            let again = law.return_map(&elastic, &answer.history).unwrap();
+            let again = law
+                .return_map(&elastic, &answer.history, &PointContext::STATIC)
+                .unwrap();
             assert_eq!(again.regime, Regime::Elastic, "{}", about());
             if !seen.contains(&answer.regime) {
                 seen.push(answer.regime);
@@ -106,7 +109,9 @@ fn tangents_are_derivatives() {
             let strain = trial(row, &mut random);
             let spread = strain.iter().fold(f64::MIN, |m, v| m.max(*v))
                 - strain.iter().fold(f64::MAX, |m, v| m.min(*v));
-            let answer = law.return_map(&strain, &History::default()).unwrap();
+            let answer = law
+                .return_map(&strain, &History::default(), &PointContext::STATIC)
+                .unwrap();
             let h = 2e-4 * spread;
             if h == 0.0 || !answer.regime.is_plastic() {
                 continue;
@@ -115,7 +120,9 @@ fn tangents_are_derivatives() {
                 let at = |k: f64| {
                     let mut moved = strain;
                     moved[b] += k * h;
-                    let other = law.return_map(&moved, &History::default()).unwrap();
+                    let other = law
+                        .return_map(&moved, &History::default(), &PointContext::STATIC)
+                        .unwrap();
                     (other.regime == answer.regime).then_some(other.tau)
                 };
                 let taus = [-2.0, -1.0, 1.0, 2.0].map(at);
@@ -163,7 +170,9 @@ fn triaxial_compression_fails_on_the_envelope() {
                         elastic[1] + side,
                         elastic[2] - 2e-2 * sci / young,
                     ];
-                    let answer = law.return_map(&trial, &History::default()).unwrap();
+                    let answer = law
+                        .return_map(&trial, &History::default(), &PointContext::STATIC)
+                        .unwrap();
                     let stiff = answer.tangent[0][0] + answer.tangent[0][1];
                     let off = answer.tau[0] + confinement;
                     side -= off
@@ -181,7 +190,9 @@ fn triaxial_compression_fails_on_the_envelope() {
                     elastic[1] + side,
                     elastic[2] - 2e-2 * sci / young,
                 ];
-                let answer = law.return_map(&trial, &History::default()).unwrap();
+                let answer = law
+                    .return_map(&trial, &History::default(), &PointContext::STATIC)
+                    .unwrap();
                 elastic = law.stiffness_bound().strain(&answer.tau);
             }
             let tau = law.stiffness_bound().stress(&elastic);
@@ -230,7 +241,9 @@ fn a_reduction_divides_the_envelope_of_shear() {
         let mut tried = 0;
         while tried < 20 {
             let strain = trial(row, &mut random);
-            let answer = law.return_map(&strain, &History::default()).unwrap();
+            let answer = law
+                .return_map(&strain, &History::default(), &PointContext::STATIC)
+                .unwrap();
             let mut tau = answer.tau;
             tau.sort_by(|a, b| b.total_cmp(a));
             let (centre, radius) = (-0.5 * (tau[0] + tau[2]), 0.5 * (tau[0] - tau[2]));
@@ -261,9 +274,13 @@ fn order_does_not_matter_and_refusals_have_names() {
         let mut random = Random(54);
         for _ in 0..300 {
             let strain = trial(row, &mut random);
-            let answer = law.return_map(&strain, &History::default()).unwrap();
+            let answer = law
+                .return_map(&strain, &History::default(), &PointContext::STATIC)
+                .unwrap();
             let turned = [strain[2], strain[0], strain[1]];
-            let other = law.return_map(&turned, &History::default()).unwrap();
+            let other = law
+                .return_map(&turned, &History::default(), &PointContext::STATIC)
+                .unwrap();
             for a in 0..3 {
                 let error = (other.tau[(a + 1) % 3] - answer.tau[a]).abs();
                 assert!(

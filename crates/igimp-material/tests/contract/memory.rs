@@ -1,8 +1,8 @@
 //! Laws with memory and with elasticity that is not linear: what `returns` and `tangents` ask of the others.
 
 use igimp_material::{
-    CamClayParameters, ConstitutiveModel, History, MaterialError, ModifiedCamClay, Principal,
-    ShearStiffness,
+    CamClayParameters, ConstitutiveModel, History, MaterialError, ModifiedCamClay, PointContext,
+    Principal, ShearStiffness, Strength,
 };
 
 use crate::random::Random;
@@ -77,7 +77,9 @@ fn returns_are_admissible_and_dissipate() {
         for _ in 0..25_000 {
             let (history, elastic) = start(&law, &mut random);
             let strain = trial(&elastic, 0.3, &mut random);
-            let answer = law.return_map(&strain, &history).unwrap();
+            let answer = law
+                .return_map(&strain, &history, &PointContext::STATIC)
+                .unwrap();
             let scale = law.stress_scale(&answer.tau);
             let excess = law.yield_function(&answer.tau, &answer.history);
             assert!(
@@ -100,7 +102,9 @@ fn returns_are_admissible_and_dissipate() {
             }
             let work = dot(&answer.tau, &answer.delta_eps_p);
             assert!(work >= -1e-13 * size(&answer.tau) * size(&answer.delta_eps_p));
-            let again = law.return_map(&carried, &answer.history).unwrap();
+            let again = law
+                .return_map(&carried, &answer.history, &PointContext::STATIC)
+                .unwrap();
             assert!(!again.regime.is_plastic() || size(&again.delta_eps_p) < 1e-13);
             seen[usize::from(answer.regime.is_plastic())] += 1;
         }
@@ -118,7 +122,7 @@ fn far_trial_states_are_answered_or_refused() {
         for _ in 0..10_000 {
             let (history, elastic) = start(&law, &mut random);
             let strain = trial(&elastic, 1e3, &mut random);
-            match law.return_map(&strain, &history) {
+            match law.return_map(&strain, &history, &PointContext::STATIC) {
                 Ok(answer) => {
                     let excess = law.yield_function(&answer.tau, &answer.history);
                     let scale = law.stress_scale(&answer.tau);
@@ -153,7 +157,9 @@ fn tangents_are_derivatives() {
         for _ in 0..4_000 {
             let (history, elastic) = start(&law, &mut random);
             let strain = trial(&elastic, 0.1, &mut random);
-            let answer = law.return_map(&strain, &history).unwrap();
+            let answer = law
+                .return_map(&strain, &history, &PointContext::STATIC)
+                .unwrap();
             // Beyond, a step of the differences is no small share of the strain over which the answer changes.
             if dot(&answer.tau, &[1.0; 3]) > -0.3 * law.parameters().reference_pressure {
                 continue;
@@ -168,7 +174,9 @@ fn tangents_are_derivatives() {
                 let at = |k: f64| {
                     let mut moved = strain;
                     moved[b] += k * h;
-                    let other = law.return_map(&moved, &history).unwrap();
+                    let other = law
+                        .return_map(&moved, &history, &PointContext::STATIC)
+                        .unwrap();
                     (other.regime == answer.regime).then_some(other.tau)
                 };
                 let taus = [-2.0, -1.0, 1.0, 2.0].map(at);
@@ -196,9 +204,13 @@ fn answers_are_isotropic() {
         for _ in 0..500 {
             let (history, elastic) = start(&law, &mut random);
             let strain = trial(&elastic, 0.1, &mut random);
-            let answer = law.return_map(&strain, &history).unwrap();
+            let answer = law
+                .return_map(&strain, &history, &PointContext::STATIC)
+                .unwrap();
             let turned = [strain[2], strain[0], strain[1]];
-            let other = law.return_map(&turned, &history).unwrap();
+            let other = law
+                .return_map(&turned, &history, &PointContext::STATIC)
+                .unwrap();
             for a in 0..3 {
                 let error = (other.tau[(a + 1) % 3] - answer.tau[a]).abs();
                 assert!(error <= 1e-11 * size(&answer.tau), "{law:?} {error:e}");
@@ -266,7 +278,11 @@ fn refusals_have_words() {
     assert!(with(&|own| own.shear = ShearStiffness::Constant(0.0)).contains("`shear`"));
     let tension = law.elastic_strain(&[1.0, 0.0, 0.0], &History::default());
     assert!(tension.unwrap_err().to_string().contains("mean pressure"));
-    let answer = law.return_map(&[f64::NAN; 3], &law.initial_history(&[-1.0; 3]));
+    let answer = law.return_map(
+        &[f64::NAN; 3],
+        &law.initial_history(&[-1.0; 3]),
+        &PointContext::STATIC,
+    );
     assert!(matches!(answer, Err(MaterialError::NonFinite { .. })));
     assert_eq!(law.name(), "modified Cam-clay");
 }

@@ -1,8 +1,8 @@
 //! Strength reduction, and laws that are limits of other laws.
 
 use igimp_material::{
-    Cone, ConstitutiveModel, DruckerPrager, Elasticity, History, MohrCoulomb, Principal, Regime,
-    ReturnMap, Tresca, VonMises,
+    Cone, ConstitutiveModel, DruckerPrager, Elasticity, History, MohrCoulomb, PointContext,
+    Principal, Regime, ReturnMap, Strength, Tresca, VonMises,
 };
 
 use crate::catalogue::all;
@@ -13,7 +13,8 @@ fn elasticity() -> Elasticity {
 }
 
 fn answer(law: &dyn ConstitutiveModel, strain: &Principal) -> ReturnMap {
-    law.return_map(strain, &History::default()).unwrap()
+    law.return_map(strain, &History::default(), &PointContext::STATIC)
+        .unwrap()
 }
 
 /// Largest difference of stress and tangent over random trial states, relative to 2G.

@@ -2,7 +2,8 @@
 
 use igimp_material::{
     Cone, DruckerPrager, Elasticity, HenckyElastic, History, MaterialError, MohrCoulomb,
-    TangentKind, Tensor, Tresca, VonMises, lift_finite, lift_small, logarithmic_strain,
+    PointContext, TangentKind, Tensor, Tresca, VonMises, lift_finite, lift_small,
+    logarithmic_strain,
 };
 
 use crate::catalogue::all;
@@ -138,7 +139,10 @@ fn strains_that_are_not_finite_are_refused() {
             for place in 0..3 {
                 let mut strain = [0.01; 3];
                 strain[place] = bad;
-                let result = entry.law.return_map(&strain, &History::default());
+                let result =
+                    entry
+                        .law
+                        .return_map(&strain, &History::default(), &PointContext::STATIC);
                 let expected = MaterialError::NonFinite {
                     quantity: "trial stress",
                 };

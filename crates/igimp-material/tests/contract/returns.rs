@@ -1,6 +1,6 @@
 //! The returned stress and the plastic strain.
 
-use igimp_material::{History, Principal, Regime, ReturnMap};
+use igimp_material::{History, PointContext, Principal, Regime, ReturnMap};
 
 use crate::catalogue::{Entry, all, families};
 use crate::random::Random;
@@ -8,7 +8,10 @@ use crate::random::Random;
 const HISTORY: History = History::of_plastic_strain(0.25);
 
 fn answer(entry: &Entry, strain: &Principal) -> ReturnMap {
-    entry.law.return_map(strain, &HISTORY).unwrap()
+    entry
+        .law
+        .return_map(strain, &HISTORY, &PointContext::STATIC)
+        .unwrap()
 }
 
 pub(crate) fn dot(a: &Principal, b: &Principal) -> f64 {
@@ -150,7 +153,7 @@ fn associated_returns_are_closest_points() {
             let answer = answer(&entry, &entry.general(&mut random));
             let other = entry
                 .law
-                .return_map(&entry.any(&mut random), &HISTORY)
+                .return_map(&entry.any(&mut random), &HISTORY, &PointContext::STATIC)
                 .unwrap()
                 .tau;
             let way: Principal = std::array::from_fn(|a| other[a] - answer.tau[a]);

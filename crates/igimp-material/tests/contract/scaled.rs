@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use igimp_material::{
-    ConstitutiveModel, Elasticity, HenckyElastic, History, MohrCoulomb, Principal, Ratios,
-    ScaledLaw, TangentKind, Tresca, VonMises, lift_finite, lift_small,
+    ConstitutiveModel, Elasticity, HenckyElastic, History, MohrCoulomb, PointContext, Principal,
+    Ratios, ScaledLaw, Strength, TangentKind, Tresca, VonMises, lift_finite, lift_small,
 };
 
 use crate::random::Random;
@@ -67,8 +67,12 @@ fn a_scaled_law_is_the_law_with_scaled_parameters() {
             let size = [1e-3, 1e-2, 0.1, 0.5][k % 4];
             let strain: Principal = random.values(size);
             let history = History::of_plastic_strain(0.02);
-            let one = scaled.return_map(&strain, &history).unwrap();
-            let other = made.return_map(&strain, &history).unwrap();
+            let one = scaled
+                .return_map(&strain, &history, &PointContext::STATIC)
+                .unwrap();
+            let other = made
+                .return_map(&strain, &history, &PointContext::STATIC)
+                .unwrap();
             let stress = stiffness * size;
             assert_eq!(one.regime, other.regime, "{} {ratios:?}", made.name());
             plastic += usize::from(one.regime.is_plastic());
@@ -156,8 +160,10 @@ fn strength_reduction_divides_what_is_scaled() {
         let stiffness = made.stiffness_bound().bulk() + 2.0 * made.stiffness_bound().shear();
         for _ in 0..50 {
             let strain: Principal = random.values(0.02);
-            let answers =
-                [&one, &other].map(|law| law.return_map(&strain, &History::default()).unwrap());
+            let answers = [&one, &other].map(|law| {
+                law.return_map(&strain, &History::default(), &PointContext::STATIC)
+                    .unwrap()
+            });
             for a in 0..3 {
                 assert!(close(
                     answers[0].tau[a],
@@ -227,8 +233,12 @@ fn friction_at_a_ratio_is_the_law_with_that_friction() {
                 let size = [1e-3, 1e-2, 0.1, 0.5][k % 4];
                 let strain: Principal = random.values(size);
                 let history = History::default();
-                let one = law.return_map(&strain, &history).unwrap();
-                let other = expected.return_map(&strain, &history).unwrap();
+                let one = law
+                    .return_map(&strain, &history, &PointContext::STATIC)
+                    .unwrap();
+                let other = expected
+                    .return_map(&strain, &history, &PointContext::STATIC)
+                    .unwrap();
                 for a in 0..3 {
                     assert!(close(one.tau[a], other.tau[a], 300.0 * size), "{ratio} {s}");
                 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use igimp_material::{
     ConstitutiveModel, Curve, Decay, Elasticity, FrictionalCurves, History, MaterialError,
-    Principal, Ratios, Regime, ScaledLaw, Softening,
+    PointContext, Principal, Ratios, Regime, ScaledLaw, Softening, Strength,
 };
 
 use crate::random::Random;
@@ -103,7 +103,7 @@ fn returns_are_admissible_and_dissipate() {
                 let history = sheared([0.0, random.between(0.0, 0.3)][random.below(2)]);
                 let strain = trial(&mut random);
                 let answer = law
-                    .return_map(&strain, &history)
+                    .return_map(&strain, &history, &PointContext::STATIC)
                     .unwrap_or_else(|error| panic!("{law:?} {strain:?} {history:?} {error}"));
                 let about = || format!("{law:?} {strain:?} {history:?} {answer:?}");
                 let scale = law.stress_scale(&answer.tau);
@@ -130,7 +130,9 @@ fn returns_are_admissible_and_dissipate() {
                     "{}",
                     about()
                 );
-                let again = law.return_map(&elastic, &answer.history).unwrap();
+                let again = law
+                    .return_map(&elastic, &answer.history, &PointContext::STATIC)
+                    .unwrap();
                 assert_eq!(again.regime, Regime::Elastic, "{}", about());
                 plastic += usize::from(answer.regime.is_plastic());
             }
@@ -153,13 +155,17 @@ fn tangents_are_derivatives() {
             let size = 10_f64.powf(random.between(-2.5, -0.5));
             let middle = size * random.symmetric() * random.between(0.0, 2.0);
             let strain = random.values::<3>(size).map(|value| value + middle);
-            let answer = law.return_map(&strain, &history).unwrap();
+            let answer = law
+                .return_map(&strain, &history, &PointContext::STATIC)
+                .unwrap();
             let h = 2e-5 * size;
             for b in 0..3 {
                 let at = |k: f64| {
                     let mut moved = strain;
                     moved[b] += k * h;
-                    let other = law.return_map(&moved, &history).unwrap();
+                    let other = law
+                        .return_map(&moved, &history, &PointContext::STATIC)
+                        .unwrap();
                     (other.regime == answer.regime).then_some(other.tau)
                 };
                 let taus = [-2.0, -1.0, 1.0, 2.0].map(at);
@@ -198,9 +204,13 @@ fn answers_are_isotropic() {
         let mut random = Random(43);
         for _ in 0..500 {
             let (history, strain) = (sheared(random.between(0.0, 0.1)), trial(&mut random));
-            let answer = law.return_map(&strain, &history).unwrap();
+            let answer = law
+                .return_map(&strain, &history, &PointContext::STATIC)
+                .unwrap();
             let turned = [strain[2], strain[0], strain[1]];
-            let other = law.return_map(&turned, &history).unwrap();
+            let other = law
+                .return_map(&turned, &history, &PointContext::STATIC)
+                .unwrap();
             for a in 0..3 {
                 let error = (other.tau[(a + 1) % 3] - answer.tau[a]).abs();
                 let admitted = 1e-12 * (law.stress_scale(&answer.tau) + 300.0 * size(&strain));
@@ -227,7 +237,9 @@ fn shear_follows_the_curve() {
                 let step = 0.09 / f64::from(steps);
                 for k in 1..=steps {
                     let trial = [elastic[0] + 0.5 * step, 0.0, elastic[2] - 0.5 * step];
-                    let answer = law.return_map(&trial, &history).unwrap();
+                    let answer = law
+                        .return_map(&trial, &history, &PointContext::STATIC)
+                        .unwrap();
                     elastic = law.stiffness_bound().strain(&answer.tau);
                     history = answer.history;
                     let (gamma, tau) = (step * f64::from(k), answer.tau[0]);
@@ -262,7 +274,9 @@ fn friction_and_dilation_follow_their_curves() {
     let mut volume = [0.0; 2];
     for step in 0..400 {
         let trial = [elastic[0] + 1e-3, elastic[1] + 1e-3, elastic[2] - 2e-3];
-        let answer = law.return_map(&trial, &history).unwrap();
+        let answer = law
+            .return_map(&trial, &history, &PointContext::STATIC)
+            .unwrap();
         elastic = law.stiffness_bound().strain(&answer.tau);
         history = answer.history;
         volume = [volume[1], answer.delta_eps_p.iter().sum()];
@@ -305,7 +319,10 @@ fn a_reduction_divides_the_curve() {
     let mut random = Random(44);
     for _ in 0..2_000 {
         let (history, strain) = (sheared(random.between(0.0, 0.2)), trial(&mut random));
-        let [one, other] = [&*reduced, &made].map(|law| law.return_map(&strain, &history).unwrap());
+        let [one, other] = [&*reduced, &made].map(|law| {
+            law.return_map(&strain, &history, &PointContext::STATIC)
+                .unwrap()
+        });
         for a in 0..3 {
             let error = (one.tau[a] - other.tau[a]).abs();
             assert!(
@@ -339,8 +356,12 @@ fn a_scaled_law_is_the_law_with_scaled_curves() {
     let mut random = Random(45);
     for _ in 0..2_000 {
         let (history, strain) = (sheared(random.between(0.0, 0.2)), trial(&mut random));
-        let one = scaled.return_map(&strain, &history).unwrap();
-        let other = made.return_map(&strain, &history).unwrap();
+        let one = scaled
+            .return_map(&strain, &history, &PointContext::STATIC)
+            .unwrap();
+        let other = made
+            .return_map(&strain, &history, &PointContext::STATIC)
+            .unwrap();
         for a in 0..3 {
             assert!((one.tau[a] - other.tau[a]).abs() < 1e-11 * (1.0 + size(&one.tau)));
         }

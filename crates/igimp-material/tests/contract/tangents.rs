@@ -1,6 +1,6 @@
 //! The consistent tangent in principal space.
 
-use igimp_material::{History, Principal};
+use igimp_material::{History, PointContext, Principal};
 
 use crate::catalogue::{Entry, all};
 use crate::random::Random;
@@ -11,8 +11,16 @@ fn moved(entry: &Entry, strain: &Principal, b: usize, step: f64) -> Option<Princ
     let order = |s: &Principal| [s[0] > s[1], s[1] > s[2], s[0] > s[2]];
     let mut other = *strain;
     other[b] += step;
-    let answer = entry.law.return_map(&other, &history).unwrap();
-    let same = answer.regime == entry.law.return_map(strain, &history).unwrap().regime;
+    let answer = entry
+        .law
+        .return_map(&other, &history, &PointContext::STATIC)
+        .unwrap();
+    let same = answer.regime
+        == entry
+            .law
+            .return_map(strain, &history, &PointContext::STATIC)
+            .unwrap()
+            .regime;
     (same && order(&other) == order(strain)).then_some(answer.tau)
 }
 
@@ -25,7 +33,10 @@ fn tangent_is_the_derivative_of_stress() {
         let mut seen = Vec::new();
         for _ in 0..20_000 {
             let strain = entry.general(&mut random);
-            let answer = entry.law.return_map(&strain, &History::default()).unwrap();
+            let answer = entry
+                .law
+                .return_map(&strain, &History::default(), &PointContext::STATIC)
+                .unwrap();
             let spread = strain.iter().fold(f64::MIN, |most, value| most.max(*value))
                 - strain
                     .iter()
@@ -77,7 +88,7 @@ fn tangent_is_symmetric_with_associated_flow() {
             let strain = entry.any(&mut random);
             let tangent = entry
                 .law
-                .return_map(&strain, &History::default())
+                .return_map(&strain, &History::default(), &PointContext::STATIC)
                 .unwrap()
                 .tangent;
             for (a, b) in [(0, 1), (0, 2), (1, 2)] {

@@ -4,9 +4,9 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use igimp_material::{
-    ConstitutiveModel, Curve, Decay, Directions, Elasticity, History, MaterialError, Principal,
-    RateEffect, Ratios, Regime, ReturnMap, ScaledLaw, Softening, Tensor, Tresca, VonMises,
-    directed_history,
+    ConstitutiveModel, Curve, Decay, Directions, Elasticity, History, MaterialError, PointContext,
+    Principal, RateEffect, Ratios, Regime, ReturnMap, ScaledLaw, Softening, Strength, Tensor,
+    Tresca, VonMises, directed_history,
 };
 
 use crate::every_regime::STATES;
@@ -173,7 +173,7 @@ fn strength_is_that_of_the_formulas_in_every_regime() {
             let [of_kappa, of_angle] = places(&law);
             let before = |place: Option<usize>| place.map_or(0.0, |own| history.internal[own]);
             let begin = [before(of_kappa), before(of_angle)];
-            let answer = law.return_map_over(&strain, &history, duration);
+            let answer = law.return_map(&strain, &history, &PointContext::over(duration));
             let about = || format!("{law:?} {strain:?} {begin:?} {duration:e}");
             let answer = answer.unwrap_or_else(|error| panic!("{} {error}", about()));
             let numbers = answer.tangent.as_flattened().iter().chain(&answer.tau);
@@ -225,8 +225,11 @@ fn equal_strengths_are_the_isotropic_law_to_the_bit() {
             let strain = trial(&mut random);
             let own = history(&law, 0.1, random.between(0.0, FRAC_PI_2));
             let [one, other] = [
-                law.return_map(&strain, &own).unwrap(),
-                plain.return_map(&strain, &own).unwrap(),
+                law.return_map(&strain, &own, &PointContext::STATIC)
+                    .unwrap(),
+                plain
+                    .return_map(&strain, &own, &PointContext::STATIC)
+                    .unwrap(),
             ];
             assert_eq!(one, other);
         }
@@ -290,7 +293,9 @@ fn strength_grows_with_the_logarithm_of_the_rate() {
                     for _ in 0..steps {
                         elastic[0] += 0.5 * gamma;
                         elastic[1] -= 0.5 * gamma;
-                        let answer = asked.return_map_over(&elastic, &own, gamma / rate).unwrap();
+                        let answer = asked
+                            .return_map(&elastic, &own, &PointContext::over(gamma / rate))
+                            .unwrap();
                         elastic = asked.stiffness_bound().strain(&answer.tau);
                         own = answer.history;
                         shear = 0.5 * (answer.tau[0] - answer.tau[1]);
@@ -325,7 +330,11 @@ fn tangents_are_derivatives() {
             let duration = [1.0, 1e9][random.below(2)];
             let strain: Principal = random.values(0.1);
             let step = 1e-7;
-            let at = |strain: &Principal| asked.return_map_over(strain, &own, duration).unwrap();
+            let at = |strain: &Principal| {
+                asked
+                    .return_map(strain, &own, &PointContext::over(duration))
+                    .unwrap()
+            };
             let answer = at(&strain);
             if size(&answer.delta_eps_p) < 1e-3 {
                 continue;
@@ -379,8 +388,10 @@ fn reduction_divides_all_and_friction_is_refused() {
         for _ in 0..200 {
             let strain = trial(&mut random);
             let own = history(&law, 0.1, random.between(0.0, FRAC_PI_2));
-            let [one, other] = [&*reduced, &made as &dyn ConstitutiveModel]
-                .map(|law| law.return_map_over(&strain, &own, 1.0).unwrap());
+            let [one, other] = [&*reduced, &made as &dyn ConstitutiveModel].map(|law| {
+                law.return_map(&strain, &own, &PointContext::over(1.0))
+                    .unwrap()
+            });
             for a in 0..3 {
                 let error = (one.tau[a] - other.tau[a]).abs();
                 assert!(error <= 1e-12 * law.stress_scale(&other.tau));

@@ -1,6 +1,6 @@
 //! The share of the shear strength that a stress mobilises.
 
-use igimp_material::{ConstitutiveModel, History, Principal, Regime};
+use igimp_material::{ConstitutiveModel, History, PointContext, Principal, Regime};
 
 use crate::catalogue::{Entry, all};
 use crate::random::Random;
@@ -35,7 +35,10 @@ fn a_returned_stress_mobilises_no_more_than_the_strength() {
         let mut random = Random(40);
         for _ in 0..20_000 {
             let strain = entry.any(&mut random);
-            let answer = entry.law.return_map(&strain, &HISTORY).unwrap();
+            let answer = entry
+                .law
+                .return_map(&strain, &HISTORY, &PointContext::STATIC)
+                .unwrap();
             let share = utilisation(&*entry.law, &answer.tau);
             assert!(
                 (0.0..=1.0 + 1e-9).contains(&share),

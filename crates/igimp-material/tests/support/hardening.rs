@@ -5,8 +5,8 @@
 use std::sync::Arc;
 
 use igimp_material::{
-    ConstitutiveModel, Elasticity, History, InternalVariable, MaterialError, Principal, Regime,
-    ReturnMap, Scaling,
+    ConstitutiveModel, Elasticity, History, InternalVariable, MaterialError, NonlocalRates,
+    PointContext, Principal, Regime, ReturnMap, Scaling, Strength,
 };
 
 /// von Mises with a yield stress that grows from `yield_stress` by `modulus` times the plastic strain.
@@ -65,6 +65,7 @@ impl ConstitutiveModel for Hardening {
         &self,
         eps_e_trial: &Principal,
         history: &History,
+        _: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
         let tau = self.elasticity.stress(eps_e_trial);
         let (s, q) = deviator(&tau);
@@ -77,6 +78,7 @@ impl ConstitutiveModel for Hardening {
                 delta_eps_p: [0.0; 3],
                 history: *history,
                 regime: Regime::Elastic,
+                nonlocal: NonlocalRates::NONE,
             });
         }
         let shear = self.elasticity.shear();
@@ -101,9 +103,16 @@ impl ConstitutiveModel for Hardening {
             delta_eps_p,
             history: after,
             regime: Regime::Smooth,
+            nonlocal: NonlocalRates::NONE,
         })
     }
 
+    fn has_symmetric_tangent(&self) -> bool {
+        true
+    }
+}
+
+impl Strength for Hardening {
     fn yield_function(&self, tau: &Principal, history: &History) -> f64 {
         deviator(tau).1 - history.internal[1] / self.srf
     }
@@ -114,10 +123,6 @@ impl ConstitutiveModel for Hardening {
 
     fn utilisation(&self, tau: &Principal, history: &History) -> f64 {
         deviator(tau).1 * self.srf / history.internal[1]
-    }
-
-    fn has_symmetric_tangent(&self) -> bool {
-        true
     }
 
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {

@@ -164,7 +164,7 @@ impl StrengthCurves {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use igimp_material::{ConstitutiveModel, Principal};
+    use igimp_material::{ConstitutiveModel, PointContext, Principal};
 
     /// GOAL: on cells of a size the law has its strains times the width of the band over that size (eq. 110), on none as they are stated;
     /// residual cohesion is no less than the least one. ORACLE: laws made by hand.
@@ -195,8 +195,8 @@ mod tests {
             let strain: Principal = [0.02, 0.0, -0.02];
             let history = law.initial_history(&[0.0; 3]);
             let [one, other] = [
-                law.return_map(&strain, &history),
-                made.return_map(&strain, &history),
+                law.return_map(&strain, &history, &PointContext::STATIC),
+                made.return_map(&strain, &history, &PointContext::STATIC),
             ]
             .map(|answer| answer.unwrap().tau);
             for a in 0..3 {

@@ -1,8 +1,8 @@
 //! One step of one piece of soil: Newton's method on the strains whose stresses are prescribed.
 
 use igimp_material::{
-    ConstitutiveModel, History, Lifted, MaterialError, Principal, Regime, TangentKind, Tensor,
-    TrialStrain, elastic_left_cauchy_green_of,
+    ConstitutiveModel, History, Lifted, MaterialError, PointContext, Principal, Regime,
+    TangentKind, Tensor, TrialStrain, elastic_left_cauchy_green_of,
 };
 
 use super::{COMPONENTS, Control, ElementState, Kinematics, VERTICAL};
@@ -162,7 +162,7 @@ impl Point {
             }
         };
         let trial = trial.with_vertical(VERTICAL);
-        let answer = law.return_map_over(trial.strain(), history, duration)?;
+        let answer = law.return_map(trial.strain(), history, &PointContext::over(duration))?;
         let lifted = trial.lift::<3>(law, &answer, TangentKind::Consistent)?;
         let sigma = lifted.tau.map(|row| row.map(|tau| tau / volume));
         if sigma.as_flattened().iter().all(|stress| stress.is_finite()) {

@@ -9,8 +9,8 @@ use igimp_assembly::{
 };
 use igimp_linear::SolverKind;
 use igimp_material::{
-    ConstitutiveModel, Elasticity, HenckyElastic, History, MaterialError, MohrCoulomb, Principal,
-    ReturnMap, Tresca, VonMises,
+    ConstitutiveModel, Elasticity, HenckyElastic, History, MaterialError, MohrCoulomb,
+    PointContext, Principal, ReturnMap, Strength, Tresca, VonMises,
 };
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Body, NewtonSettings, NodalForces, StepError, StepReport, Workspace, step};
@@ -264,8 +264,10 @@ impl ConstitutiveModel for Poisoned {
         &self,
         eps_e_trial: &Principal,
         history: &History,
+        context: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
-        let mut answer = HenckyElastic::new(elasticity()).return_map(eps_e_trial, history)?;
+        let mut answer =
+            HenckyElastic::new(elasticity()).return_map(eps_e_trial, history, context)?;
         if eps_e_trial.iter().any(|strain| strain.abs() > self.above) {
             answer.tangent[1][1] = f64::NAN;
             if !self.tangent_alone {
@@ -275,6 +277,12 @@ impl ConstitutiveModel for Poisoned {
         Ok(answer)
     }
 
+    fn has_symmetric_tangent(&self) -> bool {
+        true
+    }
+}
+
+impl Strength for Poisoned {
     fn yield_function(&self, _tau: &Principal, _history: &History) -> f64 {
         f64::NEG_INFINITY
     }
@@ -285,10 +293,6 @@ impl ConstitutiveModel for Poisoned {
 
     fn utilisation(&self, _tau: &Principal, _history: &History) -> f64 {
         0.0
-    }
-
-    fn has_symmetric_tangent(&self) -> bool {
-        true
     }
 
     fn reduced(&self, _srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {

@@ -12,7 +12,10 @@ use crate::body_support::{bits, distance, elastic, loaded, von_mises};
 use igimp_assembly::{AssemblyError, Method, ParticleFields, Particles, SharedLaw, StepConditions};
 use igimp_linear::{LinearSolver, LinearSolverError, SolveReport, SolverKind};
 use igimp_linear::{Pattern, TangentMatrix};
-use igimp_material::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap};
+use igimp_material::{
+    ConstitutiveModel, Elasticity, History, MaterialError, PointContext, Principal, ReturnMap,
+    Strength,
+};
 use igimp_solver::{
     Body, MarchSettings, NewtonSettings, Outcome, StepError, StepFailure, Workspace, march, step,
 };
@@ -53,8 +56,9 @@ impl ConstitutiveModel for Spoilt {
         &self,
         eps_e_trial: &Principal,
         history: &History,
+        context: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
-        let mut answer = self.sound.return_map(eps_e_trial, history)?;
+        let mut answer = self.sound.return_map(eps_e_trial, history, context)?;
         let call = self.calls.fetch_add(1, Ordering::Relaxed) + 1;
         // Stress and history once; a tangent from then on, as the pass that looks for the culprit
         // asks for it again.
@@ -68,6 +72,12 @@ impl ConstitutiveModel for Spoilt {
         Ok(answer)
     }
 
+    fn has_symmetric_tangent(&self) -> bool {
+        self.sound.has_symmetric_tangent()
+    }
+}
+
+impl Strength for Spoilt {
     fn yield_function(&self, tau: &Principal, history: &History) -> f64 {
         self.sound.yield_function(tau, history)
     }
@@ -78,10 +88,6 @@ impl ConstitutiveModel for Spoilt {
 
     fn utilisation(&self, tau: &Principal, history: &History) -> f64 {
         self.sound.utilisation(tau, history)
-    }
-
-    fn has_symmetric_tangent(&self) -> bool {
-        self.sound.has_symmetric_tangent()
     }
 
     fn reduced(&self, srf: f64) -> Result<SharedLaw, MaterialError> {

@@ -77,9 +77,8 @@ pub(super) fn begin<const D: usize>(
     }
     let particles = &state.body.particles;
     let stencils = Stencils::build_under(particles, method, &conditions, &state.body.load_points)?;
-    let structures = (&state.body.rigid[..], &state.body.reinforcement[..]);
-    let system = System::with_structures(particles, structures, &stencils, &conditions, method)?
-        .with_load_points(&state.body.load_points)?;
+    let structures = state.body.structures();
+    let system = System::with_structures(particles, &structures, &stencils, &conditions, method)?;
     let still = vec![[0.0; D]; system.node_count()];
     let trial = system.evaluate(&still, TangentKind::Elastic)?;
     let reactions = system.reactions(&trial);
