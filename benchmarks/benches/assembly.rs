@@ -32,7 +32,7 @@ fn main() -> BenchResult {
             }
             set_up(criterion, cells, &pools);
         }
-        for soil in Soil::ALL {
+        for soil in Soil::ALL.into_iter().chain(Soil::ITERATED) {
             linearise_of(criterion, soil, &pools[0]);
         }
         for soil in [Soil::VonMises, Soil::MohrCoulomb] {

@@ -14,7 +14,12 @@ use igimp_assembly::{
     AssemblyError, Constraints, Method, ParticleSeed, Particles, SharedLaw, Stencils,
     StepConditions, StepLoads, System,
 };
-use igimp_material::{Elasticity, HenckyElastic, MaterialError, MohrCoulomb, Tresca, VonMises};
+use igimp_material::{
+    CamClayParameters, Curve, Decay, Elasticity, FrictionalCurves, HardeningSoil,
+    HardeningSoilParameters, HenckyElastic, HoekBrown, HoekBrownParameters, MaterialError,
+    ModifiedCamClay, MohrCoulomb, ShearStiffness, Softening, Tresca, VonMises,
+    elastic_left_cauchy_green_of,
+};
 use igimp_shape::{Axis, Grid};
 
 use crate::BenchResult;
@@ -24,6 +29,8 @@ use crate::random::Random;
 const SIDE: f64 = 10.0;
 /// Cohesion and undrained strength \[Pa\].
 const STRENGTH: f64 = 10e3;
+/// Angle of friction \[rad\].
+const FRICTION: f64 = PI / 9.0;
 /// Size of the trial strains, in strains at yield.
 const FLOW: f64 = 1.6;
 /// Particles are moved at random by up to this share of a cell along each axis.
@@ -40,15 +47,34 @@ pub enum Soil {
     Tresca,
     /// Mohr–Coulomb soil with ψ = 0: an unsymmetric tangent.
     MohrCoulomb,
+    /// Tresca soil that softens.
+    SofteningTresca,
+    /// Mohr–Coulomb soil that softens, with ψ = 0.
+    SofteningMohrCoulomb,
+    /// Rock by Hoek and Brown, with ψ = 0.
+    HoekBrown,
+    /// Modified Cam-clay, lightly overconsolidated.
+    ModifiedCamClay,
+    /// Loose Hostun sand by Hardening Soil.
+    HardeningSoil,
 }
 
 impl Soil {
-    /// Every soil.
+    /// Soils whose return is in closed form.
     pub const ALL: [Self; 4] = [
         Self::HenckyElastic,
         Self::VonMises,
         Self::Tresca,
         Self::MohrCoulomb,
+    ];
+
+    /// Soils whose return is found by iteration.
+    pub const ITERATED: [Self; 5] = [
+        Self::SofteningTresca,
+        Self::SofteningMohrCoulomb,
+        Self::HoekBrown,
+        Self::ModifiedCamClay,
+        Self::HardeningSoil,
     ];
 
     /// Name in the bench's identifier.
@@ -58,14 +84,19 @@ impl Soil {
             Self::VonMises => "von-mises",
             Self::Tresca => "tresca",
             Self::MohrCoulomb => "mohr-coulomb",
+            Self::SofteningTresca => "softening-tresca",
+            Self::SofteningMohrCoulomb => "softening-mohr-coulomb",
+            Self::HoekBrown => "hoek-brown",
+            Self::ModifiedCamClay => "modified-cam-clay",
+            Self::HardeningSoil => "hardening-soil",
         }
     }
 
     /// Poisson's ratio of a block that says none.
     pub fn poisson(self) -> f64 {
         match self {
-            Self::VonMises | Self::Tresca => 0.49,
-            Self::HenckyElastic | Self::MohrCoulomb => 0.3,
+            Self::VonMises | Self::Tresca | Self::SofteningTresca => 0.49,
+            _ => 0.3,
         }
     }
 
@@ -75,13 +106,83 @@ impl Soil {
             Self::HenckyElastic => Arc::new(HenckyElastic::new(elasticity)),
             Self::VonMises => Arc::new(VonMises::from_undrained_strength(elasticity, STRENGTH)?),
             Self::Tresca => Arc::new(Tresca::new(elasticity, STRENGTH)?),
-            Self::MohrCoulomb => Arc::new(MohrCoulomb::new(
+            Self::MohrCoulomb => Arc::new(MohrCoulomb::new(elasticity, STRENGTH, FRICTION, 0.0)?),
+            Self::SofteningTresca => Arc::new(Softening::tresca(
                 elasticity,
-                STRENGTH,
-                20_f64.to_radians(),
-                0.0,
+                curve(STRENGTH, 0.3 * STRENGTH),
             )?),
+            Self::SofteningMohrCoulomb => {
+                let curves = FrictionalCurves {
+                    cohesion: curve(STRENGTH, 0.3 * STRENGTH),
+                    friction_angle: curve(FRICTION, FRICTION),
+                    dilation_angle: curve(0.0, 0.0),
+                };
+                Arc::new(Softening::mohr_coulomb(elasticity, curves, None)?)
+            }
+            Self::HoekBrown => {
+                let rock = HoekBrownParameters {
+                    intact_strength: 30.0 * STRENGTH,
+                    gsi: 50.0,
+                    intact_ratio: 10.0,
+                    disturbance: 0.0,
+                    dilation_angle: 0.0,
+                };
+                Arc::new(HoekBrown::new(elasticity, rock)?)
+            }
+            Self::ModifiedCamClay => {
+                let clay = CamClayParameters {
+                    compression: 0.1,
+                    swelling: 0.01,
+                    critical_ratio: 1.0,
+                    shear: ShearStiffness::Poisson(poisson),
+                    overconsolidation: 1.05,
+                    reference_pressure: self.confinement(),
+                };
+                Arc::new(ModifiedCamClay::new(clay)?)
+            }
+            Self::HardeningSoil => {
+                let sand = HardeningSoilParameters::loose_hostun_sand();
+                Arc::new(HardeningSoil::new(sand)?)
+            }
         })
+    }
+
+    /// The pressure under which soil stands that has no stiffness without \[Pa\].
+    fn confinement(self) -> f64 {
+        match self {
+            Self::ModifiedCamClay | Self::HardeningSoil => 100e3,
+            _ => 0.0,
+        }
+    }
+
+    /// Particles with the memory and the elastic strain of their confinement.
+    fn confine<const D: usize>(
+        self,
+        law: &SharedLaw,
+        particles: Particles<D>,
+    ) -> BenchResult<Particles<D>> {
+        let stress = -self.confinement();
+        let history = law.initial_history(&[stress; 3]);
+        let tau =
+            std::array::from_fn(|a| std::array::from_fn(|b| if a == b { stress } else { 0.0 }));
+        let b_e = elastic_left_cauchy_green_of::<D>(&**law, &tau, &history)?;
+        let mut fields = particles.into_fields();
+        fields.b_e.fill(b_e);
+        fields.sigma.fill(tau);
+        if !law.internal_variables().is_empty() {
+            fields.internal = vec![history.internal; fields.b_e.len()];
+        }
+        Ok(Particles::from_fields(fields)?)
+    }
+}
+
+/// A parameter that goes from one value to another over a plastic strain of a tenth.
+fn curve(initial: f64, residual: f64) -> Curve {
+    Curve {
+        initial,
+        residual,
+        strain: 0.1,
+        decay: Decay::Exponential,
     }
 }
 
@@ -136,7 +237,7 @@ impl<const D: usize> Block<D> {
             .map(|node| flow(grid.node_position(node), FLOW * strain_at_yield))
             .collect();
         Ok(Self {
-            particles: Particles::new(&seeds(cells, h))?,
+            particles: soil.confine(&law, Particles::new(&seeds(cells, h))?)?,
             conditions: StepConditions::new(
                 grid,
                 constraints,
@@ -247,6 +348,18 @@ mod tests {
             for share in shares {
                 assert!(expected.contains(&share), "{soil:?}: {share}");
             }
+        }
+    }
+
+    #[test]
+    fn returns_by_iteration_are_many() {
+        for soil in Soil::ITERATED {
+            let shares = [plastic_share::<2>(soil, 20), plastic_share::<3>(soil, 8)];
+            println!("{soil:?}: {shares:?}");
+            assert!(
+                shares.iter().all(|share| (0.4..=1.0).contains(share)),
+                "{soil:?}"
+            );
         }
     }
 

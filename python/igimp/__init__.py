@@ -15,6 +15,7 @@ are tension positive; tables, pictures and reports print compression positive an
 
 from ._body import Body
 from ._case import Case, Estimate, new, templates
+from ._element import ElementTest, element
 from ._errors import CaseWarning, Error, FileError, InputError, Interrupted, NotConverged, ReferenceMissed
 from ._igimp import __version__
 from ._law import Elasticity, Law
@@ -27,6 +28,7 @@ __all__ = [
     "CaseWarning",
     "Check",
     "Elasticity",
+    "ElementTest",
     "Error",
     "Estimate",
     "Figure",
@@ -43,6 +45,7 @@ __all__ = [
     "Stage",
     "Step",
     "__version__",
+    "element",
     "new",
     "open",
     "templates",

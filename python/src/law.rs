@@ -4,8 +4,11 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use igimp_material::{Batches, ConstitutiveModel, Elasticity, History, MaterialError, Principal, Regime, ReturnMap, NonlocalRates, PointContext, Strength};
-use igimp_model::{Case, GivenLaw};
+use igimp_material::{
+    Batches, ConstitutiveModel, Elasticity, History, MaterialError, NonlocalRates, PointContext,
+    Principal, Regime, ReturnMap, Strength,
+};
+use igimp_model::{Case, GivenLaw, Material};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 
@@ -64,11 +67,20 @@ pub(crate) fn give<const D: usize>(
         );
         return Err(Raised::bad_input(text).exception(py));
     };
-    let own = &mut case.materials[place];
-    let elasticity = Elasticity::new(own.young, own.poisson)
+    give_to(py, &mut case.materials[place], law, trouble)
+}
+
+/// Gives a material a law that is written in Python.
+pub(crate) fn give_to(
+    py: Python<'_>,
+    material: &mut Material,
+    law: Py<PyAny>,
+    trouble: &Trouble,
+) -> PyResult<()> {
+    let elasticity = Elasticity::new(material.young, material.poisson)
         .map_err(|error| Raised::bad_input(format!("error: {error}")).exception(py))?;
     let law = InPython::new(py, law, elasticity, trouble.clone())?;
-    own.given = Some(GivenLaw(Arc::new(law)));
+    material.given = Some(GivenLaw(Arc::new(law)));
     Ok(())
 }
 

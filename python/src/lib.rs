@@ -6,6 +6,7 @@
 
 mod arrays;
 mod case;
+mod element;
 mod law;
 mod march;
 mod raised;
@@ -22,6 +23,8 @@ mod _igimp {
 
     #[pymodule_export]
     use super::case::{CaseFile, shipped, template};
+    #[pymodule_export]
+    use super::element::{ElementTest, element};
     #[pymodule_export]
     use super::march::March;
     #[pymodule_export]

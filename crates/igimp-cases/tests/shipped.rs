@@ -512,6 +512,69 @@ fn anisotropic_footing_carries_what_slip_lines_give() {
     between(grown, 0.95, 1.05);
 }
 
+/// GOAL: a footing on sand that stiffens with its stress is stiffer as it is relieved, goes on where it was left, and is resumed to the bit.
+/// ORACLE: where all stresses double, those of weight, cohesion, backfill and moduli with the pressure that they hold at, every strain is
+/// the same. Soil that
+/// was relieved carries in the end what soil carries that never was, and where it turned almost as much.
+#[test]
+fn dense_sand_footing_remembers_and_scales() {
+    let coarse = ["grid.cell=2/5 m", "output.figures=[]"];
+    let pressures = |more: &[&str]| {
+        let ran = ran("dense_sand_footing", &[&coarse, more].concat());
+        assert!(ran.run.failure.is_none());
+        ran.curve("load-settlement")
+    };
+    let own = pressures(&[]);
+    let at = |settlement: f64, points: &[[f64; 2]]| {
+        let pair = points.windows(2).find(|pair| {
+            let [from, to] = [pair[0][0], pair[1][0]];
+            from != to && (from.min(to)..=from.max(to)).contains(&settlement)
+        });
+        let [from, to] = *pair.unwrap().as_array::<2>().unwrap();
+        from[1] + (to[1] - from[1]) * (settlement - from[0]) / (to[0] - from[0])
+    };
+    let turned = own
+        .iter()
+        .position(|point| (point[0] - 50.0).abs() < 1e-9)
+        .unwrap();
+    let (pushed, after) = own.split_at(turned + 1);
+    let lowest = after
+        .iter()
+        .position(|point| (point[0] - 45.0).abs() < 1e-9)
+        .unwrap();
+    let (relieved, again) = after.split_at(lowest + 1);
+    let slope = |points: &[[f64; 2]], far: f64| (at(50.0, points) - at(far, points)) / (50.0 - far);
+    let stiffer = slope(&[&pushed[turned..], relieved].concat(), 48.0) / slope(pushed, 46.0);
+    let returned = at(50.0, again) / pushed[turned][1];
+    let straight = pressures(&[
+        "stages.3.bodies=[{ body = 'footing', y = '-1 mm' }]",
+        "stages.4.bodies=[{ body = 'footing', y = '-49 mm' }]",
+    ]);
+    let same = own.last().unwrap()[1] / straight.last().unwrap()[1];
+    println!(
+        "relieved {stiffer:.3} times as stiff, {returned:.4} of the load back, {same:.4} of it at the end"
+    );
+    between(stiffer, 3.0, 5.0);
+    between(returned, 0.97, 1.01);
+    between(same, 0.995, 1.005);
+    let heavy = pressures(&[
+        "materials.sand.unit_weight=34 kN/m3",
+        "materials.sand.cohesion=2 kPa",
+        "materials.sand.e50=60 MPa",
+        "materials.sand.eur=180 MPa",
+        "materials.sand.eoed=60 MPa",
+        "materials.sand.reference_pressure=200 kPa",
+        "loads.0.pressure=34 kPa",
+    ]);
+    for (heavy, own) in heavy.iter().zip(&own) {
+        assert_eq!(heavy[0], own[0]);
+        assert!(
+            (heavy[1] - 2.0 * own[1]).abs() <= 1e-6 * 2000.0,
+            "{heavy:?} {own:?}"
+        );
+    }
+}
+
 /// GOAL: strengths by direction and rate are refused where they have no meaning, and go on where a run was stopped, to the bit.
 #[test]
 fn anisotropic_footing_resumes_and_refuses() {
@@ -555,6 +618,49 @@ fn anisotropic_footing_resumes_and_refuses() {
     assert!(nothing.contains("passive"), "{nothing}");
     let no_rate = refused("stages.0.consolidation={ duration = \"1 h\" }");
     assert!(no_rate.contains("no material is coupled"), "{no_rate}");
+}
+
+/// GOAL: sand on a hyperbola goes on where a run was stopped, to the bit; parameters that no sand has are refused at their key.
+/// ORACLE: the run that was not stopped; the key and the words.
+#[test]
+fn dense_sand_footing_resumes_and_refuses() {
+    let overrides = ["grid.cell=2/5 m", "stages.2.steps=6", "output.figures=[]"];
+    let case = file("dense_sand_footing", &overrides);
+    let (whole, stopped) = (folder("sand-whole"), folder("sand-stopped"));
+    let run = run_into((&case, case.case()), &whole, Start::Afresh, None);
+    assert_done(&run.summary);
+    run_into((&case, case.case()), &stopped, Start::Afresh, Some(17));
+    run_into((&case, case.case()), &stopped, Start::Resume, None);
+    let folders = [&whole, &stopped].map(|folder| everything(folder));
+    assert_equal(&folders[0], &folders[1], "after it was taken up");
+    let refused = [
+        (
+            "friction",
+            "\"0.5 deg\"",
+            "the friction angle is 1 deg to 80 deg",
+        ),
+        (
+            "dilation",
+            "\"43 deg\"",
+            "no larger than the friction angle",
+        ),
+        ("poisson", "0.5", "must be below 0.5"),
+        ("power", "1.2", "`power` is at most 1"),
+        ("failure_ratio", "1.0", "`failure_ratio` is below 1"),
+        ("ocr", "0.9", "`ocr` is 1 or more"),
+        ("k0_normal", "1.0", "`k0_normal` is below 1"),
+        ("eoed", "\"300 MPa\"", "no cap gives an oedometer modulus"),
+    ];
+    for (key, value, words) in refused {
+        let text = find("dense_sand_footing").unwrap().text;
+        let set = format!("materials.sand.{key}={value}");
+        let error = CaseFile::parse("footing", text, &[set]).unwrap_err();
+        let error = error.to_string();
+        assert!(
+            error.contains(words) && error.contains(key),
+            "{key}: {error}"
+        );
+    }
 }
 
 #[test]

@@ -55,6 +55,7 @@ shipped! {
     "nailed_cut": "vertical cut held by soil nails: tension in the nails, factor of safety",
     "bearing_capacity": "rough strip footing on undrained clay, held against Prandtl's solution",
     "anisotropic_footing": "strip footing on clay whose strength goes with direction, held against its closed form",
+    "dense_sand_footing": "strip footing on dense sand by Hardening Soil, pushed, relieved and pushed on",
     "two_layer_footing": "strip footing on stiff over soft clay, held against limit analysis",
     "strip_load": "uniform strip pressure on undrained clay, held against Prandtl's solution",
     "embankment": "embankment in three lifts on layered ground that was at rest",

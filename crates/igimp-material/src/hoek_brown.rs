@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::error::{positive, required};
 use crate::law::{ON_SURFACE, mobilised, trial_stress};
-use crate::pyramid::{PlaneStrength, Pyramid};
+use crate::pyramid::PlaneStrength;
 use crate::softening::rates::Changing;
 use crate::spectral::principal::{Principal, descending, largest, mean, sorted, unsorted};
 use crate::{
@@ -255,8 +255,8 @@ impl HoekBrown {
         let mut base = self.base_at(-trial[0]).unwrap_or(2.0 * self.least_base());
         for correction in 1..=MOST_CORRECTIONS {
             let touching = self.touching(base);
-            let pyramid = Pyramid::new(self.elasticity, &touching.changing.strength);
-            let map = pyramid.return_map(strain, *history)?;
+            let pyramid = &touching.changing.strength;
+            let map = pyramid.return_map(&self.elasticity, strain, *history)?;
             let (changing, regime) = (touching.changing, map.regime);
             let moves = changing.stress_rate(&self.elasticity, regime, trial, &map.tau);
             let [_, [minor, minor_rate]] = touching.stress;

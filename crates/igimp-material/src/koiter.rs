@@ -39,6 +39,9 @@ impl Plane {
     }
 }
 
+/// Most gates of a region: the edges that end at a vertex.
+const MOST_GATES: usize = 3;
+
 /// A linear form of the trial stress \[stress\] that is not negative where its region lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Gate {
@@ -47,6 +50,12 @@ struct Gate {
 }
 
 impl Gate {
+    /// Never in the way.
+    const OPEN: Self = Self {
+        normal: [0.0; 3],
+        offset: f64::NEG_INFINITY,
+    };
+
     /// The weighted sum of the excesses of some planes.
     fn weighing(terms: &[(Plane, f64)]) -> Self {
         let mut gate = Self {
@@ -132,12 +141,12 @@ enum Target {
 }
 
 /// A part of the surface and the trial states that return to it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Region {
     pub(crate) regime: Regime,
     pub(crate) tangent: [[f64; 3]; 3],
     target: Target,
-    gates: Vec<Gate>,
+    gates: [Gate; MOST_GATES],
 }
 
 impl Region {
@@ -157,7 +166,8 @@ impl Region {
             softening,
             hardness,
         });
-        let gates = vec![Gate::weighing(&[(plane, 1.0)])];
+        let mut gates = [Gate::OPEN; MOST_GATES];
+        gates[0] = Gate::weighing(&[(plane, 1.0)]);
         Self {
             regime,
             tangent,
@@ -169,13 +179,12 @@ impl Region {
     /// The edge of two planes; its gates are the multipliers, scaled to a stress.
     pub(crate) fn edge(elasticity: &Elasticity, regime: Regime, planes: [Plane; 2]) -> Self {
         let edge = Edge::new(elasticity, planes);
-        let gates = (0..2)
-            .map(|k| {
-                let hardness = dot(&planes[k].normal, &elasticity.stress(&planes[k].flow));
-                let [first, second] = edge.multipliers[k].map(|entry| entry * hardness);
-                Gate::weighing(&[(planes[0], first), (planes[1], second)])
-            })
-            .collect();
+        let mut gates = [Gate::OPEN; MOST_GATES];
+        for (k, gate) in gates.iter_mut().enumerate().take(2) {
+            let hardness = dot(&planes[k].normal, &elasticity.stress(&planes[k].flow));
+            let [first, second] = edge.multipliers[k].map(|entry| entry * hardness);
+            *gate = Gate::weighing(&[(planes[0], first), (planes[1], second)]);
+        }
         let row = elasticity.stress(&edge.coordinate);
         let tangent = edge
             .direction
@@ -197,15 +206,14 @@ impl Region {
         point: Principal,
         edges: impl Iterator<Item = ([Plane; 2], Plane)>,
     ) -> Self {
-        let gates = edges
-            .map(|(planes, end)| {
-                let edge = Edge::new(elasticity, planes);
-                let pace = dot(&end.normal, &edge.direction);
-                let normal = edge.coordinate.map(|component| pace * component);
-                let offset = dot(&normal, &edge.point) - end.excess(&edge.point);
-                Gate { normal, offset }
-            })
-            .collect();
+        let mut gates = [Gate::OPEN; MOST_GATES];
+        for (gate, (planes, end)) in gates.iter_mut().zip(edges) {
+            let edge = Edge::new(elasticity, planes);
+            let pace = dot(&end.normal, &edge.direction);
+            let normal = edge.coordinate.map(|component| pace * component);
+            let offset = dot(&normal, &edge.point) - end.excess(&edge.point);
+            *gate = Gate { normal, offset };
+        }
         let target = Target::Vertex(point, elasticity.strain(&point));
         Self {
             regime,

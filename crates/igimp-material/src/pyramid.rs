@@ -8,7 +8,7 @@
 use crate::koiter::Plane;
 use crate::law::{ON_SURFACE, mobilised, trial_stress};
 use crate::spectral::principal::{Principal, descending, sorted, unsorted};
-use crate::surface::PlanarSurface;
+use crate::surface::{Outline, Part, PlanarSurface, Returned, excess, scale};
 use crate::{Elasticity, History, MaterialError, NonlocalRates, Regime, ReturnMap};
 
 const SHEAR_13: usize = 0;
@@ -33,19 +33,39 @@ pub(crate) struct PlaneStrength {
     pub(crate) tension_cutoff: Option<f64>,
 }
 
-/// An elastic, perfectly plastic body with a [`PlaneStrength`].
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Pyramid {
-    elasticity: Elasticity,
-    surface: PlanarSurface,
-    /// 2 c cos φ \[stress\].
-    shear: f64,
-    sin_friction: f64,
-}
+impl PlaneStrength {
+    /// The planes of shear, those of the cut-off, and their parts.
+    fn outlined<T>(&self, use_of: impl FnOnce(Outline<'_>) -> T) -> T {
+        let shear = self.shear_planes();
+        let Some(tension) = self.tension_cutoff else {
+            let apex = Part::Vertex(Regime::Apex, [self.apex; 3], &ENDS_AT_APEX);
+            let parts = [WHOLE[0], WHOLE[1], WHOLE[2], apex];
+            let count = if self.apex.is_finite() { 4 } else { 3 };
+            return use_of(Outline {
+                planes: &shear,
+                parts: &parts[..count],
+            });
+        };
+        let cut = |axis: usize| {
+            let mut normal = [0.0; 3];
+            normal[axis] = 1.0;
+            Plane {
+                normal,
+                flow: normal,
+                strength: tension,
+            }
+        };
+        let [first, second, third] = shear;
+        let sine = self.sin_friction;
+        let minor = ((1.0 + sine) * tension - self.shear) / (1.0 - sine);
+        use_of(Outline {
+            planes: &[first, second, third, cut(0), cut(1), cut(2)],
+            parts: &truncated(tension, minor),
+        })
+    }
 
-impl Pyramid {
-    pub(crate) fn new(elasticity: Elasticity, strength: &PlaneStrength) -> Self {
-        let shear = [[0, 2], [0, 1], [1, 2]].map(|[major, minor]| {
+    fn shear_planes(&self) -> [Plane; 3] {
+        [[0, 2], [0, 1], [1, 2]].map(|[major, minor]| {
             let direction = |sine: f64| {
                 let mut direction = [0.0; 3];
                 direction[major] = 1.0 + sine;
@@ -53,24 +73,91 @@ impl Pyramid {
                 direction
             };
             Plane {
-                normal: direction(strength.sin_friction),
-                flow: direction(strength.sin_dilation),
-                strength: strength.shear,
+                normal: direction(self.sin_friction),
+                flow: direction(self.sin_dilation),
+                strength: self.shear,
             }
-        });
-        let surface = match strength.tension_cutoff {
-            None => whole(elasticity, shear, strength.apex),
-            Some(tension) => {
-                let sine = strength.sin_friction;
-                let minor = ((1.0 + sine) * tension - strength.shear) / (1.0 - sine);
-                truncated(elasticity, shear, tension, minor)
-            }
-        };
+        })
+    }
+
+    /// The yield function \[stress\].
+    pub(crate) fn yield_function(&self, tau: &Principal) -> f64 {
+        let tau = sorted(tau, &descending(tau));
+        self.outlined(|outline| excess(outline.planes, &tau))
+    }
+
+    /// Share of the shear strength that is mobilised \[-\].
+    pub(crate) fn utilisation(&self, tau: &Principal) -> f64 {
+        let [major, _, minor] = sorted(tau, &descending(tau));
+        let strength = self.shear - (major + minor) * self.sin_friction;
+        mobilised(major - minor, strength, scale(&self.shear_planes(), tau))
+    }
+
+    /// One return to the pyramid of this strength, for laws whose strength is found by iteration.
+    pub(crate) fn return_map(
+        &self,
+        elasticity: &Elasticity,
+        eps_e_trial: &Principal,
+        history: History,
+    ) -> Result<ReturnMap, MaterialError> {
+        self.outlined(|outline| {
+            let bounds =
+                |tau: &Principal| [excess(outline.planes, tau), scale(outline.planes, tau)];
+            let project = |strain: &_, trial: &_| outline.project(elasticity, strain, trial);
+            return_to(elasticity, (bounds, project), eps_e_trial, history)
+        })
+    }
+}
+
+/// Returns a trial strain to a surface that says excess and scale of a stress, and projects.
+#[inline]
+fn return_to(
+    elasticity: &Elasticity,
+    (bounds, project): (
+        impl Fn(&Principal) -> [f64; 2],
+        impl FnOnce(&Principal, &Principal) -> Returned,
+    ),
+    eps_e_trial: &Principal,
+    history: History,
+) -> Result<ReturnMap, MaterialError> {
+    let order = descending(eps_e_trial);
+    let strain = sorted(eps_e_trial, &order);
+    let trial = trial_stress(elasticity, &strain)?;
+    let [excess, scale] = bounds(&trial);
+    if excess <= ON_SURFACE * scale {
+        let tau = unsorted(&trial, &order);
+        return Ok(ReturnMap::elastic(elasticity, tau, history));
+    }
+    let returned = project(&strain, &trial);
+    let delta_eps_p = unsorted(&returned.delta_eps_p, &order);
+    let mut tangent = [[0.0; 3]; 3];
+    for a in 0..3 {
+        tangent[order[a]] = unsorted(&returned.tangent[a], &order);
+    }
+    Ok(ReturnMap {
+        tau: unsorted(&returned.tau, &order),
+        tangent,
+        delta_eps_p,
+        history: history.after(&delta_eps_p),
+        regime: returned.regime,
+        nonlocal: NonlocalRates::NONE,
+    })
+}
+
+/// An elastic, perfectly plastic body with a [`PlaneStrength`].
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Pyramid {
+    elasticity: Elasticity,
+    strength: PlaneStrength,
+    surface: PlanarSurface,
+}
+
+impl Pyramid {
+    pub(crate) fn new(elasticity: Elasticity, strength: &PlaneStrength) -> Self {
         Self {
             elasticity,
-            surface,
-            shear: strength.shear,
-            sin_friction: strength.sin_friction,
+            strength: *strength,
+            surface: strength.outlined(|outline| PlanarSurface::new(&elasticity, outline)),
         }
     }
 
@@ -88,86 +175,52 @@ impl Pyramid {
 
     /// Share of the shear strength that is mobilised \[-\].
     pub(crate) fn utilisation(&self, tau: &Principal) -> f64 {
-        let [major, _, minor] = sorted(tau, &descending(tau));
-        let strength = self.shear - (major + minor) * self.sin_friction;
-        mobilised(major - minor, strength, self.stress_scale(tau))
+        self.strength.utilisation(tau)
     }
 
-    /// Sorts, returns, and undoes the sorting.
     pub(crate) fn return_map(
         &self,
         eps_e_trial: &Principal,
         history: History,
     ) -> Result<ReturnMap, MaterialError> {
-        let order = descending(eps_e_trial);
-        let strain = sorted(eps_e_trial, &order);
-        let trial = trial_stress(&self.elasticity, &strain)?;
-        if self.surface.yield_function(&trial) <= ON_SURFACE * self.surface.stress_scale(&trial) {
-            let tau = unsorted(&trial, &order);
-            return Ok(ReturnMap::elastic(&self.elasticity, tau, history));
-        }
-        let returned = self.surface.project(&strain, &trial);
-        let delta_eps_p = unsorted(&returned.delta_eps_p, &order);
-        let mut tangent = [[0.0; 3]; 3];
-        for a in 0..3 {
-            tangent[order[a]] = unsorted(&returned.tangent[a], &order);
-        }
-        Ok(ReturnMap {
-            tau: unsorted(&returned.tau, &order),
-            tangent,
-            delta_eps_p,
-            history: history.after(&delta_eps_p),
-            regime: returned.regime,
-            nonlocal: NonlocalRates::NONE,
-        })
+        let surface = &self.surface;
+        let bounds = |tau: &Principal| [surface.yield_function(tau), surface.stress_scale(tau)];
+        let project = |strain: &_, trial: &_| surface.project(strain, trial);
+        return_to(&self.elasticity, (bounds, project), eps_e_trial, history)
     }
 }
 
-/// The pyramid with its apex, or the prism without one when there is no friction.
-fn whole(elasticity: Elasticity, shear: [Plane; 3], apex: f64) -> PlanarSurface {
-    let surface = PlanarSurface::new(elasticity, shear.to_vec())
-        .face(Regime::Smooth, SHEAR_13)
-        .edge(Regime::RightEdge, [SHEAR_13, SHEAR_23])
-        .edge(Regime::LeftEdge, [SHEAR_13, SHEAR_12]);
-    if apex.is_finite() {
-        let edges = [
-            ([SHEAR_13, SHEAR_23], SHEAR_12),
-            ([SHEAR_13, SHEAR_12], SHEAR_23),
-        ];
-        surface.vertex(Regime::Apex, [apex; 3], &edges)
-    } else {
-        surface
-    }
-}
+/// The parts of a pyramid before its apex, or of a prism.
+const WHOLE: [Part; 3] = [
+    Part::Face(Regime::Smooth, SHEAR_13),
+    Part::Edge(Regime::RightEdge, [SHEAR_13, SHEAR_23]),
+    Part::Edge(Regime::LeftEdge, [SHEAR_13, SHEAR_12]),
+];
 
-/// The pyramid or prism cut at `tension`, where the shear plane has the least stress `minor`.
-fn truncated(elasticity: Elasticity, shear: [Plane; 3], tension: f64, minor: f64) -> PlanarSurface {
-    let mut planes = shear.to_vec();
-    for axis in 0..3 {
-        let mut normal = [0.0; 3];
-        normal[axis] = 1.0;
-        planes.push(Plane {
-            normal,
-            flow: normal,
-            strength: tension,
-        });
-    }
-    PlanarSurface::new(elasticity, planes)
-        .face(Regime::Smooth, SHEAR_13)
-        .face(Regime::Tension, TENSION_1)
-        .edge(Regime::TensionShear, [SHEAR_13, TENSION_1])
-        .edge(Regime::RightEdge, [SHEAR_13, SHEAR_23])
-        .edge(Regime::LeftEdge, [SHEAR_13, SHEAR_12])
-        .edge(Regime::TensionEdge, [TENSION_1, TENSION_2])
-        .vertex(
+/// The edges that end at the apex, and the planes that end them.
+const ENDS_AT_APEX: [([usize; 2], usize); 2] = [
+    ([SHEAR_13, SHEAR_23], SHEAR_12),
+    ([SHEAR_13, SHEAR_12], SHEAR_23),
+];
+
+/// The parts of a pyramid or prism cut at `tension`, where the shear plane has the least stress `minor`.
+fn truncated(tension: f64, minor: f64) -> [Part; 9] {
+    [
+        Part::Face(Regime::Smooth, SHEAR_13),
+        Part::Face(Regime::Tension, TENSION_1),
+        Part::Edge(Regime::TensionShear, [SHEAR_13, TENSION_1]),
+        Part::Edge(Regime::RightEdge, [SHEAR_13, SHEAR_23]),
+        Part::Edge(Regime::LeftEdge, [SHEAR_13, SHEAR_12]),
+        Part::Edge(Regime::TensionEdge, [TENSION_1, TENSION_2]),
+        Part::Vertex(
             Regime::TensionCorner,
             [tension, minor, minor],
             &[
                 ([SHEAR_13, SHEAR_12], TENSION_1),
                 ([SHEAR_13, TENSION_1], SHEAR_12),
             ],
-        )
-        .vertex(
+        ),
+        Part::Vertex(
             Regime::TensionCorner,
             [tension, tension, minor],
             &[
@@ -175,12 +228,13 @@ fn truncated(elasticity: Elasticity, shear: [Plane; 3], tension: f64, minor: f64
                 ([SHEAR_13, SHEAR_23], TENSION_1),
                 ([TENSION_1, TENSION_2], SHEAR_13),
             ],
-        )
-        .vertex(
+        ),
+        Part::Vertex(
             Regime::TensionApex,
             [tension; 3],
             &[([TENSION_1, TENSION_2], TENSION_3)],
-        )
+        ),
+    ]
 }
 
 #[cfg(test)]

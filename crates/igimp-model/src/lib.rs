@@ -107,6 +107,25 @@ pub struct Case<const D: usize> {
     pub output: Output,
 }
 
+/// The laws of a run are numbered through the materials in their order: first those of all soil, then one for each material for every cell
+/// whose soils share a mean stiffness.
+impl<const D: usize> Case<D> {
+    /// The number of the material that a law belongs to.
+    pub fn number_of_material(&self, law: usize) -> usize {
+        law % self.materials.len()
+    }
+
+    /// The material that a law belongs to.
+    pub fn material_of(&self, law: usize) -> &Material {
+        &self.materials[self.number_of_material(law)]
+    }
+
+    /// The law of another material at the same stiffness: of all soil, or of a cell.
+    pub fn law_beside(&self, law: usize, material: usize) -> usize {
+        law - self.number_of_material(law) + material
+    }
+}
+
 impl<const D: usize> Case<D> {
     /// The same problem on a grid whose cells are cut into `n` in each direction.
     ///

@@ -83,6 +83,37 @@ pub enum TestError {
     Data(#[from] DataError),
 }
 
+/// Materials among which none, or more than one, is meant.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{problem}")]
+pub struct NotChosen {
+    /// What is wrong.
+    pub problem: String,
+    /// The names that there are.
+    pub names: String,
+}
+
+/// The material of a name, or the only one.
+///
+/// # Errors
+/// [`NotChosen`] of several without a name, and of a name that there is not.
+pub fn chosen<'a>(
+    materials: &'a [Material],
+    name: Option<&str>,
+) -> Result<&'a Material, NotChosen> {
+    let found = match (materials, name) {
+        ([only], None) => Ok(only),
+        (_, None) => Err("the file has several materials".to_owned()),
+        (_, Some(name)) => (materials.iter().find(|own| own.name == name))
+            .ok_or_else(|| format!("the file has no material \"{name}\"")),
+    };
+    found.map_err(|problem| {
+        let names: Vec<&str> = materials.iter().map(|own| own.name.as_str()).collect();
+        let names = format!("its materials are {}", names.join(", "));
+        NotChosen { problem, names }
+    })
+}
+
 /// Drives a material; where its strength varies, the greatest counts.
 ///
 /// # Errors

@@ -89,7 +89,7 @@ fn around<const D: usize>(
         counts[0] += 1;
         counts[1] += usize::from(regime.is_plastic());
         counts[2] += usize::from(at_tip);
-        by_material[particles.law[particle] % case.materials.len()] += 1;
+        by_material[case.number_of_material(particles.law[particle])] += 1;
     }
     let most = by_material
         .iter()

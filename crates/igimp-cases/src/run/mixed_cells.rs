@@ -32,8 +32,7 @@ fn moduli(material: &Material, ratios: Ratios) -> [f64; 2] {
 /// volume, in bulk and in shear. Strength stays that of their own soil. `ratios` are those of each particle to its
 /// material; that of stiffness becomes 1 where the law is that of the cell.
 ///
-/// Each such cell appends a law for every material: the material of a law is its number modulo the number
-/// of materials.
+/// Each such cell appends a law for every material, in their order ([`Case::number_of_material`]).
 pub(super) fn share_stiffness<const D: usize>(
     case: &Case<D>,
     (grid, cell_height): (&Grid<D>, f64),

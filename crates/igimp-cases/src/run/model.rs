@@ -126,7 +126,7 @@ impl<'c, const D: usize> Model<'c, D> {
             .with_ratios(ratios)?
             .with_initial_histories(&model.laws)?;
         if (case.materials.iter()).any(|own| own.profiles.permeability.is_some()) {
-            let soil = |seed: &ParticleSeed<D>| &case.materials[seed.law % case.materials.len()];
+            let soil = |seed: &ParticleSeed<D>| case.material_of(seed.law);
             let ratio = |seed: &ParticleSeed<D>| soil(seed).permeability_ratio_at(&seed.x, &ground);
             let ratios: Vec<f64> = seeds.iter().map(ratio).collect();
             particles = particles.with_permeability_ratios(&ratios)?;
@@ -305,7 +305,6 @@ impl<'c, const D: usize> Model<'c, D> {
 
     /// Water in the pores of a step that ends with these controls.
     fn water(&self, to: &Controls) -> Water<D> {
-        let materials = &self.case.materials;
         let stiffness = |material: &Material| match material.drainage {
             Drainage::Undrained { stiffness, .. } if !to.drained => stiffness,
             _ => 0.0,
@@ -315,7 +314,7 @@ impl<'c, const D: usize> Model<'c, D> {
             given: own.map(|own| Arc::clone(own) as Arc<dyn PoreWater<D>>),
             factor: to.gravity,
             stiffness: (0..self.laws.len())
-                .map(|law| stiffness(&materials[law % materials.len()]))
+                .map(|law| stiffness(self.case.material_of(law)))
                 .collect(),
         }
     }
@@ -325,7 +324,7 @@ impl<'c, const D: usize> Model<'c, D> {
     /// # Errors
     /// [`AssemblyError::Material`] for a factor that makes no law.
     pub fn laws_reduced_by(&self, srf: &[f64]) -> Result<Vec<SharedLaw>, AssemblyError> {
-        reduced(&self.laws, srf)
+        reduced(self.case, &self.laws, srf)
     }
 
     /// Resistance of the footing, compression positive, times its reaction factor \[N/m\].
@@ -411,12 +410,15 @@ impl<'c, const D: usize> Model<'c, D> {
     }
 }
 
-/// Laws at strengths divided by these factors, by material; laws run through the materials in their
-/// order, again and again.
-pub(crate) fn reduced(laws: &[SharedLaw], srf: &[f64]) -> Result<Vec<SharedLaw>, AssemblyError> {
-    laws.iter()
-        .zip(srf.iter().cycle())
-        .map(|(law, &srf)| {
+/// Laws of a case at strengths divided by these factors, by material.
+pub(crate) fn reduced<const D: usize>(
+    case: &Case<D>,
+    laws: &[SharedLaw],
+    srf: &[f64],
+) -> Result<Vec<SharedLaw>, AssemblyError> {
+    (laws.iter().enumerate())
+        .map(|(number, law)| {
+            let srf = srf[case.number_of_material(number)];
             if srf.total_cmp(&1.0).is_eq() {
                 Ok(Arc::clone(law))
             } else {

@@ -19,7 +19,7 @@ pub(crate) fn cell_near<const D: usize>(case: &Case<D>, part: &RigidPart<D>) -> 
     cells.fold(f64::INFINITY, f64::min)
 }
 
-/// A rigid body of a case where it starts, among so many laws: one for each material, again and again.
+/// A rigid body of a case where it starts, among so many laws.
 pub(crate) fn made<const D: usize>(
     case: &Case<D>,
     index: usize,
@@ -47,13 +47,12 @@ fn interface<const D: usize>(case: &Case<D>, of: &RigidInterface, laws: usize) -
         RigidShear::Smooth => Shear::Smooth,
         RigidShear::Rough => Shear::Rough,
         RigidShear::Limited { friction, adhesion } => {
-            let by_material = case.materials.iter().map(|material| match adhesion {
+            let of_law = |law: usize| match adhesion {
                 Adhesion::Stress(stress) => stress,
-                Adhesion::Share(share) => share * material.cohesive(),
-            });
-            let by_material: Vec<f64> = by_material.collect();
+                Adhesion::Share(share) => share * case.material_of(law).cohesive(),
+            };
             Shear::Limited {
-                adhesion: by_material.into_iter().cycle().take(laws).collect(),
+                adhesion: (0..laws).map(of_law).collect(),
                 varies: matches!(adhesion, Adhesion::Share(_)),
                 friction,
             }

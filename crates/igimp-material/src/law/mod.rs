@@ -1,8 +1,8 @@
 //! The seam between laws and everything else: a pure function from trial strain to stress.
 //!
-//! The problem that every law solves is eq. 19a of the theory. A law lives in principal space, knows no rotation, no grid and no step, and changes nothing:
-//! the same input gives the same output. [`lift_finite`](crate::lift_finite) and
-//! [`lift_small`](crate::lift_small) carry it to tensors.
+//! The problem that every law solves is eq. 19a of the theory. A law lives in principal space, knows no rotation and no grid, and
+//! changes nothing: the same input gives the same output. [`PointContext`] holds what it is told of its step.
+//! [`lift_finite`](crate::lift_finite) and [`lift_small`](crate::lift_small) carry it to tensors.
 
 mod answer;
 mod history;

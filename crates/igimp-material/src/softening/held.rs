@@ -4,7 +4,7 @@
 use super::curve::Curve;
 use super::rates::Changing;
 use super::undrained::Moment;
-use crate::pyramid::{PlaneStrength, Pyramid};
+use crate::pyramid::PlaneStrength;
 use crate::spectral::principal::{descending, deviator, dot, sorted, unsorted};
 use crate::{
     ConstitutiveModel, Elasticity, History, MaterialError, PointContext, Principal, ReturnMap,
@@ -30,7 +30,7 @@ pub(super) enum Kind {
 pub(super) enum Held {
     /// The cylinder, and the derivative of its yield stress.
     Cylinder(VonMises, f64),
-    Pyramid(Pyramid, Changing),
+    Pyramid(Changing),
 }
 
 /// What a return at a held strength says of plastic strain.
@@ -49,12 +49,13 @@ pub(super) struct Answer {
 impl Held {
     pub(super) fn return_map(
         &self,
+        elasticity: &Elasticity,
         trial: &Principal,
         history: &History,
     ) -> Result<ReturnMap, MaterialError> {
         match self {
             Self::Cylinder(law, _) => law.return_map(trial, history, &PointContext::STATIC),
-            Self::Pyramid(pyramid, _) => pyramid.return_map(trial, *history),
+            Self::Pyramid(own) => own.strength.return_map(elasticity, trial, *history),
         }
     }
 
@@ -65,7 +66,7 @@ impl Held {
         trial: &Principal,
         history: &History,
     ) -> Result<Answer, MaterialError> {
-        let map = self.return_map(trial, history)?;
+        let map = self.return_map(elasticity, trial, history)?;
         let e_p = deviator(&map.delta_eps_p);
         let strain = (2.0 / 3.0 * dot(&e_p, &e_p)).sqrt();
         // ∂κ/∂Δε_p; at rest, and where volume alone changes, none.
@@ -76,7 +77,7 @@ impl Held {
         };
         let stress_rate = match self {
             Self::Cylinder(_, rate) => along.map(|component| component * rate),
-            Self::Pyramid(_, changing) => {
+            Self::Pyramid(changing) => {
                 let order = descending(trial);
                 let tau = sorted(&map.tau, &order);
                 let stress = sorted(&elasticity.stress(trial), &order);
@@ -117,9 +118,6 @@ impl Kind {
         kappa: f64,
         moment: &Moment,
     ) -> Result<Held, MaterialError> {
-        let pyramid = |changing: Changing| {
-            Held::Pyramid(Pyramid::new(elasticity, &changing.strength), changing)
-        };
         Ok(match self {
             Self::VonMises(curve) => {
                 let [yield_stress, rate] = moment.of(curve.at(kappa));
@@ -134,7 +132,7 @@ impl Kind {
                     apex,
                     tension_cutoff: None,
                 };
-                pyramid(Changing {
+                Held::Pyramid(Changing {
                     strength: prism(shear, f64::INFINITY),
                     rate: prism(rate, 0.0),
                 })
@@ -160,7 +158,7 @@ impl Kind {
                         [cutoff, 0.0]
                     }
                 });
-                pyramid(frictional(c, tangent, dilation, cutoff))
+                Held::Pyramid(frictional(c, tangent, dilation, cutoff))
             }
         })
     }

@@ -518,7 +518,7 @@ impl Strength for Softening {
     fn yield_function(&self, tau: &Principal, history: &History) -> f64 {
         match self.held(history) {
             Ok(Held::Cylinder(law, _)) => law.yield_function(tau, history),
-            Ok(Held::Pyramid(pyramid, _)) => pyramid.yield_function(tau),
+            Ok(Held::Pyramid(own)) => own.strength.yield_function(tau),
             Err(_) => f64::NAN,
         }
     }
@@ -532,7 +532,7 @@ impl Strength for Softening {
     fn utilisation(&self, tau: &Principal, history: &History) -> f64 {
         match self.held(history) {
             Ok(Held::Cylinder(law, _)) => law.utilisation(tau, history),
-            Ok(Held::Pyramid(pyramid, _)) => pyramid.utilisation(tau),
+            Ok(Held::Pyramid(own)) => own.strength.utilisation(tau),
             Err(_) => f64::NAN,
         }
     }

@@ -72,7 +72,7 @@ impl Softening {
         let measure = self.measure(before, history);
         let held = self.kind.held(self.elasticity, measure, &moment)?;
         if self.is_perfect() {
-            return held.return_map(eps_e_trial, history);
+            return held.return_map(&self.elasticity, eps_e_trial, history);
         }
         let first = held.answer(&self.elasticity, eps_e_trial, history)?;
         if !first.map.regime.is_plastic() {

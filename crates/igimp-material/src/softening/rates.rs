@@ -68,15 +68,15 @@ impl Changing {
             Regime::Apex => return [self.rate.apex; 3],
             Regime::TensionApex => return [self.rate.tension_cutoff.unwrap_or(0.0); 3],
             Regime::TensionCorner => return self.corner_rate(tau),
-            Regime::Smooth => vec![self.shear(0, 2)],
-            Regime::RightEdge => vec![self.shear(0, 2), self.shear(1, 2)],
-            Regime::LeftEdge => vec![self.shear(0, 2), self.shear(0, 1)],
-            Regime::Tension => vec![self.tension(0)],
-            Regime::TensionShear => vec![self.shear(0, 2), self.tension(0)],
-            Regime::TensionEdge => vec![self.tension(0), self.tension(1)],
+            Regime::Smooth => (self.shear(0, 2), None),
+            Regime::RightEdge => (self.shear(0, 2), Some(self.shear(1, 2))),
+            Regime::LeftEdge => (self.shear(0, 2), Some(self.shear(0, 1))),
+            Regime::Tension => (self.tension(0), None),
+            Regime::TensionShear => (self.shear(0, 2), Some(self.tension(0))),
+            Regime::TensionEdge => (self.tension(0), Some(self.tension(1))),
             Regime::Cap | Regime::CapShear => unreachable!("a law of planes has no cap"),
         };
-        on_planes(elasticity, &planes, trial, tau)
+        on_planes(elasticity, (&planes.0, planes.1.as_ref()), trial, tau)
     }
 
     /// The rate of an end of the edge between shear and tension, where two stresses are equal.
@@ -105,17 +105,16 @@ impl Changing {
 /// The planes keep the stress, $`A'\tau + A\tau' = k'`$, and $`\tau = \tau^{tr} - C B \lambda`$ with the trial stress as it is.
 fn on_planes(
     elasticity: &Elasticity,
-    planes: &[Moving],
+    (first, second): (&Moving, Option<&Moving>),
     trial: &Principal,
     tau: &Principal,
 ) -> Principal {
-    let last = planes.len() - 1;
     // A second plane that is the first leaves the system as it is with one.
-    let pair = [&planes[0], &planes[last]];
+    let pair = [first, second.unwrap_or(first)];
     let stiff = pair.map(|plane| elasticity.stress(&plane.flow));
     let solve = |right: [f64; 2]| -> [f64; 2] {
         let m = pair.map(|row| [dot(&row.normal, &stiff[0]), dot(&row.normal, &stiff[1])]);
-        if last == 0 {
+        if second.is_none() {
             return [right[0] / m[0][0], 0.0];
         }
         let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];

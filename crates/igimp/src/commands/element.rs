@@ -4,7 +4,8 @@ use igimp_input::MaterialsFile;
 use igimp_model::Material;
 use igimp_report::pictures::file_name;
 use igimp_study::element::{
-    Data, DataError, Drive, Kinematics, Request, TestError, of_name, read_data, read_path, test,
+    self, Data, DataError, Drive, Kinematics, Request, TestError, of_name, read_data, read_path,
+    test,
 };
 
 use crate::arguments::ElementArguments;
@@ -82,23 +83,13 @@ pub(crate) fn chosen<'a>(
     materials: &'a [Material],
     name: Option<&str>,
 ) -> Result<&'a Material, ProgramError> {
-    let all = || {
-        let names = materials.iter().map(|own| own.name.as_str());
-        format!("its materials are {}", names.collect::<Vec<_>>().join(", "))
-    };
-    match (materials, name) {
-        ([only], None) => Ok(only),
-        (_, None) => Err(ProgramError::usage(
-            "the file has several materials",
-            format!("choose one with --material; {}", all()),
-        )),
-        (_, Some(name)) => materials
-            .iter()
-            .find(|own| own.name == name)
-            .ok_or_else(|| {
-                ProgramError::usage(format!("the file has no material \"{name}\""), all())
-            }),
-    }
+    element::chosen(materials, name).map_err(|error| {
+        let help = match name {
+            None => format!("choose one with --material; {}", error.names),
+            Some(_) => error.names,
+        };
+        ProgramError::usage(error.problem, help)
+    })
 }
 
 fn drive(arguments: &ElementArguments) -> Result<Drive, ProgramError> {

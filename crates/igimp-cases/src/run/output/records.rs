@@ -152,8 +152,8 @@ impl Records {
     }
 
     /// The laws at the strength that acts; full strength where none can be made of it.
-    fn laws_at<const D: usize>(&self, moment: &Moment<'_, D>) -> Vec<SharedLaw> {
-        reduced(&self.laws, &moment.controls.srf).unwrap_or_else(|_| self.laws.clone())
+    fn laws_at<const D: usize>(&self, case: &Case<D>, moment: &Moment<'_, D>) -> Vec<SharedLaw> {
+        reduced(case, &self.laws, &moment.controls.srf).unwrap_or_else(|_| self.laws.clone())
     }
 
     /// A field at the material point of a monitor; not a number while that is not there. The length of a vector is that of its
@@ -196,7 +196,7 @@ impl Records {
             }
             Quantity::LoadFactor(load) => controls.factors[load],
             Quantity::Monitor(monitor, field) => {
-                self.at_monitor(monitor, field, moment, &self.laws_at(moment))
+                self.at_monitor(monitor, field, moment, &self.laws_at(case, moment))
             }
             Quantity::LargestDisplacement => moment.largest_displacement(),
             Quantity::GravityFactor => controls.gravity,
@@ -262,7 +262,7 @@ impl Records {
             rows.curves[k] = Some(row);
         }
         for (k, monitor) in case.monitors.iter().enumerate().filter(|_| !reopens) {
-            let laws = self.laws_at(moment);
+            let laws = self.laws_at(case, moment);
             let mut row = vec![
                 moment.stage as f64 + 1.0,
                 moment.number as f64,

@@ -80,7 +80,6 @@ fn changed<const D: usize>(
         state.body.particles = particles.keeping(stays)?;
     }
     let mut fields = (*state.body.particles).clone();
-    let materials = case.materials.len();
     let ground = case.ground();
     for particle in 0..fields.x.len() {
         let body = model.seeded.body[fields.number[particle]];
@@ -90,7 +89,7 @@ fn changed<const D: usize>(
         let new = own.materials.iter().find(|(of, _)| *of == body);
         if let Some(&(_, material)) = new {
             let law = fields.law[particle];
-            fields.law[particle] = law - law % materials + material;
+            fields.law[particle] = case.law_beside(law, material);
             // What is placed is free of stress, whatever its law speaks of.
             if !own.place.contains(&body) {
                 drain_as(model, &state, &mut fields, particle, law);
@@ -116,9 +115,8 @@ fn drain_as<const D: usize>(
     particle: usize,
     law_before: usize,
 ) {
-    let materials = &model.case.materials;
     let law = fields.law[particle];
-    let [before, drainage] = [law_before, law].map(|law| materials[law % materials.len()].drainage);
+    let [before, drainage] = [law_before, law].map(|law| model.case.material_of(law).drainage);
     if (before == Drainage::Total) != (drainage == Drainage::Total) {
         let water = state.controls.water.and_then(|k| model.ground_water(k));
         let given = water.map_or(0.0, |water| {

@@ -23,7 +23,7 @@ pub(crate) fn level_ground<const D: usize>(
     let mut fields = (*state.body.particles).clone();
     for particle in 0..fields.x.len() {
         let x = fields.x[particle];
-        let material = &case.materials[fields.law[particle] % case.materials.len()];
+        let material = case.material_of(fields.law[particle]);
         let number = fields.number[particle];
         let vertical = match &water {
             None => -ground.weight_above(&x),

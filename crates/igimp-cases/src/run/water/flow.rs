@@ -17,8 +17,7 @@ pub(crate) fn of_step<const D: usize>(
     stage: &Consolidation,
     [duration, before]: [f64; 2],
 ) -> Consolidating<D> {
-    let materials = &case.materials;
-    let of_law = |law: usize| pore_flow(case, &materials[law % materials.len()]);
+    let of_law = |law: usize| pore_flow(case, case.material_of(law));
     let corner = |own: &[f64; 3]| std::array::from_fn(|axis| own[axis]);
     Consolidating {
         duration,
@@ -102,9 +101,8 @@ pub(crate) fn tally<const D: usize>(
     own.time += report.duration;
     own.outflow += water.outflow;
     own.missing += water.missing().abs();
-    let materials = &case.materials;
     let flows = |law: usize| {
-        let drainage = materials[law % materials.len()].drainage;
+        let drainage = case.material_of(law).drainage;
         matches!(drainage, Drainage::Undrained { flows: true, .. })
     };
     let (mut volume, mut excess) = (0.0, 0.0);

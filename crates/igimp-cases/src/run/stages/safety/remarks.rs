@@ -140,7 +140,7 @@ pub(super) fn tension<const D: usize>(case: &Case<D>, state: &State<D>) -> Optio
     let particles = &state.body.particles;
     let may_carry = |particle: usize| {
         matches!(
-            case.materials[particles.law[particle] % case.materials.len()].strength,
+            case.material_of(particles.law[particle]).strength,
             Strength::MohrCoulomb { cohesion, tension_cutoff: None, .. }
             | Strength::DruckerPrager { cohesion, .. } if cohesion > 0.0
         )

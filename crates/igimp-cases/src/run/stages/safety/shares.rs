@@ -119,12 +119,12 @@ pub(super) fn shares<const D: usize>(
 }
 
 impl<const D: usize> LastStep<'_, D> {
-    /// Dissipation by material \[force·length\]; laws run through the materials again and again.
+    /// Dissipation by material \[force·length\].
     fn dissipated(&self) -> Vec<f64> {
-        let count = self.model.case.materials.len();
-        let mut dissipated = vec![0.0; count];
+        let case = self.model.case;
+        let mut dissipated = vec![0.0; case.materials.len()];
         for (law, own) in self.work.dissipated.iter().enumerate() {
-            dissipated[law % count] += own;
+            dissipated[case.number_of_material(law)] += own;
         }
         dissipated
     }
@@ -136,9 +136,10 @@ impl<const D: usize> LastStep<'_, D> {
         material: usize,
         parameter: Parameter,
     ) -> Result<Option<Vec<SharedLaw>>, AssemblyError> {
-        let count = self.model.case.materials.len();
+        let case = self.model.case;
         let mut laws = conditions.laws.clone();
-        for number in (material..laws.len()).step_by(count) {
+        let is_asked = |law: &usize| case.number_of_material(*law) == material;
+        for number in (0..laws.len()).filter(is_asked) {
             let given: &dyn ConstitutiveModel = &*self.model.laws[number];
             let stronger = stronger(given, self.srf[material], parameter)
                 .map_err(|source| AssemblyError::Law { source })?;
