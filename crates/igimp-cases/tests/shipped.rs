@@ -1,6 +1,7 @@
 //! GOAL: every case file that comes with the program runs to its planned end and makes physical
 //! sense, on meshes so coarse that all of them take less than a minute.
 
+#[path = "common/resuming.rs"]
 mod resuming;
 
 use std::sync::atomic::AtomicBool;
