@@ -21,7 +21,7 @@ use igimp_geometry::seed::fill;
 use igimp_linear::SCALAR;
 use igimp_model::{Case, Drainage, LoadKind, ReductionPath, Side, StageKind, meshes};
 use igimp_results::summary::Expected;
-use igimp_shape::{Scratch, supports};
+use igimp_shape::{Grid, Scratch, supports};
 
 use crate::error::CaseError;
 use couplings::Couplings;
@@ -78,63 +78,89 @@ pub struct Estimate {
     pub work: f64,
 }
 
+/// What the bodies of a case touch, all of them there.
+struct Survey<'g, const D: usize> {
+    /// By node: whether soil touches it, and soil whose water flows.
+    touched: Vec<bool>,
+    pressed: Vec<bool>,
+    /// Particles of each body, and of those whose water flows.
+    particles: Vec<usize>,
+    coupled: usize,
+    /// Which nodes share particles, in space.
+    couplings: Option<Couplings<'g, D>>,
+}
+
+impl<'g, const D: usize> Survey<'g, D> {
+    fn of(case: &Case<D>, grid: &'g Grid<D>) -> Result<Self, CaseError> {
+        let mut own = Self {
+            touched: vec![false; grid.node_count()],
+            pressed: vec![false; grid.node_count()],
+            particles: Vec::new(),
+            coupled: 0,
+            couplings: (D == 3).then(|| Couplings::new(grid)),
+        };
+        let consolidates = case.stages.iter().any(|own| own.consolidation.is_some());
+        let (mut scratch, mut list) = (Scratch::default(), Vec::new());
+        for body in &case.bodies {
+            let drainage = &case.materials[body.material].drainage;
+            let flows = consolidates && matches!(drainage, Drainage::Undrained { flows: true, .. });
+            let seeds = fill(grid, &*body.region, body.per_direction, 1.0, 0)?;
+            for seed in &seeds {
+                let (basis, domain) = (&*case.method.basis, (&seed.x, &seed.half_length));
+                supports(grid, basis, domain.0, domain.1, &mut scratch, &mut list)?;
+                for support in &list {
+                    own.touched[support.node] = true;
+                    own.pressed[support.node] |= flows;
+                }
+                if let Some(couplings) = &mut own.couplings {
+                    couplings.add(domain.0, domain.1);
+                }
+            }
+            own.particles.push(seeds.len());
+            own.coupled += if flows { seeds.len() } else { 0 };
+        }
+        Ok(own)
+    }
+
+    /// The most particles that are there at once.
+    fn most_particles(&self, case: &Case<D>) -> usize {
+        let count = |there: &[bool]| -> usize {
+            let own = std::iter::zip(&self.particles, there);
+            own.map(|(count, &there)| if there { *count } else { 0 })
+                .sum()
+        };
+        let at_start: Vec<bool> = case.bodies.iter().map(|body| body.from_start).collect();
+        let stages = (0..case.stages.len()).map(|stage| count(&case.bodies_after(stage)));
+        stages.fold(count(&at_start), usize::max)
+    }
+
+    /// By node, a bit for each unknown.
+    fn free(&self, case: &Case<D>, grid: &Grid<D>) -> Vec<u8> {
+        let nodes = std::iter::zip(0.., std::iter::zip(&self.touched, &self.pressed));
+        nodes
+            .map(|(node, (&touched, &pressed))| {
+                let scalar = if pressed { SCALAR } else { 0 };
+                if touched {
+                    free(case, grid.node_position(node)) | scalar
+                } else {
+                    0
+                }
+            })
+            .collect()
+    }
+}
+
 /// The size of a case.
 ///
 /// # Errors
 /// [`CaseError`] for a grid that cannot be made and bodies that do not lie on it.
 pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, CaseError> {
     let grid = case.grid.grid()?;
-    let mut active = vec![false; grid.node_count()];
-    let mut pressed = vec![false; grid.node_count()];
-    let consolidates = case.stages.iter().any(|own| own.consolidation.is_some());
-    let (mut scratch, mut list) = (Scratch::default(), Vec::new());
-    let (mut by_body, mut coupled) = (Vec::new(), 0);
-    let mut couplings = (D == 3).then(|| Couplings::new(&grid));
-    for body in &case.bodies {
-        let drainage = &case.materials[body.material].drainage;
-        let flows = consolidates && matches!(drainage, Drainage::Undrained { flows: true, .. });
-        let seeds = fill(&grid, &*body.region, body.per_direction, 1.0, 0)?;
-        for seed in &seeds {
-            let basis = &*case.method.basis;
-            supports(
-                &grid,
-                basis,
-                &seed.x,
-                &seed.half_length,
-                &mut scratch,
-                &mut list,
-            )?;
-            for support in &list {
-                active[support.node] = true;
-                pressed[support.node] |= flows;
-            }
-            if let Some(couplings) = &mut couplings {
-                couplings.add(&seed.x, &seed.half_length);
-            }
-        }
-        by_body.push(seeds.len());
-        coupled += if flows { seeds.len() } else { 0 };
-    }
-    let count = |there: &[bool]| -> usize {
-        let own = std::iter::zip(&by_body, there);
-        own.map(|(count, &there)| if there { *count } else { 0 })
-            .sum()
-    };
-    let at_start: Vec<bool> = case.bodies.iter().map(|body| body.from_start).collect();
-    let stages = (0..case.stages.len()).map(|stage| count(&case.bodies_after(stage)));
-    let particles = stages.fold(count(&at_start), usize::max);
-    let free: Vec<u8> = std::iter::zip(0.., &active)
-        .map(|(node, &active)| {
-            let scalar = if pressed[node] { SCALAR } else { 0 };
-            if active {
-                free(case, grid.node_position(node)) | scalar
-            } else {
-                0
-            }
-        })
-        .collect();
+    let survey = Survey::of(case, &grid)?;
+    let particles = survey.most_particles(case);
+    let free = survey.free(case, &grid);
     let unknowns = free.iter().map(|free| free.count_ones() as usize).sum();
-    let systems = match couplings {
+    let systems = match survey.couplings {
         Some(couplings) if unknowns > 0 => Systems::in_space(case, &couplings.pattern(&free))?,
         _ => Systems::in_plane(case, unknowns),
     };
@@ -143,9 +169,9 @@ pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, CaseError> {
     } else {
         [PER_PARTICLE, PER_UNKNOWN]
     };
-    let nodes = active.iter().filter(|own| **own).count();
+    let nodes = survey.touched.iter().filter(|own| **own).count();
     let flows = Flows::of(case, nodes);
-    let of_pressures = PER_COUPLED[usize::from(D == 3)] * coupled as f64;
+    let of_pressures = PER_COUPLED[usize::from(D == 3)] * survey.coupled as f64;
     let solving =
         particle * particles as f64 + of_pressures + unknown * unknowns as f64 + systems.bytes;
     // Flows are found before the first step, and their equations are gone then.

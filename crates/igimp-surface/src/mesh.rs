@@ -84,32 +84,13 @@ impl Surface<3> {
     ) -> Result<Self, SurfaceError> {
         positive("the distance of knots", spacing)?;
         positive("the length of the prism", to - from)?;
-        let n = corners.len();
-        let side = |k: usize| [0, 1].map(|a| corners[(k + 1) % n][a] - corners[k % n][a]);
-        if n < 3 || (0..n).any(|k| norm(&side(k)) <= 0.0) {
-            return Err(SurfaceError::TooFewCorners);
+        let outline = Outline::new(corners, rounding)?;
+        let around: f64 = (0..outline.len()).map(|k| norm(&outline.side(k))).sum();
+        countable(around * (to - from) + 2.0 * outline.area.abs(), spacing)?;
+        let (lower, upper) = (from + rounding, to - rounding);
+        if upper <= lower {
+            return Err(SurfaceError::RoundedAway { side: 0, rounding });
         }
-        if crosses(corners) {
-            return Err(SurfaceError::Crossing);
-        }
-        let area: f64 = (0..n)
-            .map(|k| {
-                let (a, b) = (corners[k], corners[(k + 1) % n]);
-                0.5 * (a[0] * b[1] - a[1] * b[0])
-            })
-            .sum();
-        let around: f64 = (0..n).map(|k| norm(&side(k))).sum();
-        countable(around * (to - from) + 2.0 * area.abs(), spacing)?;
-        let outward = |k: usize| {
-            let [x, y] = side(k);
-            let length = area.signum() * x.hypot(y);
-            [y / length, -x / length]
-        };
-        let core = |k: usize| {
-            let (before, after) = (outward((k + n - 1) % n), outward(k % n));
-            let share = rounding / (1.0 + dot(&before, &after));
-            [0, 1].map(|a| corners[k % n][a] - share * (before[a] + after[a]))
-        };
         let place = |x: [f64; 2], along: f64| {
             let mut out = [0.0; 3];
             out[axis] = along;
@@ -117,16 +98,12 @@ impl Surface<3> {
             out[(axis + 2) % 3] = x[1];
             out
         };
-        let (lower, upper) = (from + rounding, to - rounding);
-        if upper <= lower {
-            return Err(SurfaceError::RoundedAway { side: 0, rounding });
-        }
         let mut draft = Draft::default();
         let across = shares_along(upper - lower, spacing);
-        for k in 0..n {
-            let (a, b, own) = (core(k), core(k + 1), outward(k));
+        for k in 0..outline.len() {
+            let (a, b, own) = (outline.core(k), outline.core(k + 1), outline.outward(k));
             let way = [b[0] - a[0], b[1] - a[1]];
-            if dot(&way, &side(k)) <= 0.0 {
+            if dot(&way, &outline.side(k)) <= 0.0 {
                 return Err(SurfaceError::RoundedAway { side: k, rounding });
             }
             let quad = |off: f64| {
@@ -142,13 +119,10 @@ impl Surface<3> {
             let shares = [along.as_slice(), across.as_slice()];
             draft.grid(quad(0.0), quad(rounding), shares, k, &place(own, 0.0));
         }
-        let mut outline: Vec<[f64; 2]> = (0..n).map(core).collect();
-        if area < 0.0 {
-            outline.reverse();
-        }
-        let mut points: Vec<[f64; 3]> = outline.iter().map(|&x| place(x, 0.0)).collect();
-        let triangles = triangulated(&outline)?;
-        let triangles = divided(&mut points, triangles, LONGEST * spacing);
+        let cores = outline.cores();
+        let mut points: Vec<[f64; 3]> = cores.iter().map(|&x| place(x, 0.0)).collect();
+        let triangles = divided(&mut points, triangulated(&cores)?, LONGEST * spacing);
+        let n = outline.len();
         for (side, along, outer, sense) in [(n, lower, from, -1.0), (n + 1, upper, to, 1.0)] {
             let at = |x: &[f64; 3], along: f64| {
                 let mut x = *x;
@@ -226,6 +200,70 @@ impl Surface<3> {
             draft.facet(own, side, &normal);
         }
         draft.finish(sides, 0.0, None)
+    }
+}
+
+/// The outline of a prism, and what a rounding leaves of it.
+struct Outline<'c> {
+    corners: &'c [[f64; 2]],
+    rounding: f64,
+    /// Positive where the corners run anticlockwise \[length²\].
+    area: f64,
+}
+
+impl<'c> Outline<'c> {
+    fn new(corners: &'c [[f64; 2]], rounding: f64) -> Result<Self, SurfaceError> {
+        let n = corners.len();
+        let area = (0..n).map(|k| {
+            let (a, b) = (corners[k], corners[(k + 1) % n]);
+            0.5 * (a[0] * b[1] - a[1] * b[0])
+        });
+        let own = Self {
+            corners,
+            rounding,
+            area: area.sum(),
+        };
+        if n < 3 || (0..n).any(|k| norm(&own.side(k)) <= 0.0) {
+            return Err(SurfaceError::TooFewCorners);
+        }
+        if crosses(corners) {
+            return Err(SurfaceError::Crossing);
+        }
+        Ok(own)
+    }
+
+    fn len(&self) -> usize {
+        self.corners.len()
+    }
+
+    /// From a corner to the next one.
+    fn side(&self, k: usize) -> [f64; 2] {
+        let (from, to) = (self.corners[k], self.corners[(k + 1) % self.len()]);
+        [0, 1].map(|a| to[a] - from[a])
+    }
+
+    /// The normal of a side.
+    fn outward(&self, k: usize) -> [f64; 2] {
+        let [x, y] = self.side(k);
+        let length = self.area.signum() * x.hypot(y);
+        [y / length, -x / length]
+    }
+
+    /// A corner, drawn in from both sides by the rounding.
+    fn core(&self, k: usize) -> [f64; 2] {
+        let n = self.len();
+        let (before, after) = (self.outward((k + n - 1) % n), self.outward(k % n));
+        let share = self.rounding / (1.0 + dot(&before, &after));
+        [0, 1].map(|a| self.corners[k % n][a] - share * (before[a] + after[a]))
+    }
+
+    /// All corners, drawn in, anticlockwise.
+    fn cores(&self) -> Vec<[f64; 2]> {
+        let mut cores: Vec<[f64; 2]> = (0..self.len()).map(|k| self.core(k)).collect();
+        if self.area < 0.0 {
+            cores.reverse();
+        }
+        cores
     }
 }
 

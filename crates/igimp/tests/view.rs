@@ -203,6 +203,34 @@ fn the_page_and_the_results_are_served() {
     assert_eq!(view.interrupt(), Some(0));
 }
 
+/// Ways out of the results folder, and files in it that are not shown.
+const NOT_SHOWN: [&str; 24] = [
+    "../secret.csv",
+    "curves/../../secret.csv",
+    "curves/..%2f..%2fsecret.csv",
+    "curves/%2e%2e/%2e%2e/secret.csv",
+    "curves/%252e%252e/secret.csv",
+    "curves/..%5c..%5csecret.csv",
+    "curves//settlement.csv",
+    "curves/./settlement.csv",
+    "curves/settlement.csv%00",
+    "curves/settlement.csv?x",
+    "curves/link.csv",
+    "curves/notes.txt",
+    "curves/.hidden.csv",
+    "curves/pipe.csv",
+    "curves/",
+    "curves",
+    "monitors/top%20%C3%BC.csv",
+    "case.toml",
+    "summary.json",
+    ".igimp",
+    "checkpoint/stage-01-end/meta.json",
+    "/etc/passwd",
+    "%2fetc%2fpasswd",
+    "%",
+];
+
 /// GOAL: no way leads to anything but the files that are shown; what is refused has no body.
 #[test]
 fn foreign_hosts_paths_and_methods_get_nothing() {
@@ -238,32 +266,7 @@ fn foreign_hosts_paths_and_methods_get_nothing() {
     ] {
         nothing(view.ask("GET", path, &own), 404, path);
     }
-    for name in [
-        "../secret.csv",
-        "curves/../../secret.csv",
-        "curves/..%2f..%2fsecret.csv",
-        "curves/%2e%2e/%2e%2e/secret.csv",
-        "curves/%252e%252e/secret.csv",
-        "curves/..%5c..%5csecret.csv",
-        "curves//settlement.csv",
-        "curves/./settlement.csv",
-        "curves/settlement.csv%00",
-        "curves/settlement.csv?x",
-        "curves/link.csv",
-        "curves/notes.txt",
-        "curves/.hidden.csv",
-        "curves/pipe.csv",
-        "curves/",
-        "curves",
-        "monitors/top%20%C3%BC.csv",
-        "case.toml",
-        "summary.json",
-        ".igimp",
-        "checkpoint/stage-01-end/meta.json",
-        "/etc/passwd",
-        "%2fetc%2fpasswd",
-        "%",
-    ] {
+    for name in NOT_SHOWN {
         nothing(view.get(name), 404, name);
     }
     let absolute = view.ask("GET", &format!("{}index.json", view.address()), &own);
@@ -408,32 +411,34 @@ fn the_page_works_in_a_browser() {
     };
     let view = View::of(&folder, "results");
     // The monitor stands in the middle of a particle; compression is positive in tables alone.
-    let fields = [
-        ("displacement%20[m],%20length", 3, 1.0),
-        ("sigma%20[Pa],%20tension%20%2B,%20yy", 4, -1.0),
-    ];
-    for frame in 1..=3 {
-        for (field, column, sign) in fields {
-            let wishes = format!("frame={frame}&field={field}&hover=0.9,1.85");
-            let page = looked_at(browser, &folder, &view, &wishes);
-            let value: f64 = attribute(&page, "found", "data-value").parse().unwrap();
-            let expected = sign * number(frame, column);
-            assert!(
-                (value - expected).abs() <= 1e-6 * expected.abs(),
-                "frame {frame}, {field}: {value} for {expected}"
-            );
-            let label = attribute(&page, "slider", "aria-valuetext");
-            assert_eq!(
-                label,
-                format!("Frame {frame} of 4: stage 1 “own weight”, step {frame}")
-            );
-            assert!(
-                page.contains("a &lt;b&gt;block&lt;/b&gt;"),
-                "the title is text"
-            );
-            // The cursor of curve and monitor is on the row of the frame.
-            assert_eq!(page.matches(&format!("data-row=\"{frame}\"")).count(), 3);
-        }
+    // Each look starts a browser: every frame once, and both fields.
+    let displacement = ("displacement%20[m],%20length", 3, 1.0);
+    let stress = ("sigma%20[Pa],%20tension%20%2B,%20yy", 4, -1.0);
+    for (frame, (field, column, sign)) in [
+        (1, displacement),
+        (2, stress),
+        (3, displacement),
+        (3, stress),
+    ] {
+        let wishes = format!("frame={frame}&field={field}&hover=0.9,1.85");
+        let page = looked_at(browser, &folder, &view, &wishes);
+        let value: f64 = attribute(&page, "found", "data-value").parse().unwrap();
+        let expected = sign * number(frame, column);
+        assert!(
+            (value - expected).abs() <= 1e-6 * expected.abs(),
+            "frame {frame}, {field}: {value} for {expected}"
+        );
+        let label = attribute(&page, "slider", "aria-valuetext");
+        assert_eq!(
+            label,
+            format!("Frame {frame} of 4: stage 1 “own weight”, step {frame}")
+        );
+        assert!(
+            page.contains("a &lt;b&gt;block&lt;/b&gt;"),
+            "the title is text"
+        );
+        // The cursor of curve and monitor is on the row of the frame.
+        assert_eq!(page.matches(&format!("data-row=\"{frame}\"")).count(), 3);
     }
     // Played from the first frame to the last, with the particle that was pointed at.
     let page = looked_at(browser, &folder, &view, "frame=1&hover=0.9,1.85&play=1");
@@ -455,7 +460,7 @@ fn rigid_bodies_are_drawn_where_they_stand() {
     let run = folder.igimp(&["run", "case.toml", "--quiet", "--out", "results"]);
     assert!(run.status.success());
     let view = View::of(&folder, "results");
-    for frame in [1, 2, 3] {
+    for frame in [1, 3] {
         let name = format!("results/paraview/rigid_{frame:04}.vtu");
         let text = std::fs::read_to_string(folder.0.join(name)).unwrap();
         let page = looked_at(browser, &folder, &view, &format!("frame={frame}"));

@@ -1,15 +1,15 @@
 //! From a case to what the solver marches: grid, particles, laws, supports, loads.
 
+mod seeding;
+
 use std::sync::Arc;
 
 use igimp_assembly::{
-    AssemblyError, Constraints, Geometry, LoadPoint, Method, ParticleSeed, Particles, PoreWater,
-    SharedLaw, StepConditions, StepLoads, Water,
+    AssemblyError, Constraints, Geometry, LoadPoint, Method, Particles, PoreWater, SharedLaw,
+    StepConditions, StepLoads, Water,
 };
-use igimp_geometry::seed::fill;
 use igimp_linear::LinearSolver;
-use igimp_material::Ratios;
-use igimp_model::{Case, Drainage, LoadKind, Material, MixedCells, OfCase, Side};
+use igimp_model::{Case, Drainage, LoadKind, Material, OfCase, Side};
 use igimp_results::fields;
 use igimp_results::model_size::ModelSize;
 use igimp_shape::{Grid, ShapeError};
@@ -21,7 +21,6 @@ use super::water::seepage::{Flows, Followed};
 use super::water::{GroundWater, Seeded};
 use crate::error::CaseError;
 use crate::estimate::factor_memory::FactorMemory;
-use crate::run::state::gravity_of_weights;
 
 /// Load points per cell along a loaded segment.
 const POINTS_PER_CELL: f64 = 4.0;
@@ -82,35 +81,7 @@ impl<'c, const D: usize> Model<'c, D> {
         model.laws = (case.materials.iter())
             .map(|material| material.law_on(cell))
             .collect::<Result<Vec<_>, _>>()?;
-        let gravity = gravity_of_weights(case.gravity);
-        let ground = case.ground();
-        let mut seeds = Vec::new();
-        let mut seeded = Seeded::default();
-        for (body, part) in case.bodies.iter().enumerate() {
-            let material = &case.materials[part.material];
-            let density = material.unit_weight / gravity;
-            let parts = part.per_direction;
-            let mut own = fill(&grid, &*part.region, parts, density, part.material)?;
-            if material.profiles.unit_weight.is_some() {
-                for seed in &mut own {
-                    seed.density = material.unit_weight_at(&seed.x, &ground) / gravity;
-                }
-            }
-            seeded.body.extend(own.iter().map(|_| body));
-            seeds.extend(own);
-        }
-        let ratios = |seed: &ParticleSeed<D>| case.materials[seed.law].ratios_at(&seed.x, &ground);
-        let mut ratios: Vec<Ratios> = seeds.iter().map(ratios).collect();
-        if case.grid.mixed_cells == MixedCells::Mean {
-            let parts = (&mut seeds[..], &mut ratios[..]);
-            super::mixed_cells::share_stiffness(case, (&grid, cell), parts, &mut model.laws)?;
-        }
-        if case.water.iter().any(|condition| condition.carried) {
-            seeded.domain = seeds
-                .iter()
-                .map(|seed| [seed.x, seed.half_length])
-                .collect();
-        }
+        let (mut particles, seeded) = seeding::seeded(case, (&grid, cell), &mut model.laws)?;
         let seeded = Arc::new(seeded);
         if let Some(known) = water {
             model.water = known.to_vec();
@@ -122,15 +93,6 @@ impl<'c, const D: usize> Model<'c, D> {
                 .collect();
             model.courses = flows.courses;
         }
-        let mut particles = Particles::new(&seeds)?
-            .with_ratios(ratios)?
-            .with_initial_histories(&model.laws)?;
-        if (case.materials.iter()).any(|own| own.profiles.permeability.is_some()) {
-            let soil = |seed: &ParticleSeed<D>| case.material_of(seed.law);
-            let ratio = |seed: &ParticleSeed<D>| soil(seed).permeability_ratio_at(&seed.x, &ground);
-            let ratios: Vec<f64> = seeds.iter().map(ratio).collect();
-            particles = particles.with_permeability_ratios(&ratios)?;
-        }
         if case.bodies.iter().any(|part| !part.from_start) {
             let is_first = |particle: usize| case.bodies[seeded.body[particle]].from_start;
             model.later = Some(particles.keeping(|particle| !is_first(particle))?);
@@ -141,26 +103,37 @@ impl<'c, const D: usize> Model<'c, D> {
         body.load_points = load_points(case);
         let mut controls = Controls::none(case);
         controls.water = (!case.water.is_empty()).then_some(0);
-        for (index, part) in case.rigid.iter().enumerate() {
-            if part.from_start {
-                body.rigid
-                    .push(super::rigid::made(case, index, model.laws.len())?);
-                controls.rigid[index].placed = true;
-            }
-        }
-        for (index, part) in case.reinforcement.iter().enumerate() {
-            if part.from_start {
-                body.reinforcement
-                    .push(super::reinforcement::made(case, part));
-                controls.reinforcement[index].installed = true;
-            }
-        }
+        model.place_from_start(&mut body, &mut controls)?;
         if body.particles.resolve_overlap(&body.rigid) > 0 {
             body.particles.reset_displacements();
         }
         let below = |part| super::rigid::gap_below(part, &body.particles);
         model.gaps = case.rigid.iter().map(below).collect();
         Ok((model, State { body, controls }))
+    }
+
+    /// Places the structures that are there from the start.
+    fn place_from_start(
+        &self,
+        body: &mut Body<D>,
+        controls: &mut Controls,
+    ) -> Result<(), CaseError> {
+        let case = self.case;
+        for (index, part) in case.rigid.iter().enumerate() {
+            if part.from_start {
+                let made = super::rigid::made(case, index, self.laws.len())?;
+                body.rigid.push(made);
+                controls.rigid[index].placed = true;
+            }
+        }
+        for (index, part) in case.reinforcement.iter().enumerate() {
+            if part.from_start {
+                let made = super::reinforcement::made(case, part);
+                body.reinforcement.push(made);
+                controls.reinforcement[index].installed = true;
+            }
+        }
+        Ok(())
     }
 
     /// Least height of the cells \[m\].

@@ -15,60 +15,15 @@ pub(crate) fn made<const D: usize>(
     case: &Case<D>,
     part: &ReinforcementPart<D>,
 ) -> Reinforcement<D> {
-    let cell_near = |a: [f64; D], b: [f64; D]| {
-        let axes = case.grid.axes.iter().enumerate();
-        axes.map(|(k, own)| own.smallest_between(a[k].min(b[k]), a[k].max(b[k])))
-            .fold(f64::INFINITY, f64::min)
-    };
-    let between = |a: [f64; D], b: [f64; D], t: f64| -> [f64; D] {
-        std::array::from_fn(|axis| a[axis] + t * (b[axis] - a[axis]))
-    };
-    let mut legs: Vec<([f64; D], [f64; D], bool)> = part
-        .line
-        .windows(2)
-        .map(|leg| (leg[0], leg[1], true))
-        .collect();
-    if part.free_length > 0.0 {
-        let (head, end) = (part.line[0], part.line[1]);
-        let t = part.free_length / part.length();
-        let bond = between(head, end, t);
-        legs = vec![(head, bond, false)];
-        if t < 1.0 {
-            legs.push((bond, end, true));
-        }
-    }
-    let head = part.line[0];
-    // Places in the middle of equal parts of the plate.
-    let first = part.plate.as_ref().map_or_else(
-        || vec![head],
-        |corners| {
-            let from = corners[0];
-            let mut places = vec![from];
-            for &to in &corners[1..] {
-                let width = distance(&from, &to);
-                let count = (STATIONS_PER_CELL * width / cell_near(from, to))
-                    .ceil()
-                    .max(2.0);
-                let steps = (0..count as usize).map(|k| (k as f64 + 0.5) / count);
-                let moved = |place: &[f64; D], t: f64| -> [f64; D] {
-                    std::array::from_fn(|axis| place[axis] + t * (to[axis] - from[axis]))
-                };
-                places = steps
-                    .flat_map(|t| places.iter().map(move |place| moved(place, t)))
-                    .collect();
-            }
-            places
-        },
-    );
-    let mut stations: Vec<Station<D>> = vec![Station { points: first }];
+    let mut stations = vec![Station {
+        points: head_points(case, part),
+    }];
     let mut segments = Vec::new();
     let mut so_far = 0.0;
-    for (from, to, is_bonded) in legs {
+    for (from, to, is_bonded) in legs(part) {
         let length = distance(&from, &to);
         let count = if is_bonded {
-            (STATIONS_PER_CELL * length / cell_near(from, to))
-                .ceil()
-                .max(1.0)
+            stations_between(case, from, to).max(1.0)
         } else {
             1.0
         };
@@ -97,6 +52,54 @@ pub(crate) fn made<const D: usize>(
         stations,
         segments,
     }
+}
+
+/// The point at a share of the way between two others.
+fn between<const D: usize>(a: [f64; D], b: [f64; D], t: f64) -> [f64; D] {
+    std::array::from_fn(|axis| a[axis] + t * (b[axis] - a[axis]))
+}
+
+/// Stations along a way through the cells of the case, a whole number.
+fn stations_between<const D: usize>(case: &Case<D>, a: [f64; D], b: [f64; D]) -> f64 {
+    let axes = case.grid.axes.iter().enumerate();
+    let cell = axes
+        .map(|(k, own)| own.smallest_between(a[k].min(b[k]), a[k].max(b[k])))
+        .fold(f64::INFINITY, f64::min);
+    (STATIONS_PER_CELL * distance(&a, &b) / cell).ceil()
+}
+
+/// The straight parts of a member, and whether they are bonded to the ground.
+fn legs<const D: usize>(part: &ReinforcementPart<D>) -> Vec<([f64; D], [f64; D], bool)> {
+    if part.free_length > 0.0 {
+        let (head, end) = (part.line[0], part.line[1]);
+        let t = part.free_length / part.length();
+        let bond = between(head, end, t);
+        let bonded = (t < 1.0).then_some((bond, end, true));
+        [(head, bond, false)].into_iter().chain(bonded).collect()
+    } else {
+        let legs = part.line.windows(2);
+        legs.map(|leg| (leg[0], leg[1], true)).collect()
+    }
+}
+
+/// Where the head takes hold: at its place, or in the middle of equal parts of its plate.
+fn head_points<const D: usize>(case: &Case<D>, part: &ReinforcementPart<D>) -> Vec<[f64; D]> {
+    let Some(corners) = &part.plate else {
+        return vec![part.line[0]];
+    };
+    let from = corners[0];
+    let mut places = vec![from];
+    for &to in &corners[1..] {
+        let count = stations_between(case, from, to).max(2.0);
+        let steps = (0..count as usize).map(|k| (k as f64 + 0.5) / count);
+        let moved = |place: &[f64; D], t: f64| -> [f64; D] {
+            std::array::from_fn(|axis| place[axis] + t * (to[axis] - from[axis]))
+        };
+        places = steps
+            .flat_map(|t| places.iter().map(move |place| moved(place, t)))
+            .collect();
+    }
+    places
 }
 
 /// Installs what a stage installs, in the ground as it stands. A jack takes hold of what is stressed.

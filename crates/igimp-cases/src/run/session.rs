@@ -262,6 +262,60 @@ pub(crate) struct StagePath<'a, const D: usize> {
     pub(crate) left: Option<&'a Resumption>,
 }
 
+impl<'a, const D: usize> StagePath<'a, D> {
+    /// A path through equilibria from its beginning, without drag.
+    pub(crate) fn of_equilibria(
+        (from, to): (&'a Controls, &'a Controls),
+        method: Method,
+        settings: MarchSettings,
+    ) -> Self {
+        Self {
+            from,
+            to,
+            drag: &|_, _| 0.0,
+            time: None,
+            flow: None,
+            method,
+            settings,
+            held: None,
+            left: None,
+        }
+    }
+
+    /// The conditions of a step between two load factors, with the controls there.
+    fn conditions(
+        &self,
+        model: &Model<'_, D>,
+        (from, to): (f64, f64),
+        (before, after): (&Controls, &Controls),
+    ) -> Result<StepConditions<D>, AssemblyError> {
+        let grid = model.grid(model.lowered(match self.method.geometry {
+            Geometry::Moving => before,
+            Geometry::Given => self.from,
+        }));
+        let conditions = model.conditions_on(grid, (before, after), (self.drag)(from, to))?;
+        let conditions = match self.time {
+            Some(own) => (own.on_ground)(before, after, conditions)?,
+            None => conditions,
+        };
+        let durations = [after.time - before.time, after.flow_step];
+        let flow = |own| flow::of_step((model.case, model.laws.len()), own, durations);
+        conditions
+            .with_flow(self.flow.map(flow))?
+            .with_unbalanced(self.held.as_ref().map(|forces| UnbalancedForces {
+                forces: Arc::clone(forces),
+                share: 1.0 - to,
+            }))?
+            .with_time(self.time.map(|integration| TimeStep {
+                duration: after.time - before.time,
+                scheme: integration.scheme,
+                lumped: integration.lumped,
+                is_first: from == 0.0,
+                must_resolve: true,
+            }))
+    }
+}
+
 /// Adds to the conditions of a step between two controls what the ground does.
 pub(crate) type OnGround<'a, const D: usize> = dyn Fn(&Controls, &Controls, StepConditions<D>) -> Result<StepConditions<D>, AssemblyError>
     + 'a;
@@ -311,33 +365,7 @@ pub(crate) fn march_path<const D: usize>(
         };
         (controls.with_tracks(&tracks.borrow())).with_walls(&walls.borrow())
     };
-    let load_path = |from: f64, to: f64| {
-        let (before, after) = (at(from), at(to));
-        let grid = model.grid(model.lowered(match path.method.geometry {
-            Geometry::Moving => &before,
-            Geometry::Given => path.from,
-        }));
-        let conditions = model.conditions_on(grid, (&before, &after), (path.drag)(from, to))?;
-        let conditions = match path.time {
-            Some(own) => (own.on_ground)(&before, &after, conditions)?,
-            None => conditions,
-        };
-        let durations = [after.time - before.time, flow_step.get()];
-        let flow = |own| flow::of_step((model.case, model.laws.len()), own, durations);
-        conditions
-            .with_flow(path.flow.map(flow))?
-            .with_unbalanced(path.held.as_ref().map(|forces| UnbalancedForces {
-                forces: Arc::clone(forces),
-                share: 1.0 - to,
-            }))?
-            .with_time(path.time.map(|integration| TimeStep {
-                duration: after.time - before.time,
-                scheme: integration.scheme,
-                lumped: integration.lumped,
-                is_first: from == 0.0,
-                must_resolve: true,
-            }))
-    };
+    let load_path = |from: f64, to: f64| path.conditions(model, (from, to), (&at(from), &at(to)));
     let mut march = MarchState::start(&path.settings);
     if let Some(left) = path.left {
         march = left.march;

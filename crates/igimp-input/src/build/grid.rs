@@ -309,35 +309,7 @@ fn wish(
             ends: [*zone.from, *zone.to],
             cell: *zone.cell,
         };
-        let wrong = if own.ends[0] >= own.ends[1] {
-            Some((
-                zone.from.place,
-                "this zone has no extent",
-                "write the lower end first",
-            ))
-        } else if !own.ends.into_iter().all(is_inside) {
-            Some((
-                zone.from.place,
-                "this zone reaches off the grid domain",
-                "extend [grid] domain",
-            ))
-        } else if own.cell >= cell {
-            let help = "write the size of the coarse cells as `cell` of the grid";
-            Some((
-                zone.cell.place,
-                "the cells of this zone are no finer than those of the grid",
-                help,
-            ))
-        } else if own.cell < round_off {
-            let help = "move the origin to the model";
-            Some((
-                zone.cell.place,
-                "the coordinates are too large for cells this small",
-                help,
-            ))
-        } else {
-            None
-        };
+        let wrong = wrong_zone(zone, own.ends.into_iter().all(is_inside), cell, round_off);
         if let Some((at, message, help)) = wrong {
             problems.error(at, message).help(help);
             is_right = false;
@@ -357,6 +329,42 @@ fn wish(
             growth,
         })
     })
+}
+
+/// What is wrong with a zone of finer cells: place, message and remedy.
+fn wrong_zone(
+    zone: &keys::Zone,
+    is_inside: bool,
+    coarse: f64,
+    round_off: f64,
+) -> Option<(Place, &'static str, &'static str)> {
+    if *zone.from >= *zone.to {
+        Some((
+            zone.from.place,
+            "this zone has no extent",
+            "write the lower end first",
+        ))
+    } else if !is_inside {
+        Some((
+            zone.from.place,
+            "this zone reaches off the grid domain",
+            "extend [grid] domain",
+        ))
+    } else if *zone.cell >= coarse {
+        Some((
+            zone.cell.place,
+            "the cells of this zone are no finer than those of the grid",
+            "write the size of the coarse cells as `cell` of the grid",
+        ))
+    } else if *zone.cell < round_off {
+        Some((
+            zone.cell.place,
+            "the coordinates are too large for cells this small",
+            "move the origin to the model",
+        ))
+    } else {
+        None
+    }
 }
 
 /// Level edges of bodies, the longest first \[m\].

@@ -155,38 +155,7 @@ fn footing(
         on_grid(own, &shown, [from, to], site, problems);
     }
     if site.is_complete {
-        let mut tops: Vec<_> = site
-            .surface()
-            .iter()
-            .filter(|edge| {
-                edge.iter()
-                    .all(|end| (end[1] - from[1]).abs() <= site.round_off)
-            })
-            .map(|edge| [edge[0][0], edge[1][0]])
-            .collect();
-        if !cover(&mut tops, from[0], to[0], site.round_off) {
-            let mut levels: Vec<_> = (site.surface().iter())
-                .filter(|edge| (edge[0][1] - edge[1][1]).abs() <= site.round_off)
-                .map(|edge| {
-                    format!(
-                        "y = {} m from x = {} m to {} m",
-                        number(edge[0][1]),
-                        number(edge[0][0]),
-                        number(edge[1][0])
-                    )
-                })
-                .collect();
-            levels.truncate(4);
-            let problem = problems.error(
-                own.from.place,
-                format!("the footing `{shown}` does not stand on top of a body all along"),
-            );
-            if levels.is_empty() {
-                problem.help("no body has a level top");
-            } else {
-                problem.help(format!("level ground: {}", levels.join("; ")));
-            }
-        }
+        on_ground(own, &shown, [from, to], site, problems);
     }
     Some(LoadKind::RigidFooting {
         from,
@@ -194,6 +163,49 @@ fn footing(
         rough: *own.interface == FootingInterface::Rough,
         reaction_factor: *own.reaction_factor,
     })
+}
+
+/// Checks that a footing stands on the tops of bodies all along.
+fn on_ground(
+    own: &Footing<2>,
+    name: &str,
+    [from, to]: [[f64; 2]; 2],
+    site: &Site,
+    problems: &mut Problems,
+) {
+    let mut tops: Vec<_> = site
+        .surface()
+        .iter()
+        .filter(|edge| {
+            edge.iter()
+                .all(|end| (end[1] - from[1]).abs() <= site.round_off)
+        })
+        .map(|edge| [edge[0][0], edge[1][0]])
+        .collect();
+    if cover(&mut tops, from[0], to[0], site.round_off) {
+        return;
+    }
+    let mut levels: Vec<_> = (site.surface().iter())
+        .filter(|edge| (edge[0][1] - edge[1][1]).abs() <= site.round_off)
+        .map(|edge| {
+            format!(
+                "y = {} m from x = {} m to {} m",
+                number(edge[0][1]),
+                number(edge[0][0]),
+                number(edge[1][0])
+            )
+        })
+        .collect();
+    levels.truncate(4);
+    let problem = problems.error(
+        own.from.place,
+        format!("the footing `{name}` does not stand on top of a body all along"),
+    );
+    if levels.is_empty() {
+        problem.help("no body has a level top");
+    } else {
+        problem.help(format!("level ground: {}", levels.join("; ")));
+    }
 }
 
 /// Checks a footing against the lines of the grid.

@@ -1,30 +1,29 @@
 //! Materials and the limits of their parameters.
 
 mod cam_clay;
+mod checks;
 mod frictional;
 mod hardening_soil;
 mod hoek_brown;
 mod plausible;
 pub(crate) mod profiles;
 mod softening;
+mod water;
 
 use std::sync::Arc;
 
-use igimp_assembly::VoidLaw;
-use igimp_linear::SolverKind;
-use igimp_model::{
-    BodyPart, Case, Drainage, Ground, Layer, Material, Profile, Profiles, Stage, StageKind,
-    Strength,
-};
+use igimp_model::{BodyPart, Ground, Layer, Material, Profile, Profiles, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::materials::{self as keys, MaterialCommon, Model};
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::read::{At, Either, Found, Named};
 use igimp_schema::tree::{Node, Wrong};
-use igimp_seepage::{Curve, Soil};
 
-use profiles::{Extent, Property, TABLES, Terms, property};
+use profiles::{Extent, Property, Terms, property};
+use water::{drainage, permeability, saturated};
+
+pub(super) use checks::{check_lengths, check_on_cells, check_rates};
 
 /// What may be said of a strength, of Young's modulus and of a unit weight that vary.
 const STRENGTH: Terms = Terms {
@@ -41,11 +40,6 @@ const UNDRAINED: Terms = Terms {
 const YOUNG: Terms = Terms {
     may_vanish: false,
     ..STRENGTH
-};
-const PERMEABILITY: Terms = Terms {
-    printed: |value| format!("{} m/s", number(value)),
-    forms: TABLES,
-    ..YOUNG
 };
 const UNIT_WEIGHT: Terms = Terms {
     may_be_nothing: true,
@@ -171,92 +165,6 @@ fn material<const D: usize>(
         problems.error(stated.place, message);
     }
     Some(material)
-}
-
-/// Refuses strength that softens so fast, on the cells of a case, that stress snaps back.
-pub(super) fn check_on_cells<const D: usize>(case: &Case<D>, problems: &mut Problems) {
-    let cell = case.grid.smallest_cell()[D - 1];
-    for material in &case.materials {
-        let Some(curves) = material.softening.filter(|own| own.band_width.is_some()) else {
-            continue;
-        };
-        if let Err(error) = material.law_on(cell) {
-            let message = format!(
-                "the material `{}` is not possible on cells of {} m, where its strains are times {}: {error}",
-                clip(&material.name, 40),
-                number(cell),
-                number(curves.strain_ratio(cell))
-            );
-            problems
-                .error(None, message)
-                .help("smaller cells, or a larger `band_width` or `strain` of its softening");
-        }
-    }
-}
-
-/// Refuses strength that sees the ground around where that is not solved for, and warns of cells that do not resolve its bands.
-pub(super) fn check_lengths<const D: usize>(case: &Case<D>, problems: &mut Problems) {
-    let cell = (0..D)
-        .map(|axis| case.grid.smallest_cell()[axis])
-        .fold(0.0, f64::max);
-    for material in &case.materials {
-        let Some(own) = material.softening.and_then(|own| own.nonlocal) else {
-            continue;
-        };
-        let name = clip(&material.name, 40);
-        let takes_time = |stage: &&Stage| {
-            stage.consolidation.is_some() || matches!(stage.kind, StageKind::Dynamic(_))
-        };
-        let refused = if D == 3 {
-            Some("in plane strain, and this case is in space".to_owned())
-        } else if let Some(stage) = case.stages.iter().find(takes_time) {
-            let stage = clip(&stage.name, 40);
-            Some(format!(
-                "in stages without time, and stage `{stage}` takes time"
-            ))
-        } else if case.solver.linear == SolverKind::Multigrid {
-            Some("by direct solvers, and solver.linear is \"multigrid\"".to_owned())
-        } else {
-            None
-        };
-        if let Some(why) = refused {
-            problems
-                .error(
-                    None,
-                    format!("softening of `{name}` over a length is solved for {why}"),
-                )
-                .help("write `band_width` in place of `length`: strains are scaled to the cells");
-        } else if cell > 0.5 * own.length * (1.0 + 1e-9) {
-            let message = format!(
-                "cells of {} m do not resolve the bands of `{name}`, whose softening has a length of {} m",
-                number(cell),
-                number(own.length)
-            );
-            problems
-                .warning(None, message)
-                .help("cells of half the length or less, or `band_width` in place of `length`");
-        }
-    }
-}
-
-/// Refuses strength that goes with the rate of strain where no stage takes time.
-pub(super) fn check_rates<const D: usize>(case: &Case<D>, problems: &mut Problems) {
-    let takes_time = |stage: &Stage| {
-        stage.consolidation.is_some() || matches!(stage.kind, StageKind::Dynamic(_))
-    };
-    if case.stages.iter().any(takes_time) {
-        return;
-    }
-    let goes = |own: &&Material| own.softening.is_some_and(|own| own.rate.is_some());
-    for material in case.materials.iter().filter(goes) {
-        let message = format!(
-            "the strength of `{}` goes with the rate of strain, and no stage takes time",
-            clip(&material.name, 40)
-        );
-        problems.error(None, message).help(
-            "give the stage that shears it consolidation = { duration = \"100 s\" }, make it a dynamic one, or remove `rate`",
-        );
-    }
 }
 
 /// The keys of linear elasticity, if the model has them.
@@ -401,216 +309,6 @@ fn constants(own: &keys::Material, common: &MaterialCommon) -> Vec<(&'static str
     }
     let stated = all.into_iter().filter_map(|(key, own)| Some((key, own?)));
     stated.collect()
-}
-
-/// A permeability as a material states it.
-struct Permeability {
-    /// The greatest where it varies.
-    soil: Soil,
-    profile: Option<Profile>,
-    void_law: Option<VoidLaw>,
-}
-
-/// The permeability, if the material states one.
-fn permeability<const D: usize>(
-    common: &MaterialCommon,
-    extent: Extent<'_, D>,
-    problems: &mut Problems,
-) -> Result<Option<Permeability>, Wrong> {
-    let stated = common.permeability.as_ref().map_err(|_| Wrong)?;
-    let Some(stated) = stated else {
-        return Ok(None);
-    };
-    let own = match &**stated {
-        Either::First(permeability) => {
-            return Ok(Some(Permeability {
-                soil: Soil::isotropic(*permeability),
-                profile: None,
-                void_law: None,
-            }));
-        }
-        Either::Second(own) => own,
-    };
-    let curve = curve(own, problems)?;
-    if let (Some(index), None) = (&own.c_k, &own.void_ratio) {
-        problems
-            .error(
-                index.place,
-                "`c_k` needs the void ratio that it starts from",
-            )
-            .help("add void_ratio = 1.0, or what it is");
-        return Err(Wrong);
-    }
-    let void_law = own.void_ratio.as_ref().map(|initial| VoidLaw {
-        initial: **initial,
-        index: own.c_k.as_ref().map(|own| **own),
-    });
-    let along = property(
-        &own.horizontal,
-        "horizontal",
-        extent,
-        PERMEABILITY,
-        problems,
-    );
-    let Property { constant, profile } = along.ok_or(Wrong)?;
-    let soil = Soil {
-        along: constant,
-        across: own.vertical.as_ref().map_or(constant, |own| **own),
-        angle: *own.angle,
-        curve,
-        drainable: own.drainable.as_ref().map_or(0.0, |own| **own),
-        // It follows from the stiffness, with the weight of the water.
-        specific_storage: 0.0,
-    };
-    Ok(Some(Permeability {
-        soil,
-        profile,
-        void_law,
-    }))
-}
-
-/// What soil keeps of its permeability above the free surface.
-fn curve(own: &keys::Permeability, problems: &mut Problems) -> Result<Curve, Wrong> {
-    match (&own.gardner, &own.van_genuchten) {
-        (Some(_), Some(second)) => {
-            problems
-                .error(second.place, "both `gardner` and `van_genuchten` are given")
-                .help("keep the curve that was measured");
-            Err(Wrong)
-        }
-        (Some(height), None) => Ok(Curve::Gardner {
-            alpha: 1.0 / **height,
-        }),
-        (None, Some(own)) => {
-            if *own.n <= 1.0 {
-                problems
-                    .error(own.n.place, "n of van Genuchten's curve has to be above 1")
-                    .help("clay has about 1.1 to 1.4, sand 2 to 3");
-                return Err(Wrong);
-            }
-            Ok(Curve::VanGenuchten {
-                alpha: 1.0 / *own.height,
-                n: *own.n,
-            })
-        }
-        (None, None) => Ok(Curve::Ramp),
-    }
-}
-
-/// The unit weight below a water table, if the material states one.
-fn saturated(
-    name: &str,
-    common: &MaterialCommon,
-    unit_weight: Option<&Property>,
-    problems: &mut Problems,
-) -> Result<Option<f64>, Wrong> {
-    let stated = common.saturated_unit_weight.as_ref().map_err(|_| Wrong)?;
-    if let (Some(saturated), Some(above)) = (stated, unit_weight)
-        && **saturated < above.constant
-    {
-        problems
-            .error(
-                saturated.place,
-                format!(
-                    "`{}` would be lighter with full pores, {} kN/m3, than above the water, {} kN/m3",
-                    clip(name, 40),
-                    number(**saturated / 1e3),
-                    number(above.constant / 1e3)
-                ),
-            )
-            .help("it is the weight of soil and water together, not that under buoyancy");
-        return Err(Wrong);
-    }
-    Ok(stated.as_ref().map(|own| **own))
-}
-
-/// Poisson's ratio of undrained soil where the file does not say.
-const UNDRAINED_POISSON: f64 = 0.495;
-
-/// What a material does with water.
-fn drainage(
-    (common, model): (&MaterialCommon, &Model),
-    stiffness: Option<[f64; 2]>,
-    strength: Option<Strength>,
-    problems: &mut Problems,
-) -> Option<Drainage> {
-    let kind = **common.drainage.as_ref().ok()?.as_ref()?;
-    let (undrained, pore_water) = (&common.undrained_poisson, &common.pore_water);
-    let (undrained, pore_water) = (undrained.as_ref().ok()?, pore_water.as_ref().ok()?);
-    let first = match (undrained, pore_water) {
-        (Some(own), _) => Some(("undrained_poisson", own.place)),
-        (None, own) => own.as_ref().map(|own| ("pore_water", own.place)),
-    };
-    let unlike = match kind {
-        keys::Drainage::Undrained | keys::Drainage::Coupled => None,
-        keys::Drainage::Total => Some((Drainage::Total, "one of total stress")),
-        keys::Drainage::Drained => Some((Drainage::Drained, "drained")),
-    };
-    if let Some((drainage, words)) = unlike {
-        let Some((first, place)) = first else {
-            return Some(drainage);
-        };
-        problems
-            .error(
-                place,
-                format!(
-                    "`{first}` is for undrained and coupled soil, and this material is {words}"
-                ),
-            )
-            .help("write drainage = \"undrained\" or \"coupled\", or remove it");
-        return None;
-    }
-    let flows = kind == keys::Drainage::Coupled;
-    if let (true, Ok(None)) = (flows, &common.permeability) {
-        problems
-            .error(
-                common.drainage.as_ref().ok()?.as_ref()?.place,
-                "water flows through coupled soil, and it has no permeability",
-            )
-            .help("add permeability = \"1e-9 m/s\"; clay 1e-9, silt 1e-7, sand 1e-4");
-        return None;
-    }
-    if let (Some(_), Some(second)) = (undrained, pore_water) {
-        problems
-            .error(
-                second.place,
-                "both `undrained_poisson` and `pore_water` are given",
-            )
-            .help("keep one of them");
-        return None;
-    }
-    if strength.is_some() {
-        frictional::never_fails(model, problems)?;
-    }
-    if let Some(stiffness) = pore_water {
-        return Some(Drainage::Undrained {
-            stiffness: **stiffness,
-            flows,
-        });
-    }
-    let [young, poisson] = stiffness?;
-    let stated = linear_stiffness(model).and_then(|own| own.poisson.as_ref().ok());
-    let with_water = undrained.as_ref().map_or(UNDRAINED_POISSON, |own| **own);
-    if with_water >= 0.5 || with_water <= poisson {
-        let stated = stated.map(|own| own.place);
-        problems
-            .error(
-                undrained.as_ref().map(|own| own.place).or(stated),
-                format!(
-                    "Poisson's ratio of undrained soil, {}, must lie between that of its skeleton, {}, and 0.5",
-                    number(with_water),
-                    number(poisson)
-                ),
-            )
-            .help("poisson is that of drained soil, like 0.3; undrained_poisson = 0.495");
-        return None;
-    }
-    let shear = young / (2.0 * (1.0 + poisson));
-    let bulk = |poisson: f64| 2.0 * shear * (1.0 + poisson) / (3.0 * (1.0 - 2.0 * poisson));
-    Some(Drainage::Undrained {
-        stiffness: bulk(with_water) - bulk(poisson),
-        flows,
-    })
 }
 
 /// K₀ of a material, if it states one.

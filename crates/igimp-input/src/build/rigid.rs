@@ -12,6 +12,7 @@ use igimp_model::{Adhesion, Material, RigidForm, RigidInterface, RigidPart, Rigi
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::rigid::{self as keys, Interface, Limited, RigidBody, RigidCommon};
+use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::Node;
 use igimp_schema::tree::read::{At, Either};
@@ -300,24 +301,28 @@ fn in_grid<const D: usize>(
                 });
         }
     }
-    let level = lower[D - 1];
     if part.grid_follows {
-        let place = frame.axes[D - 1].place(level);
-        if (place - place.round()).abs() > 1e-6 || place.round() < 1.0 {
-            let up = if D == 2 { "y" } else { "z" };
-            problems
-                .error(
-                    common.grid_follows.place,
-                    format!(
-                        "no row of the grid lies at {up} = {} m, its lowest place",
-                        number(level)
-                    ),
-                )
-                .help(format!(
-                    "add lines = {{ {up} = [\"{} m\"] }} to [grid]",
+        on_row(lower[D - 1], common.grid_follows.place, frame, problems);
+    }
+}
+
+/// Refuses a body that the grid follows and whose lowest place is on no row of it.
+fn on_row<const D: usize>(level: f64, at: Place, frame: &Frame<D>, problems: &mut Problems) {
+    let row = frame.axes[D - 1].place(level);
+    if (row - row.round()).abs() > 1e-6 || row.round() < 1.0 {
+        let up = if D == 2 { "y" } else { "z" };
+        problems
+            .error(
+                at,
+                format!(
+                    "no row of the grid lies at {up} = {} m, its lowest place",
                     number(level)
-                ));
-        }
+                ),
+            )
+            .help(format!(
+                "add lines = {{ {up} = [\"{} m\"] }} to [grid]",
+                number(level)
+            ));
     }
 }
 

@@ -1,5 +1,6 @@
 //! Surfaces of the ground from surveys: ESRI ASCII grids, and CSV with the columns x, y and z.
 
+use std::iter::Peekable;
 use std::path::Path;
 
 use igimp_schema::diagnostic::Problems;
@@ -134,11 +135,18 @@ struct EsriGrid {
     heights: Vec<Option<f64>>,
 }
 
-impl EsriGrid {
-    fn parse(text: &str) -> Result<Self, Trouble> {
-        let help = "the head of an ESRI ASCII grid has ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, cellsize, and NODATA_value if there are holes";
-        let mut head: Vec<(String, f64, usize)> = Vec::new();
-        let mut lines = text.lines().zip(1..).peekable();
+/// What a head without one of its keys is answered.
+const HEAD: &str = "the head of an ESRI ASCII grid has ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, cellsize, and NODATA_value if there are holes";
+
+/// The head of an ESRI ASCII grid: key, value and line.
+struct Head(Vec<(String, f64, usize)>);
+
+impl Head {
+    /// Takes the head off the lines of a file.
+    fn take<'t>(
+        lines: &mut Peekable<impl Iterator<Item = (&'t str, usize)>>,
+    ) -> Result<Self, Trouble> {
+        let mut head = Vec::new();
         while let Some(&(line, at)) = lines.peek() {
             let mut words = line.split_whitespace();
             let key = words.next().unwrap_or("").to_lowercase();
@@ -152,54 +160,65 @@ impl EsriGrid {
             let value = words.next().and_then(number);
             let (Some(value), None) = (value, words.next()) else {
                 let message = format!("line {at}, `{}`, is not a key and a number", clip(line, 40));
-                return Err(Trouble::new(message, help));
+                return Err(Trouble::new(message, HEAD));
             };
             head.push((key, value, at));
             lines.next();
         }
-        let find = |keys: &[&str]| {
-            let found = head.iter().find(|(key, ..)| keys.contains(&key.as_str()));
-            found.map(|(key, value, at)| (key.as_str(), *value, *at))
+        Ok(Self(head))
+    }
+
+    fn find(&self, keys: &[&str]) -> Option<(&str, f64, usize)> {
+        let found = self.0.iter().find(|(key, ..)| keys.contains(&key.as_str()));
+        found.map(|(key, value, at)| (key.as_str(), *value, *at))
+    }
+
+    fn needed(&self, keys: &[&str]) -> Result<(&str, f64, usize), Trouble> {
+        let missing = || Trouble::new(format_args!("its head has no {}", keys.join(" or ")), HEAD);
+        self.find(keys).ok_or_else(missing)
+    }
+
+    fn count(&self, key: &str) -> Result<usize, Trouble> {
+        let (_, value, at) = self.needed(&[key])?;
+        if value >= 2.0 && value.fract() == 0.0 && value <= MOST as f64 {
+            return Ok(value as usize);
+        }
+        let message = format!("line {at}: {key} is {value}");
+        Err(Trouble::new(
+            message,
+            format_args!("a grid has from 2 to {MOST} of them"),
+        ))
+    }
+
+    /// Size of a cell along an axis, and the middle of its first cell.
+    fn axis(&self, axis: usize) -> Result<[f64; 2], Trouble> {
+        let (key, size, at) = self.needed(&["cellsize", ["dx", "dy"][axis]])?;
+        if size <= 0.0 {
+            let message = format!("line {at}: {key} is {size}");
+            return Err(Trouble::new(message, "a cell has a positive size"));
+        }
+        let keys = [["xllcorner", "xllcenter"], ["yllcorner", "yllcenter"]][axis];
+        let (key, start, _) = self.needed(&keys)?;
+        // Heights are those of the middles of cells.
+        let first = if key == keys[0] {
+            start + 0.5 * size
+        } else {
+            start
         };
-        let needed = |keys: &[&str]| {
-            let missing =
-                || Trouble::new(format_args!("its head has no {}", keys.join(" or ")), help);
-            find(keys).ok_or_else(missing)
-        };
-        let count = |key: &str| {
-            let (_, value, at) = needed(&[key])?;
-            if value >= 2.0 && value.fract() == 0.0 && value <= MOST as f64 {
-                return Ok(value as usize);
-            }
-            let message = format!("line {at}: {key} is {value}");
-            Err(Trouble::new(
-                message,
-                format_args!("a grid has from 2 to {MOST} of them"),
-            ))
-        };
-        let (columns, rows) = (count("ncols")?, count("nrows")?);
+        Ok([size, first])
+    }
+}
+
+impl EsriGrid {
+    fn parse(text: &str) -> Result<Self, Trouble> {
+        let mut lines = text.lines().zip(1..).peekable();
+        let head = Head::take(&mut lines)?;
+        let (columns, rows) = (head.count("ncols")?, head.count("nrows")?);
         if columns * rows > MOST {
             return Err(too_many(columns * rows));
         }
-        let mut cell = [0.0; 2];
-        let mut first = [0.0; 2];
-        for axis in 0..2 {
-            let (key, size, at) = needed(&["cellsize", ["dx", "dy"][axis]])?;
-            if size <= 0.0 {
-                let message = format!("line {at}: {key} is {size}");
-                return Err(Trouble::new(message, "a cell has a positive size"));
-            }
-            cell[axis] = size;
-            let keys = [["xllcorner", "xllcenter"], ["yllcorner", "yllcenter"]][axis];
-            let (key, start, _) = needed(&keys)?;
-            // Heights are those of the middles of cells.
-            first[axis] = if key == keys[0] {
-                start + 0.5 * size
-            } else {
-                start
-            };
-        }
-        let none = find(&["nodata_value"]).map(|(_, value, _)| value);
+        let [[dx, x], [dy, y]] = [head.axis(0)?, head.axis(1)?];
+        let none = head.find(&["nodata_value"]).map(|(_, value, _)| value);
         let mut heights = Vec::with_capacity(columns * rows);
         for (line, at) in lines {
             for word in line.split_whitespace() {
@@ -223,8 +242,8 @@ impl EsriGrid {
         }
         Ok(Self {
             columns,
-            first,
-            cell,
+            first: [x, y],
+            cell: [dx, dy],
             heights,
         })
     }

@@ -65,6 +65,16 @@ impl Demand {
     fn accepted(&self) -> f64 {
         self.target.max(self.tolerance)
     }
+
+    /// The error of an iteration that ended above it. What factors would take stays open.
+    fn missed(&self, iterations: usize, relative_residual: f64) -> LinearSolverError {
+        LinearSolverError::NotConverged {
+            iterations,
+            relative_residual,
+            tolerance: self.accepted(),
+            factor_bytes: None,
+        }
+    }
 }
 
 /// Which iteration it is.
@@ -86,7 +96,7 @@ pub(crate) struct Preconditioned {
 
 impl Preconditioned {
     /// Solves K x = b with `precondition`, which makes z ≈ K⁻¹ r of r: for the grid, or for all unknowns where b has those of the
-    /// border too. The error of one that did not converge leaves open what factors would take.
+    /// border too.
     pub(crate) fn solve(
         &mut self,
         system: LinearSystem<'_>,
@@ -169,12 +179,7 @@ impl Preconditioned {
             check::finite("solution", solution)?;
             return Ok(report);
         }
-        Err(LinearSolverError::NotConverged {
-            iterations: report.refinements,
-            relative_residual: reached,
-            tolerance: demand.accepted(),
-            factor_bytes: None,
-        })
+        Err(demand.missed(report.refinements, reached))
     }
 }
 

@@ -348,13 +348,7 @@ impl<const B: usize> Elimination<'_, B> {
                 } else {
                     &known[other * size..][..size]
                 };
-                let mut factor = [[0.0_f32; B]; B];
-                for (r, factor) in factor.iter_mut().enumerate() {
-                    let entry = &own[r * width + B * place..][..B];
-                    for (c, factor) in factor.iter_mut().enumerate() {
-                        *factor = (0..B).map(|k| entry[k] * inverse[B * k + c]).sum();
-                    }
-                }
+                let factor = times_inverse::<B>(own, (width, place), inverse);
                 for range in self.slabs.split(slab_of, other, self.couplings).upper {
                     let mut next = range.start;
                     while next < range.end {
@@ -391,6 +385,23 @@ impl<const B: usize> Elimination<'_, B> {
         let into = &mut own_inverse[(node - start) * size..][..size];
         into[B * B] = f32::from(invert::<B>(&block, &original, into));
     }
+}
+
+/// The block at a place of rows of a width, times the inverse of a diagonal block.
+#[expect(
+    clippy::inline_always,
+    reason = "it takes the vector instructions of its caller"
+)]
+#[inline(always)]
+fn times_inverse<const B: usize>(
+    rows: &[f32],
+    (width, place): (usize, usize),
+    inverse: &[f32],
+) -> [[f32; B]; B] {
+    std::array::from_fn(|r| {
+        let entry = &rows[r * width + B * place..][..B];
+        std::array::from_fn(|c| (0..B).map(|k| entry[k] * inverse[B * k + c]).sum())
+    })
 }
 
 /// The elimination of the row of a node in a slab.

@@ -92,6 +92,19 @@ pub enum ParameterValue {
     Note,
 }
 
+fn parameter(label: &'static str, value: ParameterValue) -> Parameter {
+    Parameter { label, value }
+}
+
+/// Cohesion \[Pa\], friction angle and angle of dilation \[rad\].
+fn frictional(cohesion: f64, friction_angle: f64, dilation_angle: f64) -> [Parameter; 3] {
+    [
+        parameter("c = ", ParameterValue::Cohesive(cohesion)),
+        parameter("φ = ", ParameterValue::Friction(friction_angle)),
+        parameter("ψ = ", ParameterValue::Angle(dilation_angle)),
+    ]
+}
+
 impl Strength {
     /// Name of the law, in print.
     pub fn name(&self) -> &'static str {
@@ -109,7 +122,6 @@ impl Strength {
 
     /// The parameters in the order in which they are printed.
     pub fn parameters(&self) -> Vec<Parameter> {
-        let parameter = |label, value| Parameter { label, value };
         match *self {
             Self::Elastic => vec![parameter("no limit", ParameterValue::Note)],
             Self::VonMises { undrained_strength } | Self::Tresca { undrained_strength } => {
@@ -125,11 +137,7 @@ impl Strength {
                 flow,
                 tension_cutoff,
             } => {
-                let mut parameters = vec![
-                    parameter("c = ", ParameterValue::Cohesive(cohesion)),
-                    parameter("φ = ", ParameterValue::Friction(friction_angle)),
-                    parameter("ψ = ", ParameterValue::Angle(dilation_angle)),
-                ];
+                let mut parameters = frictional(cohesion, friction_angle, dilation_angle).to_vec();
                 if flow == Flow::Davis {
                     parameters.push(parameter("flow by Davis", ParameterValue::Note));
                 }
@@ -142,19 +150,16 @@ impl Strength {
                 friction_angle,
                 dilation_angle,
                 cone,
-            } => vec![
-                parameter("c = ", ParameterValue::Cohesive(cohesion)),
-                parameter("φ = ", ParameterValue::Friction(friction_angle)),
-                parameter("ψ = ", ParameterValue::Angle(dilation_angle)),
-                parameter(
-                    match cone {
-                        Cone::Compression => "cone of triaxial compression",
-                        Cone::Extension => "cone of triaxial extension",
-                        Cone::PlaneStrain => "cone of plane strain",
-                    },
-                    ParameterValue::Note,
-                ),
-            ],
+            } => {
+                let cone = match cone {
+                    Cone::Compression => "cone of triaxial compression",
+                    Cone::Extension => "cone of triaxial extension",
+                    Cone::PlaneStrain => "cone of plane strain",
+                };
+                let mut parameters = frictional(cohesion, friction_angle, dilation_angle).to_vec();
+                parameters.push(parameter(cone, ParameterValue::Note));
+                parameters
+            }
             Self::HoekBrown(own) => vec![
                 parameter("σ_ci = ", ParameterValue::Stress(own.intact_strength)),
                 parameter("GSI = ", ParameterValue::Number(own.gsi)),
@@ -172,22 +177,16 @@ impl Strength {
                 parameter("m = ", ParameterValue::Number(own.power)),
                 parameter("OCR = ", ParameterValue::Number(own.overconsolidation)),
             ],
-            Self::ModifiedCamClay(own) => {
-                let number = |label, value| parameter(label, ParameterValue::Number(value));
-                let shear = match own.shear {
-                    ShearStiffness::Poisson(poisson) => number("ν = ", poisson),
-                    ShearStiffness::Constant(shear) => {
-                        parameter("G = ", ParameterValue::Stress(shear))
-                    }
-                };
-                vec![
-                    number("λ* = ", own.compression),
-                    number("κ* = ", own.swelling),
-                    number("M = ", own.critical_ratio),
-                    shear,
-                    number("OCR = ", own.overconsolidation),
-                ]
-            }
+            Self::ModifiedCamClay(own) => vec![
+                parameter("λ* = ", ParameterValue::Number(own.compression)),
+                parameter("κ* = ", ParameterValue::Number(own.swelling)),
+                parameter("M = ", ParameterValue::Number(own.critical_ratio)),
+                match own.shear {
+                    ShearStiffness::Poisson(own) => parameter("ν = ", ParameterValue::Number(own)),
+                    ShearStiffness::Constant(own) => parameter("G = ", ParameterValue::Stress(own)),
+                },
+                parameter("OCR = ", ParameterValue::Number(own.overconsolidation)),
+            ],
         }
     }
 

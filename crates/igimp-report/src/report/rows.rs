@@ -27,19 +27,15 @@ pub(super) struct Number {
     pub(super) note: String,
 }
 
+impl Number {
+    fn new(name: impl Into<String>, value: String, note: impl Into<String>) -> Self {
+        let (name, note) = (name.into(), note.into());
+        Self { name, value, note }
+    }
+}
+
 /// The headline numbers: factors of safety, resistances, displacements, checks.
 pub(super) fn headline(summary: &Summary) -> Vec<Number> {
-    let mut numbers = Vec::new();
-    let mut add = |name: String, value: String, note: String| {
-        numbers.push(Number { name, value, note });
-    };
-    let several = |has: fn(&StageSummary) -> bool, stage: &StageSummary, name: &str| {
-        if summary.stages.iter().filter(|stage| has(stage)).count() > 1 {
-            format!("{name}, {}", stage.name)
-        } else {
-            name.to_owned()
-        }
-    };
     let mesh_error = match &summary.mesh_study {
         Some(study) => {
             let shown = study.shown().map_or_else(String::new, MeshSummary::label);
@@ -47,80 +43,110 @@ pub(super) fn headline(summary: &Summary) -> Vec<Number> {
         }
         None => MESH_ERROR_UNKNOWN.to_owned(),
     };
-    for stage in &summary.stages {
-        if let Some(safety) = &stage.safety {
-            let bound = |factor: Option<f64>| factor.map_or_else(|| "?".to_owned(), short);
-            let (from, to) = (bound(safety.stable), bound(safety.failed));
-            let name = several(|stage| stage.safety.is_some(), stage, "Factor of safety");
-            let value = format!("{from}\u{a0}…\u{a0}{to}");
-            add(name, value, mesh_error.clone());
-        }
-    }
-    for stage in &summary.stages {
-        if let Some(peak) = stage.peak_resistance {
-            let name = several(
-                |stage| stage.peak_resistance.is_some(),
-                stage,
-                "Peak resistance",
-            );
-            add(name, quantity(peak, force(summary)), mesh_error.clone());
-        }
-        if let Some(settlement) = stage.settlement {
-            let name = several(|stage| stage.settlement.is_some(), stage, "Settlement");
-            let note = format!("of the footing, at the end of “{}”", stage.name);
-            add(name, length(settlement), note);
-        }
-    }
-    for stage in &summary.stages {
-        if let Some(newmark) = &stage.newmark {
-            let name = several(
-                |stage| stage.newmark.is_some(),
-                stage,
-                "Newmark's sliding block",
-            );
-            let note = format!(
-                "k_c = {} of “{}”, ground at up to {}, in “{}”",
-                short(newmark.yield_coefficient),
-                newmark.from,
-                quantity(newmark.peak_acceleration, "m/s²"),
-                stage.name
-            );
-            add(name, length(newmark.displacement), note);
-        }
-    }
+    let mut numbers = factors_of_safety(summary, &mesh_error);
+    numbers.extend(resistances(summary, &mesh_error));
+    numbers.extend(sliding_blocks(summary));
     let moved = |stage: &&StageSummary| stage.safety.is_none();
     if let Some(stage) = summary.stages.iter().rev().find(moved) {
         let note = format!("of all particles, at the end of “{}”", stage.name);
         let value = length(stage.largest_displacement);
-        add("Largest displacement".to_owned(), value, note);
+        numbers.push(Number::new("Largest displacement", value, note));
     }
-    if let Some((stage, pores)) = last_pores(summary) {
-        let note = format!(
-            "of any particle, compression positive, at the end of “{}”",
-            stage.name
-        );
-        let value = quantity(pores.largest, "Pa");
-        add("Largest pore pressure".to_owned(), value, note.clone());
-        if let Some([least, most]) = pores.excess {
-            let value = format!("{} to {}", quantity(least, "Pa"), quantity(most, "Pa"));
-            let value = value.replace('-', "−");
-            add("Excess pore pressure".to_owned(), value, note);
-        }
-    }
+    numbers.extend(pore_pressures(summary));
     for (stage, own) in consolidated(summary) {
-        let name = several(
-            |stage| stage.consolidation.is_some(),
-            stage,
-            "Excess pressure dissipated",
-        );
+        let has_one = |stage: &StageSummary| stage.consolidation.is_some();
+        let name = of_stage(summary, has_one, stage, "Excess pressure dissipated");
         let value = format!("{} %", short(100.0 * own.dissipated()));
-        add(name, value, dissipation_note(summary, own));
+        numbers.push(Number::new(name, value, dissipation_note(summary, own)));
     }
     if !summary.checks.is_empty() {
         let met = summary.checks.iter().filter(|row| row.pass).count();
         let value = format!("{met} of {}", summary.checks.len());
-        let note = "against references from outside".to_owned();
-        add("Checks met".to_owned(), value, note);
+        let note = "against references from outside";
+        numbers.push(Number::new("Checks met", value, note));
+    }
+    numbers
+}
+
+/// The name of a number, with that of its stage where several stages have one.
+fn of_stage(
+    summary: &Summary,
+    has_one: fn(&StageSummary) -> bool,
+    stage: &StageSummary,
+    name: &str,
+) -> String {
+    if summary.stages.iter().filter(|stage| has_one(stage)).count() > 1 {
+        format!("{name}, {}", stage.name)
+    } else {
+        name.to_owned()
+    }
+}
+
+fn factors_of_safety(summary: &Summary, mesh_error: &str) -> Vec<Number> {
+    let number = |stage: &StageSummary| {
+        let safety = stage.safety.as_ref()?;
+        let bound = |factor: Option<f64>| factor.map_or_else(|| "?".to_owned(), short);
+        let (from, to) = (bound(safety.stable), bound(safety.failed));
+        let has_one = |stage: &StageSummary| stage.safety.is_some();
+        let name = of_stage(summary, has_one, stage, "Factor of safety");
+        let value = format!("{from}\u{a0}…\u{a0}{to}");
+        Some(Number::new(name, value, mesh_error))
+    };
+    summary.stages.iter().filter_map(number).collect()
+}
+
+fn resistances(summary: &Summary, mesh_error: &str) -> Vec<Number> {
+    let mut numbers = Vec::new();
+    for stage in &summary.stages {
+        if let Some(peak) = stage.peak_resistance {
+            let has_one = |stage: &StageSummary| stage.peak_resistance.is_some();
+            let name = of_stage(summary, has_one, stage, "Peak resistance");
+            let value = quantity(peak, force(summary));
+            numbers.push(Number::new(name, value, mesh_error));
+        }
+        if let Some(settlement) = stage.settlement {
+            let has_one = |stage: &StageSummary| stage.settlement.is_some();
+            let name = of_stage(summary, has_one, stage, "Settlement");
+            let note = format!("of the footing, at the end of “{}”", stage.name);
+            numbers.push(Number::new(name, length(settlement), note));
+        }
+    }
+    numbers
+}
+
+/// The displacements of Newmark's sliding blocks.
+fn sliding_blocks(summary: &Summary) -> Vec<Number> {
+    let number = |stage: &StageSummary| {
+        let newmark = stage.newmark.as_ref()?;
+        let has_one = |stage: &StageSummary| stage.newmark.is_some();
+        let name = of_stage(summary, has_one, stage, "Newmark's sliding block");
+        let note = format!(
+            "k_c = {} of “{}”, ground at up to {}, in “{}”",
+            short(newmark.yield_coefficient),
+            newmark.from,
+            quantity(newmark.peak_acceleration, "m/s²"),
+            stage.name
+        );
+        Some(Number::new(name, length(newmark.displacement), note))
+    };
+    summary.stages.iter().filter_map(number).collect()
+}
+
+/// Pore pressures of the last stage that left water in the pores.
+fn pore_pressures(summary: &Summary) -> Vec<Number> {
+    let Some((stage, pores)) = last_pores(summary) else {
+        return Vec::new();
+    };
+    let note = format!(
+        "of any particle, compression positive, at the end of “{}”",
+        stage.name
+    );
+    let value = quantity(pores.largest, "Pa");
+    let mut numbers = vec![Number::new("Largest pore pressure", value, note.clone())];
+    if let Some([least, most]) = pores.excess {
+        let value = format!("{} to {}", quantity(least, "Pa"), quantity(most, "Pa"));
+        let value = value.replace('-', "−");
+        numbers.push(Number::new("Excess pore pressure", value, note));
     }
     numbers
 }

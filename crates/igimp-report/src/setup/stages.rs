@@ -46,13 +46,6 @@ pub(super) fn stages<const D: usize>(case: &Case<D>) -> SetupTable {
 }
 
 fn happens<const D: usize>(case: &Case<D>, stage: &Stage) -> String {
-    let materials = |which: &[usize]| {
-        let names: Vec<&str> = which
-            .iter()
-            .map(|&k| case.materials[k].name.as_str())
-            .collect();
-        names.join(", ")
-    };
     match &stage.kind {
         StageKind::Gravity {
             factor,
@@ -60,22 +53,8 @@ fn happens<const D: usize>(case: &Case<D>, stage: &Stage) -> String {
             across,
             vertical,
         } => {
-            let mut told = format!("gravity to {}", times(*factor, "value"));
-            let shares = [
-                (horizontal, "to the right"),
-                (across, "backwards"),
-                (vertical, "upwards"),
-            ];
-            for (share, whither) in shares {
-                if let Some(share) = share {
-                    let _ = write!(
-                        told,
-                        ", pseudo-static force of {} % of the weight {whither}",
-                        short(100.0 * share)
-                    );
-                }
-            }
-            told
+            let shares = [*horizontal, *across, *vertical];
+            gravity_in_words(*factor, shares)
         }
         StageKind::K0 => "stresses of level ground at rest (K₀), then equilibrium".to_owned(),
         StageKind::Load { loads, factor } => {
@@ -98,7 +77,7 @@ fn happens<const D: usize>(case: &Case<D>, stage: &Stage) -> String {
                 ReductionPath::Reduce => "step by step",
                 ReductionPath::Gravity => "with gravity raised anew",
             };
-            let strength = materials(&reduction.materials);
+            let strength = names(case, &reduction.materials);
             match reduction.search {
                 SearchMethod::Continuation => format!(
                     "search for the factor of safety along the path of equilibria, strength of {strength} reduced {path}"
@@ -111,28 +90,56 @@ fn happens<const D: usize>(case: &Case<D>, stage: &Stage) -> String {
         }
         StageKind::RunOut(run_out) => format!(
             "motion until rest, strength of {} divided by {}",
-            materials(&run_out.materials),
+            names(case, &run_out.materials),
             reduction_in_words(&run_out.reduction)
         ),
-        StageKind::Dynamic(dynamic) => {
-            let mut parts = vec![format!(
-                "motion over {} s, {}",
-                short(dynamic.duration),
-                match dynamic.scheme {
-                    TimeScheme::Newmark => "Newmark's method",
-                    TimeScheme::GeneralisedAlpha => "the generalised-α method",
-                    TimeScheme::BackwardEuler => "backward Euler",
-                }
-            )];
-            if let Some((which, reduction)) = &dynamic.reduction {
-                let by = reduction_in_words(reduction);
-                parts.push(format!("strength of {} divided by {by}", materials(which)));
-            }
-            parts.extend(ground_in_words(dynamic));
-            parts.extend(dynamic.bodies.iter().map(|own| moves_in_words(case, own)));
-            parts.join("; ")
+        StageKind::Dynamic(dynamic) => motion_in_words(case, dynamic),
+    }
+}
+
+/// Gravity to a multiple, with pseudo-static forces as shares of the weight to the right, backwards and upwards.
+fn gravity_in_words(factor: f64, shares: [Option<f64>; 3]) -> String {
+    let mut words = format!("gravity to {}", times(factor, "value"));
+    let ways = ["to the right", "backwards", "upwards"];
+    for (share, way) in std::iter::zip(shares, ways) {
+        if let Some(share) = share {
+            let _ = write!(
+                words,
+                ", pseudo-static force of {} % of the weight {way}",
+                short(100.0 * share)
+            );
         }
     }
+    words
+}
+
+/// Names of materials in a row.
+fn names<const D: usize>(case: &Case<D>, materials: &[usize]) -> String {
+    let names: Vec<&str> = (materials.iter())
+        .map(|&k| case.materials[k].name.as_str())
+        .collect();
+    names.join(", ")
+}
+
+/// Motion in time, in words.
+fn motion_in_words<const D: usize>(case: &Case<D>, dynamic: &Dynamic) -> String {
+    let scheme = match dynamic.scheme {
+        TimeScheme::Newmark => "Newmark's method",
+        TimeScheme::GeneralisedAlpha => "the generalised-α method",
+        TimeScheme::BackwardEuler => "backward Euler",
+    };
+    let mut parts = vec![format!(
+        "motion over {} s, {scheme}",
+        short(dynamic.duration)
+    )];
+    if let Some((materials, reduction)) = &dynamic.reduction {
+        let by = reduction_in_words(reduction);
+        let strength = names(case, materials);
+        parts.push(format!("strength of {strength} divided by {by}"));
+    }
+    parts.extend(ground_in_words(dynamic));
+    parts.extend(dynamic.bodies.iter().map(|own| moves_in_words(case, own)));
+    parts.join("; ")
 }
 
 /// The time in which water flows, in words.

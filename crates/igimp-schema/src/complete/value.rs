@@ -14,93 +14,37 @@ pub(crate) fn check_value(
     kind: &'static Kind,
     key: &str,
 ) -> Node {
-    let fine = |value| Node { value, ..*node };
-    match (kind, &node.value) {
+    let checked = match (kind, &node.value) {
         (Kind::Text | Kind::Reference(_), Value::Text(_)) | (Kind::Flag, Value::Flag(_)) => {
-            node.clone()
+            Some(node.clone())
         }
         (Kind::Name, Value::Text(text)) => {
-            if check_name(text, node.place, completer.problems) {
-                node.clone()
-            } else {
-                Node::invalid(node.place)
-            }
+            check_name(text, node.place, completer.problems).then(|| node.clone())
         }
         (Kind::Integer(least, most), Value::Integer(value)) => {
-            if (*least..=*most).contains(value) {
-                return node.clone();
-            }
-            let message = if *most == i64::MAX || value < least {
-                format!("`{key}` must be at least {least}, but is {value}")
-            } else {
-                format!("`{key}` must be at most {most}, but is {value}")
-            };
-            completer.problems.error(node.place, message);
-            Node::invalid(node.place)
+            integer_between(completer, node, *value, [*least, *most], key)
         }
         (Kind::IntegerOf(choices), Value::Integer(value)) => {
-            if choices.contains(value) {
-                return node.clone();
-            }
-            let names: Vec<_> = choices.iter().map(ToString::to_string).collect();
-            completer
-                .problems
-                .error(node.place, format!("`{value}` is not a choice for `{key}`"))
-                .help(format!(
-                    "choices: {}",
-                    row(names.iter().map(String::as_str))
-                ));
-            Node::invalid(node.place)
+            integer_of(completer, node, *value, choices, key)
         }
         (Kind::Integer(..) | Kind::IntegerOf(_), Value::Number(_)) => {
-            let text = completer.slice(node.place);
-            completer
-                .problems
-                .error(node.place, format!("`{text}` is not a whole number"));
-            Node::invalid(node.place)
+            let message = format!("`{}` is not a whole number", completer.slice(node.place));
+            completer.problems.error(node.place, message);
+            None
         }
         (Kind::Number(range), Value::Integer(_) | Value::Number(_)) => {
-            let value = node.number().unwrap_or(f64::NAN);
-            in_range(completer, node, value, *range, key).map_or_else(
-                || Node::invalid(node.place),
-                |value| match node.value {
-                    Value::Integer(_) => node.clone(),
-                    _ => fine(Value::Number(value)),
-                },
-            )
+            plain_number(completer, node, *range, key)
         }
         (Kind::AnyQuantity, Value::Integer(_) | Value::Number(_)) => {
-            let value = node.number().unwrap_or(f64::NAN);
-            in_range(completer, node, value, Range::Any, key)
-                .map_or_else(|| Node::invalid(node.place), |_| node.clone())
+            plain_number(completer, node, Range::Any, key)
         }
         (Kind::Quantity(dimension, range), Value::Text(text)) => {
-            match Quantity::parse_as(text, *dimension) {
-                Ok(value) => in_range(completer, node, value, *range, key).map_or_else(
-                    || Node::invalid(node.place),
-                    |value| fine(Value::Quantity(value, text.clone())),
-                ),
-                Err(error) => refuse(completer, node, &error, Some(*dimension)),
-            }
+            quantity(completer, (node, text), *dimension, *range, key)
         }
-        (Kind::AnyQuantity, Value::Text(text)) => match Quantity::parse(text) {
-            Ok(quantity) if quantity.dimension.is_some() => {
-                fine(Value::Quantity(quantity.value, text.clone()))
-            }
-            Ok(_) => {
-                let message = format!("`{}` has no unit", clip(text, 40));
-                completer
-                    .problems
-                    .error(node.place, message)
-                    .help("write a plain number without quotes, or add a unit, like \"25 kPa\"");
-                Node::invalid(node.place)
-            }
-            Err(error) => refuse(completer, node, &error, None),
-        },
+        (Kind::AnyQuantity, Value::Text(text)) => any_quantity(completer, node, text),
         (Kind::Quantity(dimension, _), Value::Integer(_) | Value::Number(_)) => {
-            let error = QuantityError::NoUnit {
-                text: completer.slice(node.place),
-            };
+            let text = completer.slice(node.place);
+            let error = QuantityError::NoUnit { text };
             refuse(completer, node, &error, Some(*dimension))
         }
         (Kind::Choice(choices), Value::Text(text)) => {
@@ -109,9 +53,100 @@ pub(crate) fn check_value(
             }
             let names = choices.iter().map(|choice| choice.name).collect();
             completer.unknown_choice(node, text, key, names);
-            Node::invalid(node.place)
+            None
         }
-        _ => completer.wrong_type(node, kind, key),
+        _ => return completer.wrong_type(node, kind, key),
+    };
+    checked.unwrap_or_else(|| Node::invalid(node.place))
+}
+
+/// A whole number between two bounds.
+fn integer_between(
+    completer: &mut Completer<'_>,
+    node: &Node,
+    value: i64,
+    [least, most]: [i64; 2],
+    key: &str,
+) -> Option<Node> {
+    if (least..=most).contains(&value) {
+        return Some(node.clone());
+    }
+    let message = if most == i64::MAX || value < least {
+        format!("`{key}` must be at least {least}, but is {value}")
+    } else {
+        format!("`{key}` must be at most {most}, but is {value}")
+    };
+    completer.problems.error(node.place, message);
+    None
+}
+
+/// A whole number that is one of several.
+fn integer_of(
+    completer: &mut Completer<'_>,
+    node: &Node,
+    value: i64,
+    choices: &[i64],
+    key: &str,
+) -> Option<Node> {
+    if choices.contains(&value) {
+        return Some(node.clone());
+    }
+    let names: Vec<_> = choices.iter().map(ToString::to_string).collect();
+    completer
+        .problems
+        .error(node.place, format!("`{value}` is not a choice for `{key}`"))
+        .help(format!(
+            "choices: {}",
+            row(names.iter().map(String::as_str))
+        ));
+    None
+}
+
+/// A number without a unit.
+fn plain_number(
+    completer: &mut Completer<'_>,
+    node: &Node,
+    range: Range,
+    key: &str,
+) -> Option<Node> {
+    let value = node.number().unwrap_or(f64::NAN);
+    in_range(completer, node, value, range, key).map(|_| node.clone())
+}
+
+/// A number with a unit of a dimension.
+fn quantity(
+    completer: &mut Completer<'_>,
+    (node, text): (&Node, &str),
+    dimension: Dimension,
+    range: Range,
+    key: &str,
+) -> Option<Node> {
+    match Quantity::parse_as(text, dimension) {
+        Ok(value) => {
+            let value = in_range(completer, node, value, range, key)?;
+            let value = Value::Quantity(value, text.to_owned());
+            Some(Node { value, ..*node })
+        }
+        Err(error) => refuse(completer, node, &error, Some(dimension)),
+    }
+}
+
+/// A number with a unit of any dimension.
+fn any_quantity(completer: &mut Completer<'_>, node: &Node, text: &str) -> Option<Node> {
+    match Quantity::parse(text) {
+        Ok(quantity) if quantity.dimension.is_some() => {
+            let value = Value::Quantity(quantity.value, text.to_owned());
+            Some(Node { value, ..*node })
+        }
+        Ok(_) => {
+            let message = format!("`{}` has no unit", clip(text, 40));
+            completer
+                .problems
+                .error(node.place, message)
+                .help("write a plain number without quotes, or add a unit, like \"25 kPa\"");
+            None
+        }
+        Err(error) => refuse(completer, node, &error, None),
     }
 }
 
@@ -145,10 +180,10 @@ fn refuse(
     node: &Node,
     error: &QuantityError,
     dimension: Option<Dimension>,
-) -> Node {
+) -> Option<Node> {
     completer
         .problems
         .error(node.place, error.to_string())
         .help(error.help(dimension));
-    Node::invalid(node.place)
+    None
 }

@@ -26,95 +26,115 @@ pub(super) fn strength(
         Kinematics::Finite => (-end.volumetric_strain()).exp(),
         Kinematics::Small => 1.0,
     };
-    let form = |value: f64, from| Some(ClosedForm { value, from });
-    let is_triaxial = matches!(
-        test,
-        StandardTest::TriaxialDrained | StandardTest::TriaxialUndrained
-    );
     let effects = material.softening.unwrap_or_default();
     if effects.goes_with_strain() {
         // What it ends on depends on how far it was sheared, and how fast.
         return None;
     }
-    // The test drives compression along the axis, or shear.
-    let in_shear = (effects.directions).map_or(1.0, |own| own.simple_shear);
-    match (material.strength, test) {
-        (_, StandardTest::Oedometer) => None,
-        (Strength::Tresca { undrained_strength }, _) if is_triaxial => {
-            form(2.0 * undrained_strength / volume, "2 c_u")
+    let (value, from) = match test {
+        StandardTest::TriaxialDrained => {
+            triaxial_drained(material.strength, request.stress[1], volume)
         }
-        (Strength::VonMises { undrained_strength }, _) if is_triaxial => {
-            form(3.0_f64.sqrt() * undrained_strength / volume, "√3 c_u")
+        StandardTest::TriaxialUndrained => {
+            triaxial_undrained(material.strength, request.stress, volume)
         }
-        (
-            Strength::Tresca { undrained_strength } | Strength::VonMises { undrained_strength },
-            StandardTest::SimpleShearDrained | StandardTest::SimpleShearUndrained,
-        ) => form(
-            in_shear * undrained_strength / volume,
-            "c_u of simple shear",
-        ),
-        (
-            Strength::MohrCoulomb {
-                cohesion,
-                friction_angle,
-                flow: Flow::Dilation,
-                ..
-            }
-            | Strength::DruckerPrager {
-                cohesion,
-                friction_angle,
-                cone: Cone::Compression,
-                ..
-            },
-            StandardTest::TriaxialDrained,
-        ) => form(
-            passive(request.stress[1], cohesion / volume, friction_angle),
+        StandardTest::SimpleShearDrained | StandardTest::SimpleShearUndrained => {
+            let share = (effects.directions).map_or(1.0, |own| own.simple_shear);
+            simple_shear(material.strength, share, volume)
+        }
+        StandardTest::Oedometer
+        | StandardTest::PlaneStrainDrained
+        | StandardTest::PlaneStrainUndrained => None,
+    }?;
+    Some(ClosedForm { value, from })
+}
+
+/// q of undrained strength, which is that of compression along the axis.
+fn undrained_compression(strength: Strength, volume: f64) -> Option<(f64, &'static str)> {
+    match strength {
+        Strength::Tresca { undrained_strength } => {
+            Some((2.0 * undrained_strength / volume, "2 c_u"))
+        }
+        Strength::VonMises { undrained_strength } => {
+            Some((3.0_f64.sqrt() * undrained_strength / volume, "√3 c_u"))
+        }
+        _ => None,
+    }
+}
+
+/// q under a constant stress at the sides \[Pa\].
+fn triaxial_drained(strength: Strength, side: f64, volume: f64) -> Option<(f64, &'static str)> {
+    match strength {
+        Strength::MohrCoulomb {
+            cohesion,
+            friction_angle,
+            flow: Flow::Dilation,
+            ..
+        }
+        | Strength::DruckerPrager {
+            cohesion,
+            friction_angle,
+            cone: Cone::Compression,
+            ..
+        } => Some((passive(side, cohesion / volume, friction_angle), PASSIVE)),
+        Strength::HardeningSoil(own) => Some((
+            passive(side, own.cohesion / volume, own.friction_angle),
             PASSIVE,
-        ),
-        (Strength::HardeningSoil(own), StandardTest::TriaxialDrained) => form(
-            passive(request.stress[1], own.cohesion / volume, own.friction_angle),
-            PASSIVE,
-        ),
-        (
-            Strength::MohrCoulomb {
-                cohesion,
-                friction_angle,
-                dilation_angle: 0.0,
-                flow: Flow::Dilation,
-                ..
-            }
-            | Strength::DruckerPrager {
-                cohesion,
-                friction_angle,
-                dilation_angle: 0.0,
-                cone: Cone::Compression,
-            },
-            StandardTest::TriaxialUndrained,
-        ) => {
-            let [axial, side] = request.stress;
+        )),
+        Strength::HoekBrown(own) => {
+            let (sci, side) = (own.intact_strength, side * volume);
+            let base = own.ratio() * side / sci + own.cohesive_share();
+            let value = sci * base.powf(own.exponent()) / volume;
+            Some((value, "σ_ci (m_b σ_3/σ_ci + s)^a"))
+        }
+        Strength::ModifiedCamClay(own) => Some((
+            3.0 * own.critical_ratio * side / (3.0 - own.critical_ratio),
+            "M p with p = 3 σ_3/(3 - M)",
+        )),
+        _ => undrained_compression(strength, volume),
+    }
+}
+
+/// q at constant volume from a stress along the axis and at the sides \[Pa\].
+fn triaxial_undrained(
+    strength: Strength,
+    stress: [f64; 2],
+    volume: f64,
+) -> Option<(f64, &'static str)> {
+    match strength {
+        Strength::MohrCoulomb {
+            cohesion,
+            friction_angle,
+            dilation_angle: 0.0,
+            flow: Flow::Dilation,
+            ..
+        }
+        | Strength::DruckerPrager {
+            cohesion,
+            friction_angle,
+            dilation_angle: 0.0,
+            cone: Cone::Compression,
+        } => {
+            let [axial, side] = stress;
             let (sin, cos) = friction_angle.sin_cos();
             let p = (axial + 2.0 * side) / 3.0;
-            form(
-                6.0 * (p * sin + cohesion * cos) / (3.0 - sin),
-                "constant p, ψ = 0",
-            )
+            let value = 6.0 * (p * sin + cohesion * cos) / (3.0 - sin);
+            Some((value, "constant p, ψ = 0"))
         }
-        (Strength::HoekBrown(own), StandardTest::TriaxialDrained) => {
-            let (sci, side) = (own.intact_strength, request.stress[1] * volume);
-            let base = own.ratio() * side / sci + own.cohesive_share();
-            form(
-                sci * base.powf(own.exponent()) / volume,
-                "σ_ci (m_b σ_3/σ_ci + s)^a",
-            )
-        }
-        (Strength::ModifiedCamClay(own), StandardTest::TriaxialDrained) => form(
-            3.0 * own.critical_ratio * request.stress[1] / (3.0 - own.critical_ratio),
-            "M p with p = 3 σ_3/(3 - M)",
-        ),
-        (Strength::ModifiedCamClay(own), StandardTest::TriaxialUndrained) => form(
-            own.critical_ratio * undrained_pressure(&own, request.stress),
+        Strength::ModifiedCamClay(own) => Some((
+            own.critical_ratio * undrained_pressure(&own, stress),
             "M p at constant volume",
-        ),
+        )),
+        _ => undrained_compression(strength, volume),
+    }
+}
+
+/// τ_xy of undrained strength, of which simple shear has a share \[-\].
+fn simple_shear(strength: Strength, share: f64, volume: f64) -> Option<(f64, &'static str)> {
+    match strength {
+        Strength::Tresca { undrained_strength } | Strength::VonMises { undrained_strength } => {
+            Some((share * undrained_strength / volume, "c_u of simple shear"))
+        }
         _ => None,
     }
 }

@@ -352,6 +352,35 @@ mod tests {
         "#);
     }
 
+    /// One particle, at rest.
+    fn state() -> State<2> {
+        let seed = ParticleSeed {
+            x: [0.5; 2],
+            half_length: [0.25; 2],
+            volume: 0.25,
+            density: 0.0,
+            law: 0,
+            centroid: [0.0; _],
+        };
+        State {
+            body: Body::new(Particles::new(&[seed]).unwrap()),
+            controls: Controls {
+                gravity: 1.0,
+                acceleration: [0.0; 3],
+                factors: Vec::new(),
+                settlement: 0.0,
+                srf: Vec::new(),
+                rigid: Vec::new(),
+                reinforcement: Vec::new(),
+                water: None,
+                drained: false,
+                flow_step: 0.0,
+                time: 0.0,
+                walls: Vec::new(),
+            },
+        }
+    }
+
     #[test]
     fn a_search_is_its_trials() {
         let mut lines = Lines::default();
@@ -380,31 +409,7 @@ mod tests {
             }),
             ..StageSummary::default()
         };
-        let seed = ParticleSeed {
-            x: [0.5; 2],
-            half_length: [0.25; 2],
-            volume: 0.25,
-            density: 0.0,
-            law: 0,
-            centroid: [0.0; _],
-        };
-        let state = State {
-            body: Body::new(Particles::new(&[seed]).unwrap()),
-            controls: Controls {
-                gravity: 1.0,
-                acceleration: [0.0; 3],
-                factors: Vec::new(),
-                settlement: 0.0,
-                srf: Vec::new(),
-                rigid: Vec::new(),
-                reinforcement: Vec::new(),
-                water: None,
-                drained: false,
-                flow_step: 0.0,
-                time: 0.0,
-                walls: Vec::new(),
-            },
-        };
+        let state = state();
         let events = [
             start(SEARCH),
             Event::Step {

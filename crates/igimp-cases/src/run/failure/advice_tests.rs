@@ -10,9 +10,8 @@ use igimp_model::{
 
 use super::*;
 
-/// A slope of Mohr–Coulomb soil on elastic rock.
-fn case(kind: StageKind) -> Case<2> {
-    let material = |name: &str, strength| Material {
+fn material(name: &str, strength: Strength) -> Material {
+    Material {
         name: name.into(),
         unit_weight: 20e3,
         young: 20e6,
@@ -26,8 +25,11 @@ fn case(kind: StageKind) -> Case<2> {
         saturated: None,
         drainage: igimp_model::Drainage::Drained,
         given: None,
-    };
-    let body = |name: &str, material, lower, upper| BodyPart {
+    }
+}
+
+fn level_body(name: &str, material: usize, [lower, upper]: [f64; 2]) -> BodyPart<2> {
+    BodyPart {
         name: name.into(),
         material,
         per_direction: 2,
@@ -38,6 +40,32 @@ fn case(kind: StageKind) -> Case<2> {
             [20.0, upper],
             [0.0, upper],
         ]),
+    }
+}
+
+fn stage(kind: StageKind) -> Stage {
+    Stage {
+        name: "first".into(),
+        kind,
+        steps: 200,
+        geometry: Geometry::Moving,
+        start_from: None,
+        reset_displacements: false,
+        install: Vec::new(),
+        stop_when: StopWhen::default(),
+        drained: false,
+        consolidation: None,
+    }
+}
+
+/// Mohr–Coulomb soil on elastic rock.
+fn case(kind: StageKind) -> Case<2> {
+    let clay = Strength::MohrCoulomb {
+        cohesion: 10e3,
+        friction_angle: 20_f64.to_radians(),
+        dilation_angle: 0.0,
+        flow: igimp_model::Flow::Dilation,
+        tension_cutoff: Some(0.0),
     };
     Case {
         title: String::new(),
@@ -47,20 +75,11 @@ fn case(kind: StageKind) -> Case<2> {
         water: Vec::new(),
         grid: GridSpec::equal([0.0, 0.0], [0.5, 0.5], [40, 40]),
         method: Method::default(),
-        materials: vec![
-            material(
-                "clay",
-                Strength::MohrCoulomb {
-                    cohesion: 10e3,
-                    friction_angle: 20_f64.to_radians(),
-                    dilation_angle: 0.0,
-                    flow: igimp_model::Flow::Dilation,
-                    tension_cutoff: Some(0.0),
-                },
-            ),
-            material("rock", Strength::Elastic),
+        materials: vec![material("clay", clay), material("rock", Strength::Elastic)],
+        bodies: vec![
+            level_body("rock", 1, [0.0, 2.0]),
+            level_body("soil", 0, [2.0, 10.0]),
         ],
-        bodies: vec![body("rock", 1, 0.0, 2.0), body("soil", 0, 2.0, 10.0)],
         boundaries: Boundaries {
             sides: [[Side::Free; 2], [Side::Fixed, Side::Free]],
             ..Boundaries::default()
@@ -68,18 +87,7 @@ fn case(kind: StageKind) -> Case<2> {
         loads: Vec::new(),
         rigid: Vec::new(),
         reinforcement: Vec::new(),
-        stages: vec![Stage {
-            name: "first".into(),
-            kind,
-            steps: 200,
-            geometry: Geometry::Moving,
-            start_from: None,
-            reset_displacements: false,
-            install: Vec::new(),
-            stop_when: StopWhen::default(),
-            drained: false,
-            consolidation: None,
-        }],
+        stages: vec![stage(kind)],
         solver: SolverSettings::default(),
         given_solver: None,
         monitors: Vec::new(),

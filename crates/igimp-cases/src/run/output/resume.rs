@@ -1,16 +1,17 @@
 //! How a run is taken up again from its results folder.
 
 use std::collections::HashMap;
+use std::path::Path;
 use std::sync::Arc;
 
 use igimp_model::Case;
 use igimp_results::ResultsError;
 use igimp_results::atomic::write_whole;
-use igimp_results::checkpoint::{self, CheckpointError};
+use igimp_results::checkpoint::{self, Checkpoint, CheckpointError};
 use igimp_results::folder::provenance::Claim;
 use igimp_results::folder::{self, Folder};
 use igimp_results::tables::rows;
-use igimp_solver::Body;
+use igimp_solver::{Body, FreeField};
 
 use super::{BEFORE, Output, csv, difference};
 use crate::error::CaseError;
@@ -93,62 +94,26 @@ impl<const D: usize> Output<D> {
         claim: Claim,
         case: &Case<D>,
         records: &mut Records,
-        found: &checkpoint::Checkpoint<D>,
+        found: &Checkpoint<D>,
     ) -> Result<(Self, Option<ResumePoint<D>>), CaseError> {
         let path = folder.checkpoint();
         let notes: Notes = notes_of(&path, &found.meta)?;
-        let damaged = |file: String, why: String| CheckpointError::Damaged {
-            path: path.clone(),
-            file,
-            why,
+        let saved = SavedStates {
+            case,
+            path: &path,
+            notes: &notes,
+            found,
+            laws: records.law_count(),
         };
-        let laws = records.law_count();
-        let body = |name: &str, controls: &Controls| -> Result<Body<D>, CaseError> {
-            let states = &mut found.states.iter();
-            let own = states.find(|(state, _)| state == name);
-            let missing = || damaged(name.to_owned(), "the state is missing".to_owned());
-            let mut body = own.map(|(_, body)| body.clone()).ok_or_else(missing)?;
-            let saved = notes.rigid.get(name).map_or(&[][..], Vec::as_slice);
-            body.rigid = rigid::taken_up(case, laws, controls, saved)?
-                .map_err(|why| damaged("meta.json".to_owned(), why))?;
-            let saved = notes.reinforcement.get(name).map_or(&[][..], Vec::as_slice);
-            body.reinforcement = reinforcement::taken_up(case, controls, saved)
-                .map_err(|why| damaged("meta.json".to_owned(), why))?;
-            Ok(body)
-        };
-        let mut current = body("current", &notes.controls)?;
-        current.free_fields = free_field::taken_up(&notes.free_fields, &found.states)
-            .map_err(|why| damaged("meta.json".to_owned(), why))?;
+        let mut current = saved.body("current", &notes.controls)?;
+        current.free_fields = saved.free_fields()?;
         for (name, body) in &found.states {
-            unfit(case, records, body).map_or(Ok(()), |(array, why)| {
-                Err(damaged(format!("{name}/{array}.npy"), why))
-            })?;
+            saved.fits(records, name, body)?;
         }
         if let Some(why) = notes.resumption.as_ref().and_then(impossible_march) {
-            return Err(damaged("meta.json".to_owned(), why).into());
+            return Err(saved.damaged(META, why).into());
         }
-        let with_body = |name: &str, before: &str, of: &Option<(f64, Controls)>| match of {
-            Some((srf, controls)) => {
-                let controls = controls.clone();
-                let before = body(before, &controls).ok().map(Arc::new);
-                body(name, &controls).map(|body| {
-                    Some(End {
-                        srf: *srf,
-                        state: State { body, controls },
-                        before,
-                    })
-                })
-            }
-            None => Ok(None),
-        };
-        let search = match &notes.trials {
-            Some(trials) => Some(Search {
-                trials: trials.clone(),
-                stable: with_body("stable", BEFORE[0], &notes.stable)?,
-                failed: with_body("failed", BEFORE[1], &notes.failed)?,
-            }),
-            None => None,
-        };
+        let search = saved.search()?;
         let left = ResumePoint {
             stages: notes.stages.clone(),
             checks: notes.checks.clone(),
@@ -212,32 +177,99 @@ impl<const D: usize> Output<D> {
             };
             let found = checkpoint::read::<D>(&path, None)?;
             let notes = notes_of(&path, &found.meta)?;
-            let mut states = found.states.into_iter();
-            if let Some((name, mut body)) = states.next() {
-                if let Some((array, why)) = unfit(case, records, &body) {
-                    let file = format!("{name}/{array}.npy");
-                    return Err(CheckpointError::Damaged { path, file, why }.into());
-                }
-                let controls = notes.controls;
-                let saved = notes.rigid.get(&name).map_or(&[][..], Vec::as_slice);
-                let laws = records.law_count();
-                let damaged = |why| CheckpointError::Damaged {
-                    path: path.clone(),
-                    file: "meta.json".to_owned(),
-                    why,
-                };
-                body.rigid = rigid::taken_up(case, laws, &controls, saved)?.map_err(damaged)?;
-                let saved = notes.reinforcement.get(&name);
-                let saved = saved.map_or(&[][..], Vec::as_slice);
-                body.reinforcement =
-                    reinforcement::taken_up(case, &controls, saved).map_err(damaged)?;
-                let columns: Vec<_> = states.collect();
-                body.free_fields =
-                    free_field::taken_up(&notes.free_fields, &columns).map_err(damaged)?;
+            let saved = SavedStates {
+                case,
+                path: &path,
+                notes: &notes,
+                found: &found,
+                laws: records.law_count(),
+            };
+            if let Some((name, body)) = found.states.first() {
+                saved.fits(records, name, body)?;
+                let mut body = saved.body(name, &notes.controls)?;
+                body.free_fields = saved.free_fields()?;
+                let controls = notes.controls.clone();
                 ends.insert(number, State { body, controls });
             }
         }
         Ok(ends)
+    }
+}
+
+/// The file of a checkpoint with its notes.
+const META: &str = "meta.json";
+
+/// The states of a checkpoint, to be given the structures of their case.
+struct SavedStates<'f, const D: usize> {
+    case: &'f Case<D>,
+    path: &'f Path,
+    notes: &'f Notes,
+    found: &'f Checkpoint<D>,
+    laws: usize,
+}
+
+impl<const D: usize> SavedStates<'_, D> {
+    fn damaged(&self, file: impl Into<String>, why: String) -> CheckpointError {
+        CheckpointError::Damaged {
+            path: self.path.to_owned(),
+            file: file.into(),
+            why,
+        }
+    }
+
+    /// A state with the structures that its controls have, without what moves beside its walls.
+    fn body(&self, name: &str, controls: &Controls) -> Result<Body<D>, CaseError> {
+        let own = self.found.states.iter().find(|(state, _)| state == name);
+        let missing = || self.damaged(name, "the state is missing".to_owned());
+        let mut body = own.map(|(_, body)| body.clone()).ok_or_else(missing)?;
+        let in_notes = |why| self.damaged(META, why);
+        let saved = self.notes.rigid.get(name).map_or(&[][..], Vec::as_slice);
+        body.rigid = rigid::taken_up(self.case, self.laws, controls, saved)?.map_err(in_notes)?;
+        let saved = self.notes.reinforcement.get(name);
+        let saved = saved.map_or(&[][..], Vec::as_slice);
+        body.reinforcement =
+            reinforcement::taken_up(self.case, controls, saved).map_err(in_notes)?;
+        Ok(body)
+    }
+
+    /// What moves in free field beside the walls.
+    fn free_fields(&self) -> Result<Vec<FreeField<D>>, CheckpointError> {
+        free_field::taken_up(&self.notes.free_fields, &self.found.states)
+            .map_err(|why| self.damaged(META, why))
+    }
+
+    /// Refuses a state that names what the case does not have.
+    fn fits(&self, records: &Records, name: &str, body: &Body<D>) -> Result<(), CheckpointError> {
+        match unfit(self.case, records, body) {
+            Some((array, why)) => Err(self.damaged(format!("{name}/{array}.npy"), why)),
+            None => Ok(()),
+        }
+    }
+
+    /// The search for a factor of safety that was under way.
+    fn search(&self) -> Result<Option<Search<D>>, CaseError> {
+        let end = |name: &str, before: &str, of: &Option<(f64, Controls)>| match of {
+            Some((srf, controls)) => {
+                let controls = controls.clone();
+                let before = self.body(before, &controls).ok().map(Arc::new);
+                let body = self.body(name, &controls)?;
+                let state = State { body, controls };
+                Ok::<_, CaseError>(Some(End {
+                    srf: *srf,
+                    state,
+                    before,
+                }))
+            }
+            None => Ok(None),
+        };
+        let Some(trials) = &self.notes.trials else {
+            return Ok(None);
+        };
+        Ok(Some(Search {
+            trials: trials.clone(),
+            stable: end("stable", BEFORE[0], &self.notes.stable)?,
+            failed: end("failed", BEFORE[1], &self.notes.failed)?,
+        }))
     }
 }
 

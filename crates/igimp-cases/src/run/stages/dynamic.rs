@@ -4,8 +4,8 @@
 //! are chosen by the error of the time integration and by the way of the soil, and land on equal parts of the duration, as
 //! many as the stage has steps. No factor of safety follows from motion.
 
-use igimp_assembly::{Remedy, SmallCuts};
-use igimp_model::{Case, Dynamic, StageKind};
+use igimp_assembly::{Method, Remedy, SmallCuts};
+use igimp_model::{Case, Dynamic, Stage, StageKind};
 use igimp_results::ending::EndReason;
 use igimp_results::summary::{NewmarkSummary, StageSummary};
 use igimp_solver::{MarchSettings, Pace};
@@ -51,31 +51,16 @@ pub(crate) fn dynamic<const D: usize>(
             session.warn(text);
         }
     }
-    let mut method = flowing(model);
-    method.geometry = stage.geometry;
-    method.small_cuts = SmallCuts {
-        below: dynamic.tied_below,
-        remedy: Remedy::Extrapolate,
-        ..method.small_cuts
-    };
+    let method = method(model, dynamic, stage);
     if resumption.is_none() {
         let walls = walls::begin(model, state, &method, dynamic)?;
         state.body.free_fields = walls::free_fields(model, state, &method, dynamic)?;
         state.controls.walls = walls;
     }
-    let mut from = resumption.map_or_else(|| state.controls.clone(), |left| left.from.clone());
-    if let Some((materials, reduction)) = &dynamic.reduction {
-        let Some(factor) = divisor(session, reduction) else {
-            return Ok(StageEnd::Stopped(EndReason::NoFactorOfSafety));
-        };
-        for &material in materials {
-            from.srf[material] = factor;
-        }
-    }
-    if stage.start_from.is_none() {
-        // What begins with motion falls from the first moment on.
-        from.gravity = 1.0;
-    }
+    let start = resumption.map_or(&state.controls, |left| &left.from);
+    let Some(mut from) = first_controls(session, start, dynamic, stage) else {
+        return Ok(StageEnd::Stopped(EndReason::NoFactorOfSafety));
+    };
     let mut to = target(model.case, stage, &from);
     to.time += dynamic.duration;
     // Forces on rigid bodies act from the first moment on, and what holds them no longer lets go at once.
@@ -88,20 +73,15 @@ pub(crate) fn dynamic<const D: usize>(
     let on_ground = |before: &Controls, after: &Controls, conditions| {
         walls::shaken(model, dynamic, (from.time, before, after), conditions)
     };
+    let settings = pace(model, state, dynamic, stage.steps)?;
     let path = StagePath {
-        from: &from,
-        to: &to,
-        drag: &|_, _| 0.0,
         time: Some(TimeIntegration {
             scheme: dynamic.scheme,
             lumped: dynamic.lumped_share,
             on_ground: &on_ground,
         }),
-        flow: None,
-        method,
-        settings: pace(model, state, dynamic, stage.steps)?,
-        held: None,
         left: resumption,
+        ..StagePath::of_equilibria((&from, &to), method, settings)
     };
     let ended = march_path(
         session,
@@ -138,6 +118,41 @@ pub(crate) fn dynamic<const D: usize>(
         StageEnd::Stopped(reason @ EndReason::CameToRest { .. }) => StageEnd::Completed(reason),
         other => other,
     })
+}
+
+/// The controls that motion begins with; none where the factor of safety that the strength refers to was not found.
+fn first_controls<const D: usize>(
+    session: &Session<'_, D>,
+    start: &Controls,
+    dynamic: &Dynamic,
+    stage: &Stage,
+) -> Option<Controls> {
+    let mut from = start.clone();
+    if let Some((materials, reduction)) = &dynamic.reduction {
+        let factor = divisor(session, reduction)?;
+        for &material in materials {
+            from.srf[material] = factor;
+        }
+    }
+    if stage.start_from.is_none() {
+        // What begins with motion falls from the first moment on.
+        from.gravity = 1.0;
+    }
+    Some(from)
+}
+
+/// The method of a stage of motion, with small cuts tied as the stage says.
+fn method<const D: usize>(model: &Model<'_, D>, dynamic: &Dynamic, stage: &Stage) -> Method {
+    let method = flowing(model);
+    Method {
+        geometry: stage.geometry,
+        small_cuts: SmallCuts {
+            below: dynamic.tied_below,
+            remedy: Remedy::Extrapolate,
+            ..method.small_cuts
+        },
+        ..method
+    }
 }
 
 /// What a sliding block does by the motion of the ground, if the stage asks for it: by the yield acceleration at the limit of the

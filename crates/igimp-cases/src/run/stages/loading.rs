@@ -100,24 +100,15 @@ pub(crate) fn release<const D: usize>(
     if resumption.is_none() {
         begin(session, state, number)?;
     }
+    let mut settings = model.march_settings(stage.steps);
+    if let Some(own) = consolidation {
+        settings = flow::steps(model.case, own, settings, model.smallest_side()?);
+    }
     let path = StagePath {
-        from: &from,
-        to: &to,
-        drag: &|_, _| 0.0,
-        time: None,
         flow: consolidation,
-        method: model.method(stage.geometry),
-        settings: match consolidation {
-            Some(own) => flow::steps(
-                model.case,
-                own,
-                model.march_settings(stage.steps),
-                model.smallest_side()?,
-            ),
-            None => model.march_settings(stage.steps),
-        },
         held,
         left: resumption,
+        ..StagePath::of_equilibria((&from, &to), model.method(stage.geometry), settings)
     };
     let ended = march_path(
         session,

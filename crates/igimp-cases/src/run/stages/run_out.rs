@@ -55,16 +55,11 @@ pub(crate) fn run_out<const D: usize>(
     let largest = case.gravity / target;
     let nodes = model.grid(model.lowered(&to))?.node_count();
     let drag = Cell::new(resumption.map_or(largest, |left| left.drag));
+    let settings = model.march_settings(steps);
     let path = StagePath {
-        from: &to,
-        to: &to,
         drag: &|from, to| drag.get() / ((to - from) * steps as f64),
-        time: None,
-        flow: None,
-        method: flowing(session.model),
-        settings: session.model.march_settings(steps),
-        held: None,
         left: resumption,
+        ..StagePath::of_equilibria((&to, &to), flowing(model), settings)
     };
     let ended = march_path(
         session,
@@ -159,17 +154,9 @@ fn stand<const D: usize>(
         drag_share,
         is_in_equilibrium: Some(is_in_equilibrium),
     };
-    let last = StagePath {
-        drag: &|_, _| 0.0,
-        time: None,
-        flow: None,
-        method: flowing(session.model),
-        settings: session.model.march_settings(1),
-        held: None,
-        left: None,
-        ..*path
-    };
     let model = session.model;
+    let controls = (path.from, path.to);
+    let last = StagePath::of_equilibria(controls, flowing(model), model.march_settings(1));
     let ended = march_path(
         session,
         state,

@@ -215,17 +215,8 @@ impl<'a, const D: usize> Trials<'a, D> {
         let (mut state, from, mut before) = self.start(srf);
         let to = self.end(srf);
         let settings = self.settings(session.model, &from, srf);
-        let path = StagePath {
-            from: &from,
-            to: &to,
-            drag: &|_, _| 0.0,
-            time: None,
-            flow: None,
-            method: session.model.method(self.stage.geometry),
-            settings,
-            held: None,
-            left: None,
-        };
+        let method = session.model.method(self.stage.geometry);
+        let path = StagePath::of_equilibria((&from, &to), method, settings);
         let effort = [summary.steps, summary.iterations, summary.cuts];
         let reduction = self.reduction;
         let limit = self.limit;
@@ -269,25 +260,9 @@ impl<'a, const D: usize> Trials<'a, D> {
             }
             _ => {}
         }
-        // A reduction fails at the factor that it reached by the criterion, or at the smallest one at
-        // which it found no equilibrium.
-        let begun = from.srf[reduction.materials[0]];
-        let srf = match (&ended, reduction.path) {
-            (StageEnd::Stopped(_), ReductionPath::Reduce) => {
-                state.controls.srf[reduction.materials[0]]
-            }
-            (StageEnd::NotConverged(cause), ReductionPath::Reduce) => {
-                begun + cause.to * (srf - begun)
-            }
-            _ => srf,
-        };
+        let srf = self.reached(&ended, &from, &state.controls, srf);
         let displacement = session.displacement(reduction.monitor, &state.body.particles);
-        let exceeded = limit.is_some_and(|limit| displacement > limit);
-        let (stable, reason) = match &ended {
-            StageEnd::NotConverged(cause) => (false, self.no_equilibrium(&state, cause)),
-            _ if exceeded => (false, self.exceeded(session).to_string()),
-            _ => (true, "in equilibrium".to_owned()),
-        };
+        let (stable, reason) = self.outcome(session, &ended, &state, displacement);
         let trial = TrialSummary {
             srf,
             stable,
@@ -309,6 +284,36 @@ impl<'a, const D: usize> Trials<'a, D> {
         let end = End { srf, state, before };
         self.narrow(session, stable, end, within);
         Ok(None)
+    }
+
+    /// The factor of a trial that was asked for one: a reduction fails at the factor that it reached by the criterion, or at the
+    /// smallest one at which it found no equilibrium.
+    fn reached(&self, ended: &StageEnd, from: &Controls, last: &Controls, srf: f64) -> f64 {
+        let reduced = self.reduction.materials[0];
+        match (ended, self.reduction.path) {
+            (StageEnd::Stopped(_), ReductionPath::Reduce) => last.srf[reduced],
+            (StageEnd::NotConverged(cause), ReductionPath::Reduce) => {
+                from.srf[reduced] + cause.to * (srf - from.srf[reduced])
+            }
+            _ => srf,
+        }
+    }
+
+    /// Whether a trial stands, and why.
+    fn outcome(
+        &self,
+        session: &Session<'_, D>,
+        ended: &StageEnd,
+        state: &State<D>,
+        displacement: f64,
+    ) -> (bool, String) {
+        match ended {
+            StageEnd::NotConverged(cause) => (false, self.no_equilibrium(state, cause)),
+            _ if self.limit.is_some_and(|limit| displacement > limit) => {
+                (false, self.exceeded(session).to_string())
+            }
+            _ => (true, "in equilibrium".to_owned()),
+        }
     }
 
     /// Where a trial begins: the stable state of the largest smaller factor, or the base; with the

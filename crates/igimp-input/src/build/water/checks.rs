@@ -112,43 +112,17 @@ impl<const D: usize> Checker<'_, D> {
                 problems,
             ),
             PoreSource::Table(_) | PoreSource::Surface(_) | PoreSource::Drained(_) => {
-                let is_meant = own.pond.as_ref().is_none_or(|pond| **pond);
-                let [highest, sloping] = surface.above(&condition.source);
-                if let Some(at) = surface.uncovered(&condition.source) {
-                    problems
-                        .error(
-                            place,
-                            format!("the surface of {who} does not reach the ground at {at}{when}"),
-                        )
-                        .help("take a survey that reaches over all bodies, and has no holes there");
-                } else if let Some(above) = highest.filter(|_| !is_meant) {
-                    above_ground(&above, place, (&who, &when), problems);
-                } else if let Some(above) = sloping {
-                    problems
-                        .error(
-                            place,
-                            format!(
-                                "{who} is not level where it stands above the ground{when}: {} m above it at {}",
-                                number(above.by),
-                                above.at
-                            ),
-                        )
-                        .help("a pond is level: let the line meet the ground before it goes up or down");
-                }
+                let is_pond = own.pond.as_ref().is_none_or(|pond| **pond);
+                drawn(
+                    (&condition.source, is_pond),
+                    &**surface,
+                    (place, &who, &when),
+                    problems,
+                );
             }
             PoreSource::Ratio(_) => {
-                if let Some(UprightFace { at, levels }) = surface.upright_face() {
-                    let up = if D == 2 { "y" } else { "z" };
-                    problems
-                        .error(
-                            place,
-                            format!(
-                                "r_u puts pressure behind the upright face at {at}, from {up} = {} m to {} m{when}",
-                                number(levels[0]),
-                                number(levels[1])
-                            ),
-                        )
-                        .help("nothing would hold the water there: slope the face, or draw the table as line = [...]");
+                if let Some(face) = surface.upright_face() {
+                    behind_face::<D>(&face, place, &when, problems);
                 }
             }
         }
@@ -293,6 +267,60 @@ impl<const D: usize> Checker<'_, D> {
             }
         }
     }
+}
+
+/// Refuses a drawn surface that ends above the ground, or stands above it where no pond is meant or not level.
+fn drawn(
+    (source, is_pond): (&PoreSource, bool),
+    surface: &dyn Surface,
+    (place, who, when): (Place, &str, &str),
+    problems: &mut Problems,
+) {
+    let [highest, sloping] = surface.above(source);
+    if let Some(at) = surface.uncovered(source) {
+        problems
+            .error(
+                place,
+                format!("the surface of {who} does not reach the ground at {at}{when}"),
+            )
+            .help("take a survey that reaches over all bodies, and has no holes there");
+    } else if let Some(above) = highest.filter(|_| !is_pond) {
+        above_ground(&above, place, (who, when), problems);
+    } else if let Some(above) = sloping {
+        problems
+            .error(
+                place,
+                format!(
+                    "{who} is not level where it stands above the ground{when}: {} m above it at {}",
+                    number(above.by),
+                    above.at
+                ),
+            )
+            .help("a pond is level: let the line meet the ground before it goes up or down");
+    }
+}
+
+/// Refuses a share of the overburden as pressure behind an upright face.
+fn behind_face<const D: usize>(
+    face: &UprightFace,
+    place: Place,
+    when: &str,
+    problems: &mut Problems,
+) {
+    let UprightFace { at, levels } = face;
+    let up = if D == 2 { "y" } else { "z" };
+    problems
+        .error(
+            place,
+            format!(
+                "r_u puts pressure behind the upright face at {at}, from {up} = {} m to {} m{when}",
+                number(levels[0]),
+                number(levels[1])
+            ),
+        )
+        .help(
+            "nothing would hold the water there: slope the face, or draw the table as line = [...]",
+        );
 }
 
 /// Where something is said that every material has.

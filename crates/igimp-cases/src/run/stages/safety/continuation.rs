@@ -160,17 +160,13 @@ impl Search<'_> {
         for &material in &self.reduction.materials {
             from.srf[material] = factor;
         }
-        let path = StagePath {
-            from: &from,
-            to: &self.at(factor),
-            drag: &|_, _| 0.0,
-            time: None,
-            flow: None,
-            method: session.model.method(self.stage.geometry),
-            settings: session.model.march_settings(self.stage.steps),
-            held: None,
-            left: None,
-        };
+        let model = session.model;
+        let to = self.at(factor);
+        let path = StagePath::of_equilibria(
+            (&from, &to),
+            model.method(self.stage.geometry),
+            model.march_settings(self.stage.steps),
+        );
         let ended = march_path(session, &mut state, &path, summary, &mut |_, _, _| Ok(None))?;
         state.body.particles.reset_displacements();
         Ok((state, Some(ended)))
@@ -227,18 +223,7 @@ impl Search<'_> {
         };
         let mut continuation = ContinuationState::start(from, &settings);
         let mut workspace = session.workspace();
-        let mut watch = Watch {
-            search: self,
-            before: None,
-            last: Arc::new(state.body.clone()),
-            points: Vec::new(),
-            end: PathEnd::Lost,
-            limit: None,
-            work: None,
-            stopped: Ok(None),
-            session,
-            summary,
-        };
+        let mut watch = Watch::of(self, session, summary, &state.body);
         let method = model.method(self.stage.geometry);
         let failure = follow(
             &mut continuation,
@@ -317,7 +302,27 @@ struct Watch<'w, 's, const D: usize> {
     stopped: Result<Option<StageEnd>, CaseError>,
 }
 
-impl<const D: usize> Watch<'_, '_, D> {
+impl<'w, 's, const D: usize> Watch<'w, 's, D> {
+    fn of(
+        search: &'w Search<'w>,
+        session: &'w mut Session<'s, D>,
+        summary: &'w mut StageSummary,
+        body: &Body<D>,
+    ) -> Self {
+        Self {
+            search,
+            session,
+            summary,
+            before: None,
+            last: Arc::new(body.clone()),
+            points: Vec::new(),
+            end: PathEnd::Lost,
+            limit: None,
+            work: None,
+            stopped: Ok(None),
+        }
+    }
+
     fn step(&mut self, accepted: &Accepted<'_, D>) -> Result<Option<StageEnd>, CaseError> {
         let report = accepted.report;
         let number = self.summary.steps + 1;

@@ -1,0 +1,25 @@
+//! GOAL: the ground of a case is the ground that its file draws: outlines, solids, grids, particles, properties from place to place.
+
+#[path = "../common/edits.rs"]
+mod edits;
+
+mod drawings;
+mod folder;
+mod grid_lines;
+mod meshes;
+mod pieces;
+mod profiles;
+mod rasters;
+mod seeding;
+mod solid_bodies;
+mod solids;
+
+use igimp_input::CaseFile;
+use igimp_model::Case;
+
+/// A block of soil, 4 m by 2 m.
+fn block() -> Case<2> {
+    let text = include_str!("../data/block.toml");
+    let file = CaseFile::parse("block.toml", text, &[]);
+    file.unwrap().case().clone()
+}

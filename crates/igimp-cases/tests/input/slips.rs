@@ -1,0 +1,195 @@
+//! What is said of slips of syntax, of keys and of values.
+
+use igimp_input::{CaseFile, InputError};
+
+use crate::edits::edited;
+use crate::messages::{messages, said};
+use crate::{SLOPE, overridden};
+
+#[test]
+fn the_six_messages_of_the_contract() {
+    insta::assert_snapshot!(messages(
+        SLOPE,
+        &[
+            &[("unit_weight = \"20 kN/m3\"", "unit_weight = \"2000 kg/m3\"")],
+            &[("cohesion = ", "cohesoin = ")],
+            &[("\"10 kPa\"", "10")],
+            &[("material = \"clay\"", "material = \"caly\"")],
+            &[("dilation = \"0 deg\"", "dilation = \"25 deg\"")],
+            &[("[\"0 m\",\"20 m\"]]", "[\"0 m\",\"24 m\"]]")],
+        ]
+    ));
+}
+
+#[test]
+fn several_problems_are_shown_together_in_the_order_of_the_file() {
+    insta::assert_snapshot!(messages(
+        SLOPE,
+        &[&[
+            ("[\"0 m\",\"20 m\"]]", "[\"0 m\",\"24 m\"]]"),
+            ("unit_weight = \"20 kN/m3\"", "unit_weight = \"2000 kg/m3\""),
+            ("poisson = 0.25", "poisson = 0.4999"),
+            ("material = \"rock\"", "material = \"rok\""),
+            ("steps = 200", "steps = 0"),
+            ("max_iterations", "max_iteration"),
+        ]]
+    ));
+}
+
+#[test]
+fn slips_of_syntax() {
+    insta::assert_snapshot!(messages(
+        SLOPE,
+        &[
+            &[("\"10 kPa\"", "10 kPa")],
+            &[("tolerance = 1e-6", "tolerance = True")],
+            &[(
+                "young = \"20 MPa\"",
+                "young = \"20 MPa\"\nyoung = \"30 MPa\""
+            )],
+            &[("[[monitors]]", "[solver]")],
+            &[("title = \"10 m", "title = 10 m")],
+            &[("\"60 m\"], y", "\"60 m\", y")],
+            &[("[boundaries]", "[boundaries")],
+            &[("locking", "\u{0} locking")],
+        ]
+    ));
+}
+
+#[test]
+fn slips_of_keys() {
+    insta::assert_snapshot!(messages(
+        SLOPE,
+        &[
+            &[("igimp = 1 ", "# igimp = 1 ")],
+            &[("igimp = 1 ", "igimp = 2 ")],
+            &[("[grid]", "[gird]")],
+            &[("locking = \"b-bar\"", "gravity = \"9.81 m/s2\"")],
+            &[("locking = \"b-bar\"", "colour = \"red\"")],
+            &[("friction = \"20 deg\"\n", "")],
+            &[("model = \"mohr-coulomb\"\n", "")],
+            &[("model = \"mohr-coulomb\"", "model = \"mohr coulomb\"")],
+            &[(
+                "model = \"elastic\"",
+                "model = \"elastic\"\ncohesion = \"1 kPa\""
+            )],
+            &[("[[monitors]]", "[monitors]")],
+            &[("[grid]", "[[grid]]")],
+            &[("[materials.clay]", "[materials.\"soft/clay\"]")],
+            &[("name = \"bedrock\"", "name = \"Slope\"")],
+            &[("name = \"crest\"", "name = \"slope.crest\"")],
+        ]
+    ));
+}
+
+#[test]
+fn slips_of_values() {
+    insta::assert_snapshot!(messages(
+        SLOPE,
+        &[
+            &[("young = \"20 MPa\"", "young = \"20 Mpa\"")],
+            &[("young = \"20 MPa\"", "young = \"-20 MPa\"")],
+            &[("young = \"20 MPa\"", "young = \"inf MPa\"")],
+            &[("poisson = 0.3", "poisson = \"0.3\"")],
+            &[("poisson = 0.3", "poisson = nan")],
+            &[("locking = \"b-bar\"", "locking = \"bbar\"")],
+            &[("steps = 10\n", "steps = 10.5\n")],
+            &[("points_per_cell = 4", "points_per_cell = 6")],
+            &[("tolerance = 1e-6", "tolerance = 0")],
+            &[("bracket = [1.0, 2.0]", "bracket = [1.0]")],
+            &[("left = \"roller\"", "left = \"rollers\"")],
+            &[("every = \"stage\"", "every = [1]")],
+            &[("point = [\"15 m\", \"20 m\"]", "point = [15, 20]")],
+            &[("friction = \"20 deg\"", "friction = \"20 m\"")],
+            &[("cohesion = \"10 kPa\"", "cohesion = 1979-05-27")],
+        ]
+    ));
+}
+
+#[test]
+fn tabs_carriage_returns_and_accents_keep_their_columns() {
+    let text = SLOPE.1.replace('\n', "\r\n");
+    let text = edited(
+        &text,
+        &[
+            ("title = \"10 m cut slope", "title = \"Böschung, 10 m"),
+            ("name = \"crest\"", "\tname = \"Böschungskante\" ; # é"),
+            ("monitor = \"crest\"", "monitor = \"Böschungskante\""),
+        ],
+    );
+    let first = said(&CaseFile::parse("slope.toml", &text, &[]));
+    let text = text
+        .replace(" ; # é", "")
+        .replace("point = [", "\tpunkt = [");
+    let second = said(&CaseFile::parse("slope.toml", &text, &[]));
+    insta::assert_snapshot!(format!("{first}\n{second}"));
+}
+
+/// A file from elsewhere must not get at the terminal through what is said of it.
+#[test]
+fn messages_hold_no_control_characters() {
+    for (key, value) in [
+        ("\"coh\\u001b[31mesion\"", "\"10 kPa\""),
+        ("cohesion", "\"10 k\\u0007Pa\""),
+        ("cohesion", "\"\\u001b[2J\""),
+        ("cohesion", "'''10\nkPaa'''"),
+    ] {
+        let text = edited(
+            SLOPE.1,
+            &[("cohesion = \"10 kPa\"", &format!("{key} = {value}"))],
+        );
+        let error = CaseFile::parse(SLOPE.0, &text, &[]).unwrap_err();
+        let InputError::Invalid {
+            text, diagnostics, ..
+        } = error
+        else {
+            panic!("{error}");
+        };
+        assert!(
+            text.chars().all(|c| c == '\n' || !c.is_control()),
+            "{text:?}"
+        );
+        for found in &diagnostics {
+            let mut lines = found.help.iter().chain([&found.message]);
+            assert!(
+                lines.all(|line| !line.contains(char::is_control)),
+                "{found:?}"
+            );
+        }
+    }
+}
+
+/// GOAL: a slip of the unit is told, with its place and what may be meant; a value that soil, rock or steel has is not.
+#[test]
+fn implausible_values_are_told() {
+    let told = [
+        (
+            "unit_weight",
+            "20 N/m3",
+            "`clay` has unit_weight = 0.02 kN/m3",
+        ),
+        ("cohesion", "20 MPa", "`clay` has cohesion = 20000 kPa"),
+        ("friction", "0.35 deg", "0.35 rad are 20 deg"),
+        ("friction", "80 deg", "`clay` has friction = 80 deg"),
+        ("young", "20000 GPa", "steel 210 GPa"),
+    ];
+    for (key, value, expected) in told {
+        let file = overridden(SLOPE, &[&format!("materials.clay.{key}={value}")]).unwrap();
+        let warnings = file.warnings();
+        assert!(warnings.contains(expected), "{warnings}");
+        assert!(warnings.contains(value), "{warnings}");
+    }
+    let quiet = [
+        ("unit_weight", "0 kN/m3"),
+        ("unit_weight", "0.8 kN/m3"),
+        ("cohesion", "4 MPa"),
+        ("friction", "1.1 deg"),
+        ("friction", "69 deg"),
+        ("young", "210 GPa"),
+    ];
+    for (key, value) in quiet {
+        let file = overridden(SLOPE, &[&format!("materials.clay.{key}={value}")]).unwrap();
+        let warnings = file.warnings();
+        assert!(!warnings.contains("outside the range"), "{warnings}");
+    }
+}

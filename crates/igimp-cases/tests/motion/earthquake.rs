@@ -1,0 +1,384 @@
+//! GOAL: earthquakes in case files: records, walls, tied sides, damping and Newmark's sliding block, from file to summary.
+//! CASE: level layers of elastic soil, and the shipped slope, shortened.
+//! ORACLE: the wave equation in one dimension; rest; closed forms; bytes of a run that was never stopped.
+
+use std::f64::consts::PI;
+use std::fmt::Write as _;
+
+use crate::imbalance;
+use crate::resuming::{assert_done, assert_equal, everything, folder, run_into};
+use igimp_cases::run::{Run, Start, in_memory};
+use igimp_input::{CaseFile, shipped};
+use igimp_results::summary::StageOutcome;
+
+/// A level layer, 10 m deep and 4 m wide, of soil in which shear waves run at 100 m/s, and a stage of motion.
+fn layer(stage: &str) -> String {
+    format!(
+        r#"
+igimp = 1
+[case]
+title = "level layer"
+gravity = "10 m/s2"
+[grid]
+cell = "1 m"
+domain = {{ x = ["0 m", "4 m"], y = ["0 m", "11 m"] }}
+[materials.soil]
+model = "elastic"
+unit_weight = "20 kN/m3"
+young = "50 MPa"
+poisson = 0.25
+[[bodies]]
+name = "layer"
+material = "soil"
+points_per_cell = 4
+polygon = [["0 m", "0 m"], ["4 m", "0 m"], ["4 m", "10 m"], ["0 m", "10 m"]]
+[[stages]]
+name = "weight"
+type = "gravity"
+steps = 1
+reset_displacements = true
+[[stages]]
+name = "motion"
+type = "dynamic"
+scheme = "newmark"
+{stage}
+[[monitors]]
+name = "top"
+point = ["2 m", "9.75 m"]
+record = ["displacement_x", "displacement_y"]
+[[curves]]
+name = "top"
+stage = "motion"
+x = {{ of = "time" }}
+y = {{ of = "top.displacement_x" }}
+[solver]
+tolerance = 1e-11
+[output]
+report = false
+figures = []
+"#
+    )
+}
+
+fn ran(text: &str) -> Run<2> {
+    let file = CaseFile::parse("layer.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    in_memory(file.case()).unwrap()
+}
+
+/// GOAL: ground at rest stays at rest when walls take the place of its supports.
+#[test]
+fn ground_stays_at_rest_between_walls() {
+    for walls in [
+        "absorbing = [\"left\", \"right\", \"bottom\"]",
+        "tied_sides = true\nabsorbing = [\"bottom\"]",
+        "free_field = [\"left\", \"right\"]\nabsorbing = [\"bottom\"]",
+    ] {
+        // Cells that are laid anew under particles that have moved are no equilibrium to round-off.
+        let stage = format!("duration = \"1 s\"\nsteps = 10\ngeometry = \"given\"\n{walls}");
+        let text = layer(&stage).replace("\"gravity\"", "\"gravity\"\ngeometry = \"given\"");
+        let run = ran(&text);
+        assert_done(&run.summary);
+        let moved = (run.body.particles.displacement.iter().flatten())
+            .fold(0.0, |m: f64, u| m.max(u.abs()));
+        // The weight settles the layer by 17 mm.
+        assert!(moved < 1e-9, "{walls}: {moved:e}");
+    }
+}
+
+/// A harmonic record of acceleration of unit displacement, as keys.
+fn harmonic(omega: f64, duration: f64, per_period: f64) -> String {
+    let interval = 2.0 * PI / omega / per_period;
+    let count = (duration / interval).ceil() as usize;
+    let (mut times, mut values) = (String::new(), String::new());
+    for k in 0..=count {
+        let t = k as f64 * interval;
+        let _ = write!(times, "\"{t} s\", ");
+        let _ = write!(values, "{:e}, ", -1e-3 * omega * omega * (omega * t).sin());
+    }
+    format!("unit = \"m/s2\", time = [{times}], values = [{values}]")
+}
+
+/// GOAL: a case of a layer on rock that is shaken tells its amplification.
+/// ORACLE: 1/√(cos² kH + α² sin² kH) with α = 1: an outcrop of the same soil moves as the ground would, whatever the frequency,
+/// 1/|cos kH| … 1: on a half-space of itself the surface has the motion of the outcrop.
+#[test]
+fn a_layer_on_itself_moves_as_its_outcrop() {
+    let omega = 2.0 * PI * 2.0;
+    let record = harmonic(omega, 2.0, 60.0);
+    let run = ran(&layer(&format!(
+        "duration = \"2 s\"\nsteps = 10\ntied_sides = true\n\
+         ground_motion = {{ {record}, base = \"compliant\" }}"
+    )));
+    let stage = &run.summary.stages[1];
+    assert_eq!(stage.outcome, StageOutcome::Completed, "{}", stage.reason);
+    let energy = stage.energy.as_ref().unwrap();
+    let size = energy.most_kinetic + energy.loads.abs();
+    assert!(imbalance(energy).abs() < 1e-9 * size, "{energy:?}");
+    assert!(energy.boundaries > 0.0, "{energy:?}");
+    let motion = |[time, way]: &[f64; 2]| way / 1e-3 + (omega * time).sin();
+    let points = run.curves[0].points(0, 1);
+    let late = points.iter().filter(|point| point[0] > 1.4);
+    let (least, most) = late.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), point| {
+        (a.min(motion(point)), b.max(motion(point)))
+    });
+    assert!((0.5 * (most - least) - 1.0).abs() < 0.02, "{least} {most}");
+}
+
+/// GOAL: a record of velocity and one of acceleration of the same motion shake alike.
+/// ORACLE: each other; velocity that is linear between its samples has a constant acceleration there.
+#[test]
+fn velocity_and_acceleration_shake_alike() {
+    let by = |record: &str| {
+        let run = ran(&layer(&format!(
+            "duration = \"0.3 s\"\nsteps = 3\ntied_sides = true\nlongest_step = \"1 ms\"\nground_motion = {{ {record} }}"
+        ))
+        .replace("scheme = \"newmark\"", "geometry = \"given\"")
+        .replace("type = \"gravity\"", "type = \"gravity\"\ngeometry = \"given\""));
+        run.body.particles.displacement.clone()
+    };
+    let velocity =
+        by("unit = \"mm/s\", time = [\"0 s\", \"0.1 s\", \"0.3 s\"], values = [0, 2, 1]");
+    let acceleration = by(
+        "unit = \"mm/s2\", time = [\"0 s\", \"1 ms\", \"99 ms\", \"101 ms\", \"0.299 s\", \"0.3 s\"], \
+         values = [0, 20, 20, -5, -5, -5]",
+    );
+    let most = velocity
+        .iter()
+        .flatten()
+        .fold(0.0, |m: f64, u| m.max(u.abs()));
+    assert!(most > 1e-6, "{most:e}");
+    for (a, b) in std::iter::zip(&velocity, &acceleration) {
+        assert!((a[0] - b[0]).abs() < 0.02 * most, "{a:?} {b:?} {most:e}");
+    }
+}
+
+/// The shipped slope with changes.
+fn slope(changes: &[&str]) -> CaseFile {
+    let shipped = shipped::find("earthquake_slope").unwrap();
+    shipped.case_file(changes.iter().copied()).unwrap()
+}
+
+/// Free fields in place of tied sides.
+const FREE: [&str; 2] = [
+    "stages.earthquake.tied_sides = false",
+    "stages.earthquake.free_field = [\"left\", \"right\"]",
+];
+
+const SHORT: [&str; 4] = [
+    "grid.cell = 3 m",
+    "grid.domain.y = [\"0 m\", \"15 m\"]",
+    "stages.earthquake.duration = 0.9 s",
+    "stages.earthquake.steps = 3",
+];
+
+/// GOAL: a run in the middle of an earthquake goes on with the same bytes, with what moves in free field.
+#[test]
+fn a_resumed_earthquake_leaves_the_same_files() {
+    let file = slope(&[&SHORT[..], &FREE].concat());
+    let whole = folder("earthquake-whole");
+    let ended = |run: &Run<2>| {
+        let last = run.summary.stages.last().unwrap();
+        assert_eq!(last.name, "earthquake");
+        assert_eq!(last.outcome, StageOutcome::Completed, "{}", last.reason);
+    };
+    ended(&run_into((&file, file.case()), &whole, Start::Afresh, None));
+    let resumed = folder("earthquake-resumed");
+    let steps = |run: &Run<2>| {
+        run.summary
+            .stages
+            .iter()
+            .map(|own| own.steps)
+            .sum::<usize>()
+    };
+    let stopped = run_into((&file, file.case()), &resumed, Start::Afresh, Some(40));
+    assert!(stopped.summary.interrupted, "{}", steps(&stopped));
+    assert_eq!(stopped.summary.stages.last().unwrap().name, "earthquake");
+    ended(&run_into(
+        (&file, file.case()),
+        &resumed,
+        Start::Resume,
+        None,
+    ));
+    assert_equal(&everything(&whole), &everything(&resumed), "earthquake");
+}
+
+/// GOAL: threads change no bit, with tied sides and with free fields.
+#[test]
+fn threads_change_no_bit_of_an_earthquake() {
+    let on = |file: &CaseFile, threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        let run = pool.install(|| in_memory(file.case()).unwrap());
+        let particles = &run.body.particles;
+        let last = run.summary.stages.last().unwrap();
+        (
+            particles.x.clone(),
+            particles.velocity.clone(),
+            last.energy,
+            last.newmark.clone(),
+        )
+    };
+    let files = [slope(&SHORT), slope(&[&SHORT[..], &FREE].concat())];
+    for (file, threads) in files.iter().zip([7, 2]) {
+        let one = on(file, 1);
+        assert!(one.3.is_some() && one.2.unwrap().boundaries.abs() > 0.0);
+        assert!(on(file, threads) == one, "{threads} threads");
+    }
+}
+
+/// GOAL: what makes no sense of a record is told, with file and line.
+#[test]
+fn records_that_make_no_sense() {
+    let path = std::env::temp_dir().join(format!("igimp-records-{}", std::process::id()));
+    std::fs::create_dir_all(&path).unwrap();
+    let case = path.join("case.toml");
+    let read = |record: &str, keys: &str| {
+        std::fs::write(path.join("quake.csv"), record).unwrap();
+        let text = layer(&format!(
+            "duration = \"1 s\"\nground_motion = {{ file = \"quake.csv\"{keys} }}"
+        ));
+        std::fs::write(&case, &text).unwrap();
+        CaseFile::parse(&case.display().to_string(), &text, &[])
+    };
+    let sound = "time [s], acceleration [g]\n0, 0\n0.1, 0.2\n0.2, 0\n";
+    let file = read(sound, "").unwrap_or_else(|error| panic!("{error}"));
+    let igimp_model::StageKind::Dynamic(own) = &file.case().stages[1].kind else {
+        panic!("a stage of motion");
+    };
+    let motion = own.ground_motion.as_ref().unwrap();
+    assert!((motion.values[1] - 0.2 * 9.80665).abs() < 1e-12 && !motion.is_velocity);
+    for (record, keys, said) in [
+        (
+            "time,acceleration\n0,0\n0.1,0.2\n0.1,0\n",
+            ", unit = \"g\"",
+            "line 4: the time 0.1 is not after 0.1 in line 3",
+        ),
+        (
+            "0,0\n0.1;0.2\n",
+            ", unit = \"g\"",
+            "line 2, `0.1;0.2`, does not hold 2 numbers",
+        ),
+        ("0,0\n0.1,0.2\n", "", "nothing says in which unit"),
+        (
+            "time,velocity [furlong]\n0,0\n1,1\n",
+            "",
+            "unknown unit `furlong`",
+        ),
+        (
+            "time,velocity [m/s]\n0,0\n1,1\n",
+            ", unit = \"g\"",
+            "by its header",
+        ),
+        ("0,0\n", ", unit = \"g\"", "one sample only"),
+    ] {
+        let error = read(record, keys)
+            .err()
+            .map(|error| error.to_string())
+            .unwrap_or_default();
+        assert!(
+            error.contains(said) && error.contains("quake.csv"),
+            "{record}: {error}"
+        );
+    }
+    std::fs::remove_dir_all(&path).unwrap();
+}
+
+/// GOAL: keys that contradict each other are refused with their place and a remedy.
+#[test]
+fn earthquakes_that_make_no_sense() {
+    let motion = "ground_motion = { unit = \"g\", time = [\"0 s\", \"1 s\"], values = [0, 1]";
+    for (keys, said) in [
+        (
+            "tied_sides = true\nabsorbing = [\"left\"]".to_owned(),
+            "dashpots and moves with the other",
+        ),
+        (
+            "tied_sides = true\nfree_field = [\"left\"]".to_owned(),
+            "moves with the other, and is to have soil in free field",
+        ),
+        (
+            "absorbing = [\"left\"]\nfree_field = [\"left\"]".to_owned(),
+            "dashpots against still ground already",
+        ),
+        (
+            "free_field = [\"bottom\"]".to_owned(),
+            "stands beside the left or the right side",
+        ),
+        (
+            "absorbing = [\"front\"]".to_owned(),
+            "no side front in plane strain",
+        ),
+        (
+            format!("{motion}, axis = \"z\" }}"),
+            "no axis z in plane strain",
+        ),
+        (
+            "ground_motion = { unit = \"g\" }".to_owned(),
+            "has no samples",
+        ),
+        (
+            "ground_motion = { unit = \"g\", time = [\"0 s\", \"1 s\"], values = [0, 1, 2] }"
+                .to_owned(),
+            "2 times and 3 values",
+        ),
+        (
+            "ground_motion = { unit = \"g\", time = [\"1 s\", \"1 s\"], values = [0, 1] }"
+                .to_owned(),
+            "not after the one before",
+        ),
+        (
+            format!("newmark_from = \"weight\"\n{motion} }}"),
+            "tells no yield acceleration",
+        ),
+        (
+            "newmark_from = \"weight\"".to_owned(),
+            "a block slides on ground that moves",
+        ),
+        (
+            "rayleigh = { ratio = 0.02, periods = [\"1 s\", \"1 s\"] }".to_owned(),
+            "the two periods are the same",
+        ),
+    ] {
+        let text = layer(&format!("duration = \"1 s\"\n{keys}"));
+        let error = CaseFile::parse("layer.toml", &text, &[]).err();
+        let error = error.map(|error| error.to_string()).unwrap_or_default();
+        assert!(
+            error.contains(said) && error.contains("help:"),
+            "{keys}: {error}"
+        );
+    }
+    let free = layer(&format!("duration = \"1 s\"\n{motion} }}")).replace(
+        "[materials.soil]",
+        "[boundaries]\nbottom = \"roller\"\n[materials.soil]",
+    );
+    let error = CaseFile::parse("layer.toml", &free, &[]).err().unwrap();
+    assert!(
+        error.to_string().contains("does not take the soil along"),
+        "{error}"
+    );
+}
+
+/// GOAL: a slide within walls of dashpots: on moving cells, its energy closes with what leaves through the walls.
+#[test]
+fn a_slope_that_slides_between_dashpots_closes_its_energy() {
+    let file = slope(&[
+        "grid.cell = 2 m",
+        "grid.domain.y = [\"0 m\", \"14 m\"]",
+        "stages.earthquake.tied_sides = false",
+        "stages.earthquake.absorbing = [\"left\", \"right\"]",
+        "stages.earthquake.duration = 1.2 s",
+        "stages.earthquake.steps = 4",
+    ]);
+    let run = in_memory(file.case()).unwrap();
+    let stage = run.summary.stages.last().unwrap();
+    assert_eq!(stage.outcome, StageOutcome::Completed, "{}", stage.reason);
+    let energy = stage.energy.as_ref().unwrap();
+    let size = energy.most_kinetic + energy.loads.abs();
+    assert!(imbalance(energy).abs() < 1e-9 * size, "{energy:?}");
+    assert!(
+        energy.boundaries.abs() > 1e-3 * size && energy.damping > 0.0,
+        "{energy:?}"
+    );
+}

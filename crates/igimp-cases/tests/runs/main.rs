@@ -1,0 +1,13 @@
+//! GOAL: a case is run as it says: stages, laws, solvers, remarks, checkpoints, in the plane and in space.
+
+#[path = "../common/edits.rs"]
+mod edits;
+#[path = "../common/resuming.rs"]
+mod resuming;
+
+mod column;
+mod engine;
+mod given_law;
+mod in_space;
+mod killed;
+mod remarks;

@@ -1,0 +1,177 @@
+//! Reinforcement in case files and runs: what is refused and why, what stages do with it, and what a run
+//! writes of it.
+
+use std::fs;
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use igimp_cases::run::{Run, in_memory};
+use igimp_input::CaseFile;
+
+use crate::edits::{Edits, edited};
+use crate::{messages_of_each, with_report};
+
+const TEXT: &str = include_str!("../data/tied_cut.toml");
+
+fn parsed(edits: Edits<'_>) -> CaseFile {
+    CaseFile::parse("tied_cut.toml", &edited(TEXT, edits), &[])
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn messages(edits: Edits<'_>) -> String {
+    messages_of_each(("tied_cut.toml", TEXT), edits)
+}
+
+#[test]
+fn members_that_make_no_sense() {
+    insta::assert_snapshot!(messages(&[
+        (
+            "head = [\"6 m\", \"1.6 m\"]",
+            "head = [\"6.6 m\", \"1.6 m\"]"
+        ),
+        ("end = [\"3 m\", \"1.2 m\"]", "end = [\"6 m\", \"1.6 m\"]"),
+        ("bonded_length = \"2 m\"", "bonded_length = \"7 m\""),
+        ("prestress = \"12 kN/m\"", "prestress = \"26 kN/m\""),
+        ("bond = \"10 kPa\"", "bond = \"0 kPa\""),
+        ("capacity = \"20 kN/m\"", "capacity = \"20 kN\""),
+        ("[\"3 m\", \"3.3 m\"]", "[\"5.2 m\", \"3.6 m\"]"),
+        ("name = \"nail\"", "name = \"mat\""),
+        (
+            "y = { of = \"reinforcement.anchor.head_force\" }",
+            "y = { of = \"reinforcement.anchor.tension\" }"
+        ),
+    ]));
+}
+
+#[test]
+fn stages_that_cannot_install() {
+    insta::assert_snapshot!(messages(&[
+        ("install = [\"anchor\"]\n", ""),
+        ("install = [\"mat\"]", "install = [\"mat\", \"anchor\"]"),
+        ("install = [\"mat\"]", "install = [\"matt\"]"),
+        ("bracket = [1.0, 1.5]", "install = [\"nail\"]"),
+        ("bracket = [1.0, 1.5]", "path = \"gravity\""),
+    ]));
+}
+
+/// The case, run into a folder of the build with pictures and a report.
+fn written() -> &'static (PathBuf, Run<2>) {
+    static ONCE: OnceLock<(PathBuf, Run<2>)> = OnceLock::new();
+    ONCE.get_or_init(|| with_report(("tied_cut.toml", TEXT), "reinforcement-results"))
+}
+
+/// GOAL: the jack raises the tension evenly whatever the ground does, and what is locked off stretches on.
+#[test]
+fn an_anchor_is_stressed_and_locked_off() {
+    let (_, run) = written();
+    let rows = &run.curves[0].rows;
+    let forces: Vec<f64> = rows.iter().map(|row| row[1]).collect();
+    // A row for the start, three steps of weight, three of stressing, four of loading.
+    assert_eq!(forces[..4], [0.0; 4]);
+    for (force, expected) in forces[4..7].iter().zip([4e3, 8e3, 12e3]) {
+        assert!((force / expected - 1.0).abs() < 1e-12, "{forces:?}");
+    }
+    assert!(forces[10] > 12e3, "{forces:?}");
+    let told: Vec<usize> = run
+        .summary
+        .stages
+        .iter()
+        .map(|own| own.reinforcement.len())
+        .collect();
+    assert_eq!(told, [1, 2, 3, 3]);
+    let [.., loaded, _] = &run.summary.stages[..] else {
+        panic!("there are four stages");
+    };
+    assert!((loaded.reinforcement[0].head_force / forces[10] - 1.0).abs() < 1e-12);
+}
+
+/// GOAL: no tension beyond what the bond on either side allows.
+#[test]
+fn tables_tell_tension_and_its_limit() {
+    let (folder, _) = written();
+    let read = |name: &str| -> Vec<Vec<f64>> {
+        let mut reader = csv::Reader::from_path(folder.join("reinforcement").join(name)).unwrap();
+        assert_eq!(
+            reader
+                .headers()
+                .unwrap()
+                .iter()
+                .collect::<Vec<_>>()
+                .join(" "),
+            "distance_[m] x_[m] y_[m] force_[N/m]_tension_+ limit_[N/m] strain_[-] at_limit_[-]"
+        );
+        let rows = reader.records().map(|row| {
+            let row = row.unwrap();
+            row.iter().map(|cell| cell.parse().unwrap()).collect()
+        });
+        rows.collect()
+    };
+    let length = 3.0_f64.hypot(0.4);
+    let nail = read("nail__3-load.csv");
+    for row in &nail {
+        let limit = (10e3 * row[0].min(length - row[0])).min(20e3);
+        assert!((row[4] / limit - 1.0).abs() < 1e-6);
+        assert!(row[3] <= row[4] * (1.0 + 1e-8));
+    }
+    assert!(nail.iter().any(|row| row[3] > 1e3));
+    assert!(!folder.join("reinforcement/mat__2-stress.csv").exists());
+    assert!((read("anchor__2-stress.csv")[0][3] / 12e3 - 1.0).abs() < 1e-9);
+    // Its bond is reduced with the strength.
+    let reduced = read("anchor__stage-04-last-stable.csv");
+    let full = read("anchor__3-load.csv");
+    assert!(reduced.last().unwrap()[4] < 0.99 * full.last().unwrap()[4]);
+}
+
+/// GOAL: members have frames beside those of the soil, and pictures and report tell of them.
+#[test]
+fn frames_pictures_and_report_show_the_members() {
+    let (folder, _) = written();
+    let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
+    let soil = read("paraview/particles.pvd");
+    let own = read("paraview/reinforcement.pvd");
+    assert_eq!(soil.replace("particles_", "reinforcement_"), own);
+    let frame = read("paraview/reinforcement_0003.vtu");
+    for name in ["force [N/m], tension +", "limit [N/m]", "strain"] {
+        assert!(frame.contains(&format!("Name=\"{name}\"")), "{name}");
+    }
+    let page = read("report.html");
+    for text in [
+        "Reinforcement, per metre run",
+        "anchor, ",
+        "locked off at 12 kN",
+        "Tension per metre run",
+        "nail__3-load.csv",
+        "reinforcement.pvd",
+    ] {
+        assert!(page.contains(text), "{text}");
+    }
+    assert!(read("figures/model.svg").contains("reinforcement"));
+    assert!(read("figures/field-3-load-displacement.svg").contains("mat "));
+}
+
+/// GOAL: the same bits on any number of threads.
+#[test]
+fn bits_do_not_depend_on_threads() {
+    let forces = |threads: usize| -> Vec<u64> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let case = parsed(&[]).into_case();
+        let run = pool.build().unwrap().install(|| in_memory(&case).unwrap());
+        let members = run.body.reinforcement.iter();
+        let bars = members.flat_map(|own| own.segments.iter().map(|bar| bar.state.force.to_bits()));
+        let soil = run.body.particles.x.iter().flatten().map(|x| x.to_bits());
+        bars.chain(soil).collect()
+    };
+    let one = forces(1);
+    assert_eq!(one, forces(2));
+    assert_eq!(one, forces(5));
+}
+
+/// GOAL: a member that a completed file states is the one of the file.
+#[test]
+fn explained_files_state_the_same() {
+    let file = parsed(&[]);
+    let again = CaseFile::parse("again.toml", &file.explain(), &[]).unwrap();
+    assert_eq!(again.case().reinforcement, file.case().reinforcement);
+    let [head, end] = file.case().reinforcement[0].fastened;
+    assert!((head / 25e3 - 1.0).abs() < 1e-12 && end.abs() < 1e-12);
+}

@@ -1,0 +1,13 @@
+//! GOAL: water and the stages that go with it: pore pressure, seepage, construction under water, in the plane and in space.
+
+#[path = "../common/edits.rs"]
+mod edits;
+#[path = "../common/messages.rs"]
+mod messages;
+#[path = "../common/resuming.rs"]
+mod resuming;
+
+mod construction;
+mod in_space;
+mod pore_water;
+mod seepage;
