@@ -84,6 +84,8 @@ pub enum ParameterValue {
     Friction(f64),
     /// A stress \[Pa\].
     Stress(f64),
+    /// A stiffness, or the strength of rock \[Pa\].
+    Modulus(f64),
     /// An angle \[rad\].
     Angle(f64),
     /// A number \[-\].
@@ -161,7 +163,7 @@ impl Strength {
                 parameters
             }
             Self::HoekBrown(own) => vec![
-                parameter("σ_ci = ", ParameterValue::Stress(own.intact_strength)),
+                parameter("σ_ci = ", ParameterValue::Modulus(own.intact_strength)),
                 parameter("GSI = ", ParameterValue::Number(own.gsi)),
                 parameter("m_i = ", ParameterValue::Number(own.intact_ratio)),
                 parameter("D = ", ParameterValue::Number(own.disturbance)),
@@ -171,9 +173,9 @@ impl Strength {
                 parameter("c = ", ParameterValue::Cohesive(own.cohesion)),
                 parameter("φ = ", ParameterValue::Friction(own.friction_angle)),
                 parameter("ψ = ", ParameterValue::Angle(own.dilation_angle)),
-                parameter("E_50 = ", ParameterValue::Stress(own.secant)),
-                parameter("E_ur = ", ParameterValue::Stress(own.unloading)),
-                parameter("E_oed = ", ParameterValue::Stress(own.oedometer)),
+                parameter("E_50 = ", ParameterValue::Modulus(own.secant)),
+                parameter("E_ur = ", ParameterValue::Modulus(own.unloading)),
+                parameter("E_oed = ", ParameterValue::Modulus(own.oedometer)),
                 parameter("m = ", ParameterValue::Number(own.power)),
                 parameter("OCR = ", ParameterValue::Number(own.overconsolidation)),
             ],
@@ -183,7 +185,9 @@ impl Strength {
                 parameter("M = ", ParameterValue::Number(own.critical_ratio)),
                 match own.shear {
                     ShearStiffness::Poisson(own) => parameter("ν = ", ParameterValue::Number(own)),
-                    ShearStiffness::Constant(own) => parameter("G = ", ParameterValue::Stress(own)),
+                    ShearStiffness::Constant(own) => {
+                        parameter("G = ", ParameterValue::Modulus(own))
+                    }
                 },
                 parameter("OCR = ", ParameterValue::Number(own.overconsolidation)),
             ],

@@ -42,6 +42,7 @@ fn material(material: &Material) -> Vec<String> {
             (ParameterValue::Friction(angle) | ParameterValue::Angle(angle), ..) => {
                 format!("{}°", degrees(angle))
             }
+            (ParameterValue::Modulus(stress), ..) => format!("{} MPa", short(1e-6 * stress)),
             (ParameterValue::Number(number), ..) => short(number),
             (ParameterValue::Note, ..) => String::new(),
         };
