@@ -118,6 +118,16 @@ fn carefully(text: &mut Vec<u8>, other: &[u8], random: &mut Random) {
 
 fn once(text: &mut Vec<u8>, other: &[u8], words: &[String], random: &mut Random) {
     match random.below(20) {
+        kind @ 0..9 => of_bytes(kind, text, other, random),
+        kind @ 9..16 => of_words(kind, text, other, words, random),
+        kind => of_lines(kind, text, other, random),
+    }
+    text.truncate(2 * LONGEST);
+}
+
+/// Bytes and stretches of them are changed, left out, repeated and taken from elsewhere.
+fn of_bytes(kind: usize, text: &mut Vec<u8>, other: &[u8], random: &mut Random) {
+    match kind {
         0 => {
             if let Some(at) = place(text, random) {
                 text[at] ^= 1 << random.below(8);
@@ -154,11 +164,17 @@ fn once(text: &mut Vec<u8>, other: &[u8], words: &[String], random: &mut Random)
             text.truncate(random.below(text.len() + 1));
             text.extend_from_slice(&other[random.below(other.len() + 1)..]);
         }
-        8 => {
+        _ => {
             let at = random.below(text.len() + 1);
             let piece = other[stretch(other, random)].to_vec();
             text.splice(at..at, piece);
         }
+    }
+}
+
+/// Numbers and words give way to others.
+fn of_words(kind: usize, text: &mut Vec<u8>, other: &[u8], words: &[String], random: &mut Random) {
+    match kind {
         9..12 => {
             if let (Some(range), Some(number)) = (number(text, random), random.pick(&NUMBERS)) {
                 text.splice(range, number.bytes());
@@ -174,12 +190,18 @@ fn once(text: &mut Vec<u8>, other: &[u8], words: &[String], random: &mut Random)
                 text.splice(to, other[from].iter().copied());
             }
         }
-        15 => {
+        _ => {
             let at = random.below(text.len() + 1);
             if let Some(word) = random.pick(words) {
                 text.splice(at..at, word.bytes());
             }
         }
+    }
+}
+
+/// Lines are left out, repeated elsewhere and taken from elsewhere.
+fn of_lines(kind: usize, text: &mut Vec<u8>, other: &[u8], random: &mut Random) {
+    match kind {
         16 => {
             let range = line(text, random);
             text.drain(range);
@@ -200,7 +222,6 @@ fn once(text: &mut Vec<u8>, other: &[u8], words: &[String], random: &mut Random)
             text.splice(to, piece);
         }
     }
-    text.truncate(2 * LONGEST);
 }
 
 fn place(text: &[u8], random: &mut Random) -> Option<usize> {

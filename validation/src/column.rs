@@ -214,89 +214,99 @@ impl Series1D {
 
 fn tables_and_figures(study: &mut Study, all: &[&Series1D]) -> Result<(), CaseError> {
     for series in all {
-        let mut convergence = Table::new(
-            format!("convergence_{}", series.slug),
-            &[
-                "cells",
-                "iMPM_error_[-]",
-                "iGIMP_error_[-]",
-                "iGIMP+B-bar_error_[-]",
-            ],
-        );
-        for k in 0..series.of(0).len() {
-            let error = |method: usize| series.of(method)[k].1.stress_error;
-            convergence.push(vec![series.of(0)[k].0 as f64, error(0), error(1), error(2)]);
-        }
-        let curve = |method: usize| convergence.points(0, method + 1);
-        let first = curve(2)[0];
-        let slope = |order: i32| -> Vec<[f64; 2]> {
-            [1.0, 16.0]
-                .map(|k: f64| [first[0] * k, 0.6 * first[1] / k.powi(order)])
-                .to_vec()
-        };
-        CurvePlot {
-            title: format!("Column under self-weight, E = {}", series.label),
-            x_label: "cells over the height".into(),
-            y_label: "mean stress error / (ρ_{0} g l_{0})".into(),
-            x_scale: Scale::Log,
-            y_scale: Scale::Log,
-            series: vec![
-                with_markers("iMPM", curve(0)),
-                with_markers("iGIMP", curve(1)),
-                with_markers("iGIMP + B-bar", curve(2)),
-                Series::new(
-                    "second order",
-                    slope(2),
-                    SeriesStyle::Line(LineStyle::Dashed),
-                )
-                .in_colour(Colour::BLACK),
-            ],
-            ..CurvePlot::default()
-        }
-        .write(&study.folder.join(format!("convergence_{}", series.slug)))?;
-        study.table(convergence)?;
+        convergence(study, series)?;
+        stress(study, series)?;
+    }
+    Ok(())
+}
 
-        let shown = series
-            .of(0)
-            .iter()
-            .position(|(cells, ..)| *cells == 64)
-            .unwrap_or(0);
-        let mut lines = vec![];
-        for method in [0, 2] {
-            let (cells, result, _) = &series.of(method)[shown];
-            let label = ["iMPM", "iGIMP", "iGIMP + B-bar"][method];
-            let mut table = result.stress.clone();
-            table.name = format!(
-                "stress_{}_{cells}_cells_{}",
-                ["impm", "igimp", "igimp_bbar"][method],
-                series.slug
-            );
-            let points = result
-                .stress
-                .rows
-                .iter()
-                .map(|row| [-row[2] / 1e3, row[0]])
-                .collect();
-            lines.push(Series::markers(format!("{label}, {cells} cells"), points));
-            study.table(table)?;
-        }
-        let exact = series.of(2)[shown]
-            .1
+/// Error of stress against cells over the height.
+fn convergence(study: &mut Study, series: &Series1D) -> Result<(), CaseError> {
+    let mut convergence = Table::new(
+        format!("convergence_{}", series.slug),
+        &[
+            "cells",
+            "iMPM_error_[-]",
+            "iGIMP_error_[-]",
+            "iGIMP+B-bar_error_[-]",
+        ],
+    );
+    for k in 0..series.of(0).len() {
+        let error = |method: usize| series.of(method)[k].1.stress_error;
+        convergence.push(vec![series.of(0)[k].0 as f64, error(0), error(1), error(2)]);
+    }
+    let curve = |method: usize| convergence.points(0, method + 1);
+    let first = curve(2)[0];
+    let slope = |order: i32| -> Vec<[f64; 2]> {
+        [1.0, 16.0]
+            .map(|k: f64| [first[0] * k, 0.6 * first[1] / k.powi(order)])
+            .to_vec()
+    };
+    CurvePlot {
+        title: format!("Column under self-weight, E = {}", series.label),
+        x_label: "cells over the height".into(),
+        y_label: "mean stress error / (ρ_{0} g l_{0})".into(),
+        x_scale: Scale::Log,
+        y_scale: Scale::Log,
+        series: vec![
+            with_markers("iMPM", curve(0)),
+            with_markers("iGIMP", curve(1)),
+            with_markers("iGIMP + B-bar", curve(2)),
+            Series::new(
+                "second order",
+                slope(2),
+                SeriesStyle::Line(LineStyle::Dashed),
+            )
+            .in_colour(Colour::BLACK),
+        ],
+        ..CurvePlot::default()
+    }
+    .write(&study.folder.join(format!("convergence_{}", series.slug)))?;
+    study.table(convergence)
+}
+
+/// Stress along the column.
+fn stress(study: &mut Study, series: &Series1D) -> Result<(), CaseError> {
+    let shown = series
+        .of(0)
+        .iter()
+        .position(|(cells, ..)| *cells == 64)
+        .unwrap_or(0);
+    let mut lines = vec![];
+    for method in [0, 2] {
+        let (cells, result, _) = &series.of(method)[shown];
+        let label = ["iMPM", "iGIMP", "iGIMP + B-bar"][method];
+        let mut table = result.stress.clone();
+        table.name = format!(
+            "stress_{}_{cells}_cells_{}",
+            ["impm", "igimp", "igimp_bbar"][method],
+            series.slug
+        );
+        let points = result
             .stress
             .rows
             .iter()
-            .map(|row| [-row[3] / 1e3, row[0]])
+            .map(|row| [-row[2] / 1e3, row[0]])
             .collect();
-        lines.push(Series::line("exact", exact).in_colour(Colour::BLACK));
-        CurvePlot {
-            title: format!("Stress along the column, E = {}", series.label),
-            x_label: "vertical stress −σ_{yy} [kPa], compression positive".into(),
-            y_label: "initial height Y [m]".into(),
-            series: lines,
-            ..CurvePlot::default()
-        }
-        .write(&study.folder.join(format!("stress_{}", series.slug)))?;
+        lines.push(Series::markers(format!("{label}, {cells} cells"), points));
+        study.table(table)?;
     }
+    let exact = series.of(2)[shown]
+        .1
+        .stress
+        .rows
+        .iter()
+        .map(|row| [-row[3] / 1e3, row[0]])
+        .collect();
+    lines.push(Series::line("exact", exact).in_colour(Colour::BLACK));
+    CurvePlot {
+        title: format!("Stress along the column, E = {}", series.label),
+        x_label: "vertical stress −σ_{yy} [kPa], compression positive".into(),
+        y_label: "initial height Y [m]".into(),
+        series: lines,
+        ..CurvePlot::default()
+    }
+    .write(&study.folder.join(format!("stress_{}", series.slug)))?;
     Ok(())
 }
 

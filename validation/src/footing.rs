@@ -109,105 +109,133 @@ pub(crate) fn to(penetration: f64, steps: usize) -> Vec<String> {
     ]
 }
 
-fn pushes(level: Level) -> Vec<Push> {
-    let of = |name, label: &str, role, cells_per_width, overrides: &[Vec<String>]| Push {
+/// A push of the bonded footing with so many cells to its width.
+fn bonded(
+    name: &'static str,
+    label: &str,
+    role: Role,
+    cells_per_width: u32,
+    overrides: &[Vec<String>],
+) -> Push {
+    Push {
         name,
         label: label.into(),
         role,
         cells_per_width: Some(cells_per_width),
         overrides: overrides.concat(),
-    };
-    let stiff = || vec!["materials.clay.young=\"10 MPa\"".to_owned()];
-    let shared = || vec!["grid.locking=shared-strain".to_owned()];
-    let smooth = || vec!["loads.footing.interface=\"smooth\"".to_owned()];
-    let mut pushes = vec![
-        Push {
-            name: "contact",
-            label: "iGIMP + B-bar, contact, the case file".into(),
-            role: Role::Contact,
-            cells_per_width: None,
-            overrides: Vec::new(),
-        },
-        of(
+    }
+}
+
+fn pushes(level: Level) -> Vec<Push> {
+    let mut pushes = vec![Push {
+        name: "contact",
+        label: "iGIMP + B-bar, contact, the case file".into(),
+        role: Role::Contact,
+        cells_per_width: None,
+        overrides: Vec::new(),
+    }];
+    pushes.extend(coarse_pushes());
+    if level >= Level::Default {
+        pushes.extend(pushes_at_small_strain());
+    }
+    if level == Level::Full {
+        pushes.extend(fine_pushes());
+    }
+    pushes
+}
+
+/// Soil in which small strain reaches the limit load.
+fn stiff() -> Vec<String> {
+    vec!["materials.clay.young=\"10 MPa\"".to_owned()]
+}
+
+/// The pushes of every level.
+fn coarse_pushes() -> [Push; 3] {
+    [
+        bonded(
             "small_strain_9",
             "iGIMP + B-bar, rough, bonded, B/h = 9, E/s_u = 1e4",
             Role::SmallStrain,
             9,
             &[stiff(), to(0.005, 20)],
         ),
-        of(
+        bonded(
             "locked_9",
             "iGIMP, rough, bonded, B/h = 9",
             Role::Locked,
             9,
             &[method("gimp", false), to(0.2, 15)],
         ),
-        of(
+        bonded(
             "rough_9",
             "iGIMP + B-bar, rough, bonded, B/h = 9",
             Role::Deep,
             9,
             &[],
         ),
-    ];
-    if level >= Level::Default {
-        pushes.extend([
-            of(
-                "small_strain_shared_9",
-                "iGIMP + shared strain, rough, bonded, B/h = 9, E/s_u = 1e4",
-                Role::Shared,
-                9,
-                &[stiff(), shared(), to(0.005, 20)],
-            ),
-            of(
-                "small_strain_13",
-                "iGIMP + B-bar, rough, bonded, B/h = 13, E/s_u = 1e4",
-                Role::SmallStrain,
-                13,
-                &[stiff(), to(0.005, 20)],
-            ),
-            of(
-                "small_strain_shared_13",
-                "iGIMP + shared strain, rough, bonded, B/h = 13, E/s_u = 1e4",
-                Role::Shared,
-                13,
-                &[stiff(), shared(), to(0.005, 20)],
-            ),
-        ]);
-    }
-    if level == Level::Full {
-        pushes.extend([
-            of(
-                "smooth_9",
-                "iGIMP + B-bar, smooth, bonded, B/h = 9",
-                Role::Shown,
-                9,
-                &[smooth()],
-            ),
-            of(
-                "rough_13",
-                "iGIMP + B-bar, rough, bonded, B/h = 13",
-                Role::Deep,
-                13,
-                &[to(1.0, 65)],
-            ),
-            of(
-                "impm_bbar_9",
-                "iMPM + B-bar, rough, bonded, B/h = 9",
-                Role::Shown,
-                9,
-                &[method("linear", true)],
-            ),
-            of(
-                "rough_17",
-                "iGIMP + B-bar, rough, bonded, B/h = 17",
-                Role::Deep,
-                17,
-                &[to(1.0, 85)],
-            ),
-        ]);
-    }
-    pushes
+    ]
+}
+
+/// Limit loads of B-bar and of shared strain on two meshes.
+fn pushes_at_small_strain() -> [Push; 3] {
+    let shared = || vec!["grid.locking=shared-strain".to_owned()];
+    [
+        bonded(
+            "small_strain_shared_9",
+            "iGIMP + shared strain, rough, bonded, B/h = 9, E/s_u = 1e4",
+            Role::Shared,
+            9,
+            &[stiff(), shared(), to(0.005, 20)],
+        ),
+        bonded(
+            "small_strain_13",
+            "iGIMP + B-bar, rough, bonded, B/h = 13, E/s_u = 1e4",
+            Role::SmallStrain,
+            13,
+            &[stiff(), to(0.005, 20)],
+        ),
+        bonded(
+            "small_strain_shared_13",
+            "iGIMP + shared strain, rough, bonded, B/h = 13, E/s_u = 1e4",
+            Role::Shared,
+            13,
+            &[stiff(), shared(), to(0.005, 20)],
+        ),
+    ]
+}
+
+/// Other interfaces, bases and meshes.
+fn fine_pushes() -> [Push; 4] {
+    [
+        bonded(
+            "smooth_9",
+            "iGIMP + B-bar, smooth, bonded, B/h = 9",
+            Role::Shown,
+            9,
+            &[vec!["loads.footing.interface=\"smooth\"".to_owned()]],
+        ),
+        bonded(
+            "rough_13",
+            "iGIMP + B-bar, rough, bonded, B/h = 13",
+            Role::Deep,
+            13,
+            &[to(1.0, 65)],
+        ),
+        bonded(
+            "impm_bbar_9",
+            "iMPM + B-bar, rough, bonded, B/h = 9",
+            Role::Shown,
+            9,
+            &[method("linear", true)],
+        ),
+        bonded(
+            "rough_17",
+            "iGIMP + B-bar, rough, bonded, B/h = 17",
+            Role::Deep,
+            17,
+            &[to(1.0, 85)],
+        ),
+    ]
 }
 
 /// w/B against N = resistance / (B s_u), compression positive.

@@ -294,6 +294,23 @@ fn factor_of_safety(study: &mut Study, mesh: &Mesh, found: &Found) -> Result<(),
 }
 
 fn figures(study: &Study, meshes: &[Mesh], found: &[Found]) -> Result<(), CaseError> {
+    displacements(study, meshes, found)?;
+    let fine = meshes
+        .iter()
+        .position(|mesh| mesh.slug == "igimp_bbar_h0.5")
+        .unwrap_or(0);
+    let at = |srf: f64| {
+        found[fine]
+            .sweep
+            .iter()
+            .find(|slope| (slope.srf() - srf).abs() < 1e-9)
+    };
+    let states: Vec<&State> = [1.0, 1.3, 1.35, 1.4].into_iter().filter_map(at).collect();
+    fields(study, &states)
+}
+
+/// Displacement against strength reduction.
+fn displacements(study: &Study, meshes: &[Mesh], found: &[Found]) -> Result<(), CaseError> {
     let mut series: Vec<Series> = meshes
         .iter()
         .zip(found)
@@ -327,18 +344,11 @@ fn figures(study: &Study, meshes: &[Mesh], found: &[Found]) -> Result<(), CaseEr
         ..CurvePlot::default()
     }
     .write(&study.folder.join("displacement_srf"))?;
+    Ok(())
+}
 
-    let fine = meshes
-        .iter()
-        .position(|mesh| mesh.slug == "igimp_bbar_h0.5")
-        .unwrap_or(0);
-    let at = |srf: f64| {
-        found[fine]
-            .sweep
-            .iter()
-            .find(|slope| (slope.srf() - srf).abs() < 1e-9)
-    };
-    let states: Vec<&State> = [1.0, 1.3, 1.35, 1.4].into_iter().filter_map(at).collect();
+/// Displacement and plastic strain of states on the way to failure.
+fn fields(study: &Study, states: &[&State]) -> Result<(), CaseError> {
     for (name, label, values) in [
         (
             "displacement",
@@ -352,7 +362,7 @@ fn figures(study: &Study, meshes: &[Mesh], found: &[Found]) -> Result<(), CaseEr
         ),
     ] {
         // Each state has its own range: they differ by orders of magnitude across failure.
-        for slope in &states {
+        for slope in states {
             let stands = if slope.stands() { "stands" } else { "failed" };
             let title = format!("Mohr–Coulomb slope, SRF {:.2}: {stands}", slope.srf());
             contours(

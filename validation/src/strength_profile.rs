@@ -117,6 +117,28 @@ impl Push {
     }
 }
 
+/// The limit load of a push on both meshes, extrapolated to cells of no size.
+fn extrapolated(study: &mut Study, run: usize, push: &Push, [coarse, fine]: [f64; 2]) {
+    let [lower, upper] = push.ground.bounds[usize::from(push.is_rough)];
+    let [wide, narrow] = push.ground.cells.map(|cells| 1.0 / f64::from(cells));
+    let known = Known {
+        convergence: Convergence::FOOTING,
+        truth: [lower, upper],
+    };
+    let values = [on_cells(wide, coarse), on_cells(narrow, fine)];
+    let estimate = study.extrapolate(push.label(), known, &values);
+    study.check(
+        run,
+        format!(
+            "V/(B c_0), B/h = {} and {} extrapolated to h = 0 [-]",
+            push.ground.cells[0], push.ground.cells[1]
+        ),
+        BOUNDS.says(0.5 * (lower + upper)),
+        Band::Between(0.98 * lower, 1.02 * upper),
+        coverage::value(estimate),
+    );
+}
+
 /// Runs the study.
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("strength-profile", ABOUT, out)?;
@@ -173,23 +195,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
                 upper,
             ]);
             if push.cells == push.ground.cells[1] {
-                let [wide, narrow] = push.ground.cells.map(|cells| 1.0 / f64::from(cells));
-                let known = Known {
-                    convergence: Convergence::FOOTING,
-                    truth: [lower, upper],
-                };
-                let values = [on_cells(wide, coarse), on_cells(narrow, end)];
-                let estimate = study.extrapolate(push.label(), known, &values);
-                study.check(
-                    run,
-                    format!(
-                        "V/(B c_0), B/h = {} and {} extrapolated to h = 0 [-]",
-                        push.ground.cells[0], push.ground.cells[1]
-                    ),
-                    BOUNDS.says(0.5 * (lower + upper)),
-                    Band::Between(0.98 * lower, 1.02 * upper),
-                    coverage::value(estimate),
-                );
+                extrapolated(&mut study, run, push, [coarse, end]);
             }
             coarse = end;
         }

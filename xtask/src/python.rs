@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use crate::failure::Failure;
 use crate::metadata::Metadata;
@@ -89,37 +90,28 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8, Failure> {
         return Ok(0);
     }
     let python = environment.join("python");
-    let mut install = program(&python);
-    install
-        .args([
-            "-m",
-            "pip",
-            "install",
-            "--quiet",
-            "--disable-pip-version-check",
-        ])
-        .args(["--force-reinstall", "--no-deps"])
-        .arg(&wheel);
-    let code = status(&mut install)?;
+    let code = status(&mut install(&python, &wheel))?;
     if code != 0 {
         return Ok(code);
     }
     // From another folder, so that the package is the installed one.
     let tests = root().join("python/tests");
+    let words = "-m pytest -q -p no:cacheprovider --durations=5";
     status(
         program(&python)
             .current_dir(&folder)
-            .args([
-                "-m",
-                "pytest",
-                "-q",
-                "-p",
-                "no:cacheprovider",
-                "--durations=5",
-            ])
+            .args(words.split(' '))
             .arg(tests)
             .args(&arguments.pytest),
     )
+}
+
+/// What installs a wheel without asking a registry.
+fn install(python: &Path, wheel: &Path) -> Command {
+    let words = "-m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps";
+    let mut install = program(python);
+    install.args(words.split(' ')).arg(wheel);
+    install
 }
 
 fn clippy() -> Vec<&'static str> {

@@ -131,8 +131,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         .map(Push::run)
         .collect::<Result<Vec<_>, _>>()?;
     let sequential = footing_sequential_limit_analysis().points("w_over_B", "N");
-    // Meshes with the edge in the middle of a cell: run, cells over the width, curve.
-    let mut mid_cell: Vec<(usize, f64, Vec<[f64; 2]>)> = Vec::new();
+    let mut mid_cell: Vec<MidCell> = Vec::new();
     for (push, result) in pushes.iter().zip(&results) {
         let cells = push.cells_per_width();
         let curve = result.curve("resistance").points(0, 1);
@@ -178,27 +177,35 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             mid_cell.push((run, cells, curve));
         }
     }
-    if let [(_, a, coarse), (run, b, fine)] = &mid_cell[..] {
-        for depth in DEPTHS {
-            let ([coarse, _], [fine, expected]) = (
-                mean(coarse, &sequential, depth),
-                mean(fine, &sequential, depth),
-            );
-            let values = [on_cells(1.0 / a, coarse), on_cells(1.0 / b, fine)];
-            let known = Known {
-                convergence: Convergence::CONTACT,
-                truth: [expected; 2],
-            };
-            let estimate =
-                study.extrapolate(format!("contact footing at {depth} B"), known, &values);
-            study.check(
-                *run,
-                format!("N around {depth} B, B/h = {a} and {b} extrapolated [-]"),
-                SEQUENTIAL.says(expected),
-                Band::Between(0.97 * expected, 1.02 * expected),
-                coverage::value(estimate),
-            );
-        }
+    if let [coarse, fine] = &mid_cell[..] {
+        extrapolated(&mut study, [coarse, fine], &sequential);
     }
     Ok(study)
+}
+
+/// A push with the edge in the middle of a cell: its run, cells over the width, and curve.
+type MidCell = (usize, f64, Vec<[f64; 2]>);
+
+/// The resistance on two meshes with the edge in the middle of a cell, extrapolated to cells of no size.
+fn extrapolated(study: &mut Study, meshes: [&MidCell; 2], sequential: &[[f64; 2]]) {
+    let [(_, a, coarse), (run, b, fine)] = meshes;
+    for depth in DEPTHS {
+        let ([coarse, _], [fine, expected]) = (
+            mean(coarse, sequential, depth),
+            mean(fine, sequential, depth),
+        );
+        let values = [on_cells(1.0 / a, coarse), on_cells(1.0 / b, fine)];
+        let known = Known {
+            convergence: Convergence::CONTACT,
+            truth: [expected; 2],
+        };
+        let estimate = study.extrapolate(format!("contact footing at {depth} B"), known, &values);
+        study.check(
+            *run,
+            format!("N around {depth} B, B/h = {a} and {b} extrapolated [-]"),
+            SEQUENTIAL.says(expected),
+            Band::Between(0.97 * expected, 1.02 * expected),
+            coverage::value(estimate),
+        );
+    }
 }

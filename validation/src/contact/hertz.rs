@@ -116,17 +116,7 @@ impl Cylinder {
             &load_path,
             &mut observe,
         );
-        let mut profile: Vec<[f64; 3]> = closed(&body.rigid)
-            .iter()
-            .map(|(x, node)| {
-                [
-                    x[0] - body.rigid[0].pose.origin[0],
-                    node.pressure,
-                    node.shear[0],
-                ]
-            })
-            .collect();
-        profile.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let profile = profile(&body.rigid);
         let middle = profile
             .iter()
             .min_by(|a, b| a[0].abs().total_cmp(&b[0].abs()))
@@ -141,6 +131,17 @@ impl Cylinder {
             profile,
         })
     }
+}
+
+/// Place beside the axis, pressure and shear of the knots in contact, from left to right.
+fn profile(bodies: &[RigidBody<2>]) -> Vec<[f64; 3]> {
+    let axis = bodies[0].pose.origin[0];
+    let mut profile: Vec<[f64; 3]> = closed(bodies)
+        .iter()
+        .map(|(x, node)| [x[0] - axis, node.pressure, node.shear[0]])
+        .collect();
+    profile.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    profile
 }
 
 /// Half-width and largest pressure of Hertz's ellipse with the second moment of a profile and with its
@@ -251,31 +252,37 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     refinement(&mut study, third, &errors.rows);
     errors.write_csv(&study.folder)?;
     if level > Level::Quick {
-        let friction = 0.5;
-        let found = Cylinder {
-            cells: 16,
-            poisson: 0.4999,
-            interface: Interface::friction(friction),
-            sideways: 5e-4,
-        }
-        .press()?;
-        let run = study.run_to_end(found.run);
-        let share = found.force[0].abs() / (friction * -found.force[1]);
-        let stick = (1.0 - share).sqrt();
-        let quantity = format!("stick zone c/b at Q/(μ P) = {share:.3} [-]");
-        let measured = 1.0 - found.middle / friction;
-        study.check(
-            run,
-            quantity,
-            CATTANEO.says(stick),
-            Band::Relative(0.03),
-            measured,
-        );
-        let mut profile = Table::new("shear", &["x_[-]", "p_[-]", "q_[-]"]);
-        for own in &found.profile {
-            profile.push(own.to_vec());
-        }
-        study.table(profile)?;
+        friction(&mut study)?;
     }
     Ok(study)
+}
+
+/// A cylinder that is pressed and pushed sideways: the middle sticks, the rest slides.
+fn friction(study: &mut Study) -> Result<(), CaseError> {
+    let friction = 0.5;
+    let found = Cylinder {
+        cells: 16,
+        poisson: 0.4999,
+        interface: Interface::friction(friction),
+        sideways: 5e-4,
+    }
+    .press()?;
+    let run = study.run_to_end(found.run);
+    let share = found.force[0].abs() / (friction * -found.force[1]);
+    let stick = (1.0 - share).sqrt();
+    let quantity = format!("stick zone c/b at Q/(μ P) = {share:.3} [-]");
+    let measured = 1.0 - found.middle / friction;
+    study.check(
+        run,
+        quantity,
+        CATTANEO.says(stick),
+        Band::Relative(0.03),
+        measured,
+    );
+    let mut profile = Table::new("shear", &["x_[-]", "p_[-]", "q_[-]"]);
+    for own in &found.profile {
+        profile.push(own.to_vec());
+    }
+    study.table(profile)?;
+    Ok(())
 }

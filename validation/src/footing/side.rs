@@ -117,6 +117,19 @@ impl Shaft {
         y > self.level - settlement && x < self.edge + (cells - 0.5) * self.cell
     }
 
+    /// By particle, whether it is soil beside the shaft of a footing that has gone down so far \[m\].
+    fn leaving(
+        &self,
+        fields: &ParticleFields<2>,
+        soil: usize,
+        settlement: f64,
+        beside: Beside,
+    ) -> Vec<bool> {
+        std::iter::zip(&fields.law, &fields.x)
+            .map(|(&law, &x)| law == soil && self.is_beside(x, settlement, beside.reach()))
+            .collect()
+    }
+
     /// What the nodes of the shaft above the base carry of the resistance, and their pull \[N/m\].
     fn forces(&self, grid: &Grid<2>, settlement: f64, reactions: &[[f64; 2]]) -> [f64; 2] {
         let above = self.level - settlement + 1e-6 * self.cell;
@@ -155,9 +168,8 @@ pub(crate) fn push(
     let weak_law = model.laws.len();
     let settings = model.march_settings(1);
     let mut workspace = Workspace::new(model.solver());
-    let (mut steps_made, mut failures) = (Vec::new(), Vec::new());
+    let (mut steps_made, mut failures, mut moments) = (Vec::new(), Vec::new(), Vec::new());
     let mut outcome = Outcome::Completed;
-    let mut moments = Vec::new();
     let mut released = 0.0;
     for number in 0..steps {
         let reached = |t: f64| settlement * (number as f64 + t) / steps as f64;
@@ -197,11 +209,7 @@ pub(crate) fn push(
             break;
         }
         let fields = &*body.particles;
-        let leaves = |particle: usize| {
-            let is_soil = fields.law[particle] == soil;
-            is_soil && shaft.is_beside(fields.x[particle], reached(1.0), beside.reach())
-        };
-        let leaving: Vec<bool> = (0..body.particles.len()).map(leaves).collect();
+        let leaving = shaft.leaving(fields, soil, reached(1.0), beside);
         if beside != Beside::Sticks && leaving.contains(&true) {
             let volumes = fields.volume0.iter().zip(&leaving);
             released += volumes

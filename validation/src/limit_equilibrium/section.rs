@@ -238,24 +238,83 @@ impl Section {
     }
 
     /// The case file, in the plane or in space between two ends.
-    #[allow(clippy::too_many_lines, reason = "a case file, table by table")]
     fn text(&self, variant: Variant, search: Search, ends: Option<Ends>) -> String {
-        let Variant {
-            cells,
-            locking,
-            associated,
-        } = variant;
-        let Search {
-            bracket,
-            path,
-            steps,
-            young,
-        } = search;
-        let locking = match locking {
+        let cell = self.height / f64::from(variant.cells);
+        let upright = format!("[\"{} m\", \"{} m\"]", self.base, self.top() + cell);
+        let extent = Extent::of(ends, cell, &upright);
+        let mut text = self.tables(variant, &extent) + &self.stages(search);
+        for (k, layer) in self.layers.iter().enumerate() {
+            let dilation = if variant.associated {
+                layer.friction
+            } else {
+                0.0
+            };
+            let _ = write!(
+                text,
+                "
+                 [materials.soil-{k}]
+                 unit_weight = \"{} kN/m3\"
+                 young = \"{} kPa\"
+                 poisson = {POISSON}
+                 {}
+                 [[bodies]]
+                 name = \"layer {k}\"
+                 material = \"soil-{k}\"
+                 points_per_cell = {}
+                 polygon = {}
+                 {}
+                ",
+                self.unit_weight,
+                search.young,
+                layer.strength(dilation),
+                extent.points_per_cell,
+                corners(&layer.polygon),
+                extent.across,
+            );
+        }
+        text
+    }
+
+    /// The tables that a case has once, but for its stages.
+    fn tables(&self, variant: Variant, extent: &Extent) -> String {
+        let locking = match variant.locking {
             Locking::None => "none",
             Locking::BBar => "b-bar",
             Locking::SharedStrain => "shared-strain",
         };
+        let [left, right] = self.sides();
+        format!(
+            "igimp = 1
+             [case]
+             title = \"{}\"
+             analysis = \"{}\"
+             gravity = \"9.81 m/s2\"
+             [grid]
+             cell = {}
+             domain.x = [\"{left} m\", \"{right} m\"]
+             {}
+             locking = \"{locking}\"
+             [boundaries]
+             left = \"roller\"
+             right = \"roller\"
+             bottom = \"fixed\"
+             {}
+             [solver]
+             tolerance = 1e-6
+             max_iterations = 20
+            ",
+            self.name, extent.analysis, extent.cells, extent.domain, extent.walls,
+        )
+    }
+
+    /// The stages that search for the factor of safety.
+    fn stages(&self, search: Search) -> String {
+        let Search {
+            bracket,
+            path,
+            steps,
+            ..
+        } = search;
         let push = if self.horizontal == 0.0 {
             String::new()
         } else {
@@ -270,50 +329,8 @@ impl Section {
             Path::Reduce => "reduce",
             Path::Gravity => "gravity",
         };
-        let cell = self.height / f64::from(cells);
-        let ([left, right], top) = (self.sides(), self.top() + cell);
-        let base = self.base;
-        let upright = format!("[\"{base} m\", \"{top} m\"]");
-        let (points, analysis, cells, rest, across) = match ends {
-            None => (
-                4,
-                "plane-strain",
-                format!("\"{cell} m\""),
-                format!("domain.y = {upright}"),
-                String::new(),
-            ),
-            Some(ends) => (
-                8,
-                "3d",
-                format!(
-                    "{{ x = \"{cell} m\", y = \"{} m\", z = \"{cell} m\" }}",
-                    ends.length / f64::from(ends.cells)
-                ),
-                format!("{}\ndomain.z = {upright}", ends.domain()),
-                format!("across = [\"0 m\", \"{} m\"]", ends.length),
-            ),
-        };
-        let walls = ends.map_or_else(String::new, Ends::walls);
-        let mut text = format!(
-            "igimp = 1
-             [case]
-             title = \"{}\"
-             analysis = \"{analysis}\"
-             gravity = \"9.81 m/s2\"
-             [grid]
-             cell = {cells}
-             domain.x = [\"{left} m\", \"{right} m\"]
-             {rest}
-             locking = \"{locking}\"
-             [boundaries]
-             left = \"roller\"
-             right = \"roller\"
-             bottom = \"fixed\"
-             {walls}
-             [solver]
-             tolerance = 1e-6
-             max_iterations = 20
-             {weight}
+        format!(
+            "{weight}
              [[stages]]
              name = \"strength reduction\"
              type = \"strength-reduction\"
@@ -322,46 +339,63 @@ impl Section {
              bracket = {bracket:?}
              tolerance = {TOLERANCE}
              steps = {steps}
-            ",
-            self.name,
-        );
-        for (k, layer) in self.layers.iter().enumerate() {
-            let Layer {
-                cohesion,
-                friction,
-                polygon,
-            } = layer;
-            let strength = if *friction > 0.0 {
-                let dilation = if associated { *friction } else { 0.0 };
-                format!(
-                    "model = \"mohr-coulomb\"
+            "
+        )
+    }
+}
+
+impl Layer {
+    /// The keys of its strength.
+    fn strength(&self, dilation: f64) -> String {
+        let Self {
+            cohesion, friction, ..
+        } = self;
+        if *friction > 0.0 {
+            format!(
+                "model = \"mohr-coulomb\"
                      cohesion = \"{cohesion} kPa\"
                      friction = \"{friction} deg\"
                      dilation = \"{dilation} deg\""
-                )
-            } else {
-                format!("model = \"tresca\"\ncu = \"{cohesion} kPa\"")
-            };
-            let _ = write!(
-                text,
-                "
-                 [materials.soil-{k}]
-                 unit_weight = \"{} kN/m3\"
-                 young = \"{young} kPa\"
-                 poisson = {POISSON}
-                 {strength}
-                 [[bodies]]
-                 name = \"layer {k}\"
-                 material = \"soil-{k}\"
-                 points_per_cell = {points}
-                 polygon = {}
-                 {across}
-                ",
-                self.unit_weight,
-                corners(polygon),
-            );
+            )
+        } else {
+            format!("model = \"tresca\"\ncu = \"{cohesion} kPa\"")
         }
-        text
+    }
+}
+
+/// What a case in space states otherwise than one in the plane.
+struct Extent {
+    analysis: &'static str,
+    cells: String,
+    /// The domain but for x.
+    domain: String,
+    walls: String,
+    points_per_cell: u32,
+    /// The reach of a body from one end to the other.
+    across: String,
+}
+
+impl Extent {
+    fn of(ends: Option<Ends>, cell: f64, upright: &str) -> Self {
+        let Some(ends) = ends else {
+            return Self {
+                analysis: "plane-strain",
+                cells: format!("\"{cell} m\""),
+                domain: format!("domain.y = {upright}"),
+                walls: String::new(),
+                points_per_cell: 4,
+                across: String::new(),
+            };
+        };
+        let between = ends.length / f64::from(ends.cells);
+        Self {
+            analysis: "3d",
+            cells: format!("{{ x = \"{cell} m\", y = \"{between} m\", z = \"{cell} m\" }}"),
+            domain: format!("{}\ndomain.z = {upright}", ends.domain()),
+            walls: ends.walls(),
+            points_per_cell: 8,
+            across: format!("across = [\"0 m\", \"{} m\"]", ends.length),
+        }
     }
 }
 

@@ -70,6 +70,28 @@ impl Search {
         overrides.push("stages.factor of safety.tolerance=0.004".to_owned());
         Computed::new(shipped_case("nailed_cut", overrides)?)
     }
+
+    fn nails(&self) -> &'static str {
+        if self.has_nails { "nails" } else { "no nails" }
+    }
+
+    /// Least and greatest factor of safety that is known, and from where.
+    fn bounds(&self, upper: f64) -> (f64, f64, Oracle) {
+        if self.has_nails {
+            (NUMBER[0] / LOADED, upper, BOUNDS)
+        } else {
+            let [low, high] = NUMBER.map(|number| number / (0.8 * LOADED));
+            (low, high, WITHOUT)
+        }
+    }
+}
+
+/// The trials of a search as one run.
+fn trials(name: String, result: &Computed<2>) -> RunRecord {
+    let trials: Vec<RunRecord> = (result.trials.iter())
+        .map(|trial| RunRecord::new("", &trial.report, trial.elapsed))
+        .collect();
+    RunRecord::sum(name, &trials.iter().collect::<Vec<_>>())
 }
 
 /// Runs the study.
@@ -101,28 +123,14 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     for (own, computed) in std::iter::zip(searches.chunks(meshes), results.chunks(meshes)) {
         let mut before: Option<[f64; 2]> = None;
         for (search, result) in std::iter::zip(own, computed) {
-            let nails = if search.has_nails {
-                "nails"
-            } else {
-                "no nails"
-            };
-            let trials: Vec<RunRecord> = result
-                .trials
-                .iter()
-                .map(|trial| RunRecord::new("", &trial.report, trial.elapsed))
-                .collect();
+            let nails = search.nails();
             let name = format!("{nails}, h = {} m", search.cell);
-            let run = study.run(RunRecord::sum(name, &trials.iter().collect::<Vec<_>>()));
+            let run = study.run(trials(name, result));
             let found = result
                 .safety()
                 .and_then(|own| Some((own.stable?, own.failed?)));
             let found = found.map_or(f64::NAN, |(stable, failed)| 0.5 * (stable + failed));
-            let (low, high, oracle) = if search.has_nails {
-                (NUMBER[0] / LOADED, upper, BOUNDS)
-            } else {
-                let [low, high] = NUMBER.map(|number| number / (0.8 * LOADED));
-                (low, high, WITHOUT)
-            };
+            let (low, high, oracle) = search.bounds(upper);
             table.push(vec![
                 f64::from(u8::from(search.has_nails)),
                 search.cell,

@@ -1,13 +1,12 @@
 //! The mesh error of every slope with bounds: what two meshes say of the factor on cells of no size.
 
-use std::fmt::Write as _;
-
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
 use igimp_model::check::Band;
-use igimp_results::mesh_study::{Computed, Convergence, estimate};
+use igimp_results::mesh_study::{Computed, Convergence, Estimate, estimate};
 use igimp_results::tables::table::Table;
 
+use super::problems::Problem;
 use super::{Found, Slopes};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::coverage::Known;
@@ -25,90 +24,135 @@ const UNCERTAINTY: Oracle = Oracle {
     locator: "extrapolated value and uncertainty overlap the bounds in nine of ten",
 };
 
+/// What is told of each slope.
+const HEADER: [&str; 9] = [
+    "slope",
+    "psi=phi",
+    "known_from_[-]",
+    "known_to_[-]",
+    "coarse_[-]",
+    "fine_[-]",
+    "extrapolated_[-]",
+    "uncertainty_[-]",
+    "covers_the_bounds",
+];
+
+/// A slope with bounds that was run on both meshes.
+struct Pair<'s> {
+    place: usize,
+    problem: &'s Problem,
+    /// With ψ = φ; else with ψ = 0.
+    associated: bool,
+    bounds: [f64; 2],
+    /// What was found on the coarse mesh and on the fine one.
+    on: [&'s Found; 2],
+}
+
+impl<'s> Pair<'s> {
+    fn of(slopes: &'s Slopes, place: usize, associated: bool) -> Option<Self> {
+        let problem = &slopes.problems[place];
+        let on = |mesh: usize| {
+            let variant = Variant {
+                cells: problem.meshes[mesh],
+                locking: Locking::SharedStrain,
+                associated,
+            };
+            slopes.of(place, variant)
+        };
+        Some(Self {
+            place,
+            problem,
+            associated,
+            bounds: slopes.known[place].interval,
+            on: [on(0)?, on(1)?],
+        })
+    }
+
+    fn name(&self) -> String {
+        let flow = if self.associated { "" } else { ", ψ = 0" };
+        format!("{}{flow}, two meshes", self.problem.section.name)
+    }
+
+    /// The factor on cells of no size.
+    fn extrapolated(&self, study: &mut Study) -> Option<Estimate> {
+        let values = values(self.on, &self.problem.meshes);
+        let known = Known {
+            convergence: Convergence::SOIL,
+            truth: self.bounds,
+        };
+        // ψ = 0 knows no bounds of its own.
+        if self.associated {
+            study.extrapolate(self.name(), known, &values)
+        } else {
+            estimate(&values, known.convergence)
+        }
+    }
+
+    /// Whether the extrapolated factor reaches the bounds within its uncertainty.
+    fn covers(&self, found: &Estimate) -> bool {
+        let [lower, upper] = self.bounds;
+        found.value - found.uncertainty <= upper && found.value + found.uncertainty >= lower
+    }
+
+    fn run(&self) -> RunRecord {
+        let [coarse, fine] = self.on.map(|found| found.run(String::new()));
+        RunRecord::sum(self.name(), &[&coarse, &fine])
+    }
+
+    fn row(&self, found: &Estimate) -> Vec<f64> {
+        vec![
+            self.place as f64 + 1.0,
+            f64::from(u8::from(self.associated)),
+            self.bounds[0],
+            self.bounds[1],
+            self.on[0].factor(),
+            self.on[1].factor(),
+            found.value,
+            found.uncertainty,
+            f64::from(u8::from(self.covers(found))),
+        ]
+    }
+
+    fn line(&self, found: &Estimate) -> String {
+        let [lower, upper] = self.bounds;
+        format!(
+            "  {:>2} {:<48} {lower:.3} … {upper:.3}; {:.4}, {:.4}; {:.4} ± {:.4}\n",
+            self.place + 1,
+            self.name(),
+            self.on[0].factor(),
+            self.on[1].factor(),
+            found.value,
+            found.uncertainty,
+        )
+    }
+}
+
 /// Extrapolates each slope that has bounds and was run on both meshes, with ψ = φ and ψ = 0.
 pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError> {
-    let mut table = Table::new(
-        "mesh_error",
-        &[
-            "slope",
-            "psi=phi",
-            "known_from_[-]",
-            "known_to_[-]",
-            "coarse_[-]",
-            "fine_[-]",
-            "extrapolated_[-]",
-            "uncertainty_[-]",
-            "covers_the_bounds",
-        ],
-    );
+    let mut table = Table::new("mesh_error", &HEADER);
     let mut note = String::from("mesh error: known; coarse, fine; extrapolated\n");
     let mut runs = Vec::new();
     let mut covered = 0_usize;
-    let with_bounds = slopes.problems.iter().enumerate();
-    for (place, problem) in
-        with_bounds.filter(|(_, p)| p.oracle.kind == OracleKind::LimitAnalysis && p.known.is_some())
-    {
-        for associated in [true, false] {
-            let on = |mesh: usize| {
-                let variant = Variant {
-                    cells: problem.meshes[mesh],
-                    locking: Locking::SharedStrain,
-                    associated,
-                };
-                slopes.of(place, variant)
-            };
-            let (Some(coarse), Some(fine)) = (on(0), on(1)) else {
-                continue;
-            };
-            let flow = if associated { "" } else { ", ψ = 0" };
-            let name = format!("{}{flow}, two meshes", problem.section.name);
-            let truth = slopes.known[place].interval;
-            let [lower, upper] = truth;
-            let values = values([coarse, fine], &problem.meshes);
-            let known = Known {
-                convergence: Convergence::SOIL,
-                truth,
-            };
-            // ψ = 0 knows no bounds of its own.
-            let found = if associated {
-                study.extrapolate(name.clone(), known, &values)
-            } else {
-                estimate(&values, known.convergence)
-            };
-            let Some(found) = found else { continue };
-            let covers = found.value - found.uncertainty <= upper
-                && found.value + found.uncertainty >= lower;
-            let both = [coarse, fine].map(|found| found.run(String::new()));
-            let both = RunRecord::sum(name.clone(), &[&both[0], &both[1]]);
-            let run = study.run(both.clone());
-            if associated {
-                covered += usize::from(covers);
-                runs.push(both);
-                let expected = problem.oracle.says(0.5 * (lower + upper));
-                let band = Band::Between((1.0 - BEYOND) * lower, (1.0 + BEYOND) * upper);
-                study.check(run, EXTRAPOLATED, expected, band, found.value);
-            }
-            table.push(vec![
-                place as f64 + 1.0,
-                f64::from(u8::from(associated)),
-                lower,
-                upper,
-                coarse.factor(),
-                fine.factor(),
-                found.value,
-                found.uncertainty,
-                f64::from(u8::from(covers)),
-            ]);
-            let _ = writeln!(
-                note,
-                "  {:>2} {name:<48} {lower:.3} … {upper:.3}; {:.4}, {:.4}; {:.4} ± {:.4}",
-                place + 1,
-                coarse.factor(),
-                fine.factor(),
-                found.value,
-                found.uncertainty,
-            );
+    let with_bounds = (slopes.problems.iter().enumerate())
+        .filter(|(_, own)| own.oracle.kind == OracleKind::LimitAnalysis && own.known.is_some());
+    let pairs = with_bounds
+        .flat_map(|(place, _)| [true, false].map(|associated| Pair::of(slopes, place, associated)));
+    for pair in pairs.flatten() {
+        let Some(found) = pair.extrapolated(study) else {
+            continue;
+        };
+        let both = pair.run();
+        let run = study.run(both.clone());
+        if pair.associated {
+            covered += usize::from(pair.covers(&found));
+            runs.push(both);
+            let [lower, upper] = pair.bounds;
+            let expected = pair.problem.oracle.says(0.5 * (lower + upper));
+            let band = Band::Between((1.0 - BEYOND) * lower, (1.0 + BEYOND) * upper);
+            study.check(run, EXTRAPOLATED, expected, band, found.value);
         }
+        table.push(pair.row(&found));
+        note += &pair.line(&found);
     }
     if runs.is_empty() {
         return Ok(());

@@ -223,9 +223,9 @@ pub(crate) fn drained(bounds: &[[f64; 3]]) -> Vec<Problem> {
     ]
 }
 
-/// The slopes of published studies, layered ones among them.
-pub(crate) fn published() -> Vec<Problem> {
-    let of = |section, oracle, opinion, search| Problem {
+/// A slope of soil that dilates, on ten cells over the height.
+fn dilating(section: Section, oracle: Oracle, opinion: Opinion, search: Search) -> Problem {
+    Problem {
         section,
         oracle,
         known: None,
@@ -236,13 +236,17 @@ pub(crate) fn published() -> Vec<Problem> {
         levels: [Level::Default, Level::Full],
         locks: false,
         meshes: vec![10],
-    };
+    }
+}
+
+/// The slopes of published studies, layered ones among them.
+pub(crate) fn published() -> Vec<Problem> {
     let foundation = |ratio, search| Problem {
         asked: Asked {
             below: 0.02,
             above: [0.08, 0.08],
         },
-        ..of(
+        ..dilating(
             two_layers(ratio),
             GRIFFITHS_LANE_4,
             Opinion::Rotation,
@@ -256,7 +260,7 @@ pub(crate) fn published() -> Vec<Problem> {
         },
         levels: [Level::Full; 2],
         meshes: vec![20],
-        ..of(
+        ..dilating(
             weak_layer(0.2),
             GRIFFITHS_LANE_3,
             Opinion::Sliding,
@@ -273,7 +277,7 @@ pub(crate) fn published() -> Vec<Problem> {
     let arai_tagyo = Problem {
         without_dilation: Some(KEEPS_VOLUME),
         meshes: vec![10, 20],
-        ..of(
+        ..dilating(
             arai_tagyo,
             ARAI_TAGYO,
             Opinion::Rotation,
@@ -283,7 +287,7 @@ pub(crate) fn published() -> Vec<Problem> {
     let acads = |section, known, search| Problem {
         known: Some(known),
         meshes: vec![10, 20],
-        ..of(section, ACADS, Opinion::Bishop, search)
+        ..dilating(section, ACADS, Opinion::Bishop, search)
     };
     let layered = Problem {
         // The bounds to within 1.5 %.

@@ -5,7 +5,7 @@
 //! $`\sigma \det F`$ of the accepted particles (theory, eq. 16), and so is the weight. Rigid bodies act by
 //! the traction that the step left on them, and are in equilibrium themselves.
 
-use igimp_assembly::{Drive, Stencils};
+use igimp_assembly::{Drive, Particles, Stencils};
 use igimp_model::Case;
 use igimp_solver::{Accepted, Body};
 
@@ -23,6 +23,22 @@ pub(crate) struct Equilibrium {
     pub(crate) round_off: f64,
 }
 
+/// The forces of soil at the nodes of the grid.
+struct NodalForces {
+    internal: Vec<[f64; 2]>,
+    external: Vec<[f64; 2]>,
+    /// Square of the force that strains of round-off would make \[N²/m²\].
+    round_off: f64,
+}
+
+/// Squares of forces: out of balance where nothing holds, where something does, and of the external ones \[N²/m²\].
+#[derive(Default)]
+struct Squares {
+    free: f64,
+    reaction: f64,
+    external: f64,
+}
+
 /// Computes the equilibrium of a step again, from the body before it and what it accepted.
 /// `None` if the particles have no place on the grid.
 pub(crate) fn equilibrium(
@@ -32,12 +48,57 @@ pub(crate) fn equilibrium(
 ) -> Option<Equilibrium> {
     let conditions = accepted.conditions;
     let (grid, u) = (&conditions.grid, &accepted.forces.u);
-    let before = &body.particles;
-    let after = &accepted.body.particles;
-    let stencils = Stencils::build(before, &case.method, conditions).ok()?;
-    let mut f_int = vec![[0.0; 2]; grid.node_count()];
-    let mut f_ext = vec![[0.0; 2]; grid.node_count()];
-    let mut round_off = 0.0;
+    let stencils = Stencils::build(&body.particles, &case.method, conditions).ok()?;
+    let soil = of_soil(&stencils, &body.particles, accepted);
+    let begun = Begun {
+        particles: &body.particles,
+        rigid: &body.rigid,
+        stencils: &stencils,
+        conditions,
+        below: case.method.small_cuts.below,
+    };
+    let of_bodies = forces(&begun, &accepted.body.rigid, u);
+    let [dx, dy] = case.grid.smallest_cell();
+    let mut squares = Squares::default();
+    for node in 0..grid.node_count() {
+        // Nodes with hardly any soil that no neighbour takes along are held.
+        let is_held = stencils.node_volume(node) < case.method.small_cuts.below * dx * dy
+            && u[node].iter().all(|component| component.abs() == 0.0);
+        for a in 0..2 {
+            let external = soil.external[node][a];
+            let difference: f64 = external - soil.internal[node][a] + of_bodies[node][a];
+            squares.external += external * external;
+            if is_held || conditions.constraints.of(node, a).is_some() {
+                squares.reaction += difference * difference;
+            } else {
+                squares.free += difference * difference;
+            }
+        }
+    }
+    add_bodies(&mut squares, &begun, &of_bodies);
+    let reference: f64 = f64::sqrt(squares.external) + f64::sqrt(squares.reaction);
+    // Where nothing acts, nothing is out of balance.
+    let share = |force: f64| if force == 0.0 { 0.0 } else { force / reference };
+    Some(Equilibrium {
+        residual: share(f64::sqrt(squares.free)),
+        round_off: share(f64::sqrt(soil.round_off)),
+    })
+}
+
+/// The forces of stress and weight, from particles before a step and what it made of them.
+fn of_soil(
+    stencils: &Stencils<2>,
+    before: &Particles<2>,
+    accepted: &Accepted<'_, 2>,
+) -> NodalForces {
+    let conditions = accepted.conditions;
+    let (u, after) = (&accepted.forces.u, &accepted.body.particles);
+    let nodes = conditions.grid.node_count();
+    let mut out = NodalForces {
+        internal: vec![[0.0; 2]; nodes],
+        external: vec![[0.0; 2]; nodes],
+        round_off: 0.0,
+    };
     for particle in 0..before.len() {
         let mut delta = [[1.0, 0.0], [0.0, 1.0]];
         let mut delta_bar = delta;
@@ -63,43 +124,24 @@ pub(crate) fn equilibrium(
             let g_bar = solved(&delta_bar, support.grad_bar);
             for a in 0..2 {
                 let own = sigma[a][0] * g[0] + sigma[a][1] * g[1];
-                f_int[support.node][a] += volume * (own + mean * (g_bar[a] - g[a]));
-                f_ext[support.node][a] +=
+                out.internal[support.node][a] += volume * (own + mean * (g_bar[a] - g[a]));
+                out.external[support.node][a] +=
                     before.mass[particle] * support.value * conditions.loads.gravity[a];
                 slopes += support.grad[a] * support.grad[a];
             }
         }
         let noise = STRAIN_ROUND_OFF * modulus * before.volume(particle);
-        round_off += noise * noise * slopes;
+        out.round_off += noise * noise * slopes;
     }
-    let begun = Begun {
-        particles: before,
-        rigid: &body.rigid,
-        stencils: &stencils,
-        conditions,
-        below: case.method.small_cuts.below,
-    };
-    let of_bodies = forces(&begun, &accepted.body.rigid, u);
-    let [dx, dy] = case.grid.smallest_cell();
-    let (mut free, mut reaction, mut external) = (0.0, 0.0, 0.0);
-    for node in 0..grid.node_count() {
-        // Nodes with hardly any soil that no neighbour takes along are held.
-        let is_held = stencils.node_volume(node) < case.method.small_cuts.below * dx * dy
-            && u[node].iter().all(|component| component.abs() == 0.0);
-        for a in 0..2 {
-            let difference: f64 = f_ext[node][a] - f_int[node][a] + of_bodies[node][a];
-            external += f_ext[node][a] * f_ext[node][a];
-            if is_held || conditions.constraints.of(node, a).is_some() {
-                reaction += difference * difference;
-            } else {
-                free += difference * difference;
-            }
-        }
-    }
-    for (slot, rigid) in body.rigid.iter().enumerate() {
-        let motion = &conditions.motions[slot];
+    out
+}
+
+/// Adds the forces of rigid bodies, which are moved or loaded.
+fn add_bodies(squares: &mut Squares, begun: &Begun<'_>, of_bodies: &[[f64; 2]]) {
+    for (slot, rigid) in begun.rigid.iter().enumerate() {
+        let motion = &begun.conditions.motions[slot];
         let [x, y] = motion.displacement;
-        let first = grid.node_count() + 2 * slot;
+        let first = begun.conditions.grid.node_count() + 2 * slot;
         let size = rigid.surface.size();
         for (drive, unit, force) in [
             (x, 1.0, of_bodies[first][0]),
@@ -107,21 +149,14 @@ pub(crate) fn equilibrium(
             (motion.rotation[0], size, of_bodies[first + 1][0]),
         ] {
             match drive {
-                Drive::Moved(_) => reaction += force * force,
+                Drive::Moved(_) => squares.reaction += force * force,
                 Drive::Loaded(load) => {
-                    free += (load / unit + force).powi(2);
-                    external += (load / unit).powi(2);
+                    squares.free += (load / unit + force).powi(2);
+                    squares.external += (load / unit).powi(2);
                 }
             }
         }
     }
-    let reference: f64 = f64::sqrt(external) + f64::sqrt(reaction);
-    // Where nothing acts, nothing is out of balance.
-    let share = |force: f64| if force == 0.0 { 0.0 } else { force / reference };
-    Some(Equilibrium {
-        residual: share(f64::sqrt(free)),
-        round_off: share(f64::sqrt(round_off)),
-    })
 }
 
 /// $`F^{-T} g`$.

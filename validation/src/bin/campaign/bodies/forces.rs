@@ -193,6 +193,27 @@ fn shares(sides: &[Side], number: usize, x: [f64; 2]) -> Option<[(usize, f64); 2
     best.filter(|_| is_on).map(|(_, shares)| shares)
 }
 
+/// The sides near a place: number, height above it, and the normal as the body stands.
+fn sides_near(body: &RigidBody<2>, sides: &[Side], x: [f64; 2]) -> Vec<(usize, f64, [f64; 2])> {
+    let turned = |v: [f64; 2]| {
+        let turn = &body.pose.turn;
+        [0, 1].map(|a| turn[a][0] * v[0] + turn[a][1] * v[1])
+    };
+    let own = in_frame(&body.pose, x);
+    // All segments of a circle are one side.
+    if sides[0].normal.is_none() {
+        let radius = body.surface.bounds().1[0];
+        let length = own[0].hypot(own[1]);
+        return vec![(0, length - radius, turned(own.map(|x| x / length)))];
+    }
+    let of = sides.iter().filter_map(|side| {
+        let (normal, at) = (side.normal?, side.knots[0].1);
+        let height = normal[0] * (own[0] - at[0]) + normal[1] * (own[1] - at[1]);
+        Some((side.number, height, turned(normal)))
+    });
+    of.collect()
+}
+
 fn around_knots(begun: &Begun<'_>, slot: usize, body: &RigidBody<2>) -> BTreeMap<usize, Around> {
     let Begun {
         particles,
@@ -200,28 +221,11 @@ fn around_knots(begun: &Begun<'_>, slot: usize, body: &RigidBody<2>) -> BTreeMap
         ..
     } = begun;
     let sides = sides(body);
+    let first = conditions.grid.node_count() + 2 * slot;
     let mut out: BTreeMap<usize, Around> = BTreeMap::new();
-    let turned = |v: [f64; 2]| {
-        let turn = &body.pose.turn;
-        [0, 1].map(|a| turn[a][0] * v[0] + turn[a][1] * v[1])
-    };
-    let radius = body.surface.bounds().1[0];
     for particle in 0..particles.len() {
         let (x, half) = (particles.x[particle], particles.half_length[particle]);
-        let own = in_frame(&body.pose, x);
-        // All segments of a circle are one side.
-        let faces: Vec<(usize, f64, [f64; 2])> = if sides[0].normal.is_none() {
-            let length = own[0].hypot(own[1]);
-            vec![(0, length - radius, turned(own.map(|x| x / length)))]
-        } else {
-            let of = sides.iter().filter_map(|side| {
-                let (normal, at) = (side.normal?, side.knots[0].1);
-                let height = normal[0] * (own[0] - at[0]) + normal[1] * (own[1] - at[1]);
-                Some((side.number, height, turned(normal)))
-            });
-            of.collect()
-        };
-        for (number, height, normal) in faces {
+        for (number, height, normal) in sides_near(body, &sides, x) {
             let thickness = half[0] * normal[0].abs() + half[1] * normal[1].abs();
             if height <= 0.0 || height > 2.0 * thickness {
                 continue;
@@ -250,31 +254,38 @@ fn around_knots(begun: &Begun<'_>, slot: usize, body: &RigidBody<2>) -> BTreeMap
                     sums.young += weight * young;
                     sums.adhesion += weight * adhesion;
                     sums.cell += weight * cell;
-                    let first = conditions.grid.node_count() + 2 * slot;
-                    let arm = [
-                        place[0] - body.pose.origin[0],
-                        place[1] - body.pose.origin[1],
-                    ];
                     for (direction, by_node) in
                         [(normal, &mut sums.opening), (tangent, &mut sums.slip)]
                     {
-                        let mut add = |node: usize, by: [f64; 2]| {
-                            let own = by_node.entry(node).or_insert([0.0; 2]);
-                            own[0] += weight * by[0];
-                            own[1] += weight * by[1];
-                        };
-                        for &(node, share) in &nodes {
-                            add(node, direction.map(|n| share * n));
-                        }
-                        let moment = arm[0] * direction[1] - arm[1] * direction[0];
-                        add(first, direction.map(|n| -n));
-                        add(first + 1, [-moment / body.surface.size(), 0.0]);
+                        add_way(by_node, &nodes, (direction, weight), (body, first, place));
                     }
                 }
             }
         }
     }
     out
+}
+
+/// Adds how far soil at a place moves away from a body in a direction, by node: those of the soil, and the two that stand for the
+/// body from `first` on.
+fn add_way(
+    by_node: &mut BTreeMap<usize, [f64; 2]>,
+    nodes: &[(usize, f64)],
+    (direction, weight): ([f64; 2], f64),
+    (body, first, place): (&RigidBody<2>, usize, [f64; 2]),
+) {
+    let mut add = |node: usize, by: [f64; 2]| {
+        let own = by_node.entry(node).or_insert([0.0; 2]);
+        own[0] += weight * by[0];
+        own[1] += weight * by[1];
+    };
+    for &(node, share) in nodes {
+        add(node, direction.map(|n| share * n));
+    }
+    let arm = [0, 1].map(|a| place[a] - body.pose.origin[a]);
+    let moment = arm[0] * direction[1] - arm[1] * direction[0];
+    add(first, direction.map(|n| -n));
+    add(first + 1, [-moment / body.surface.size(), 0.0]);
 }
 
 /// Points of integration on a face with the lengths that they stand for: two between any two lines of the

@@ -1,8 +1,6 @@
 //! Flow that fills all pores, against exact and published values.
 
-mod common;
-
-use common::{faces, flow, grid, rectangle};
+use crate::common::{faces, flow, grid, rectangle};
 use igimp_seepage::{
     Conditions, Extent, InGround, Named, OnFaces, SeepageBody, SeepageError, Soil, solve,
 };

@@ -2,16 +2,13 @@
 //! the nodes do.
 //! ORACLE: products and entries of `nalgebra-sparse` matrices; solutions that are known.
 
-#[path = "support/mod.rs"]
-mod support;
-
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::support::{Body, distance, manufactured, stored};
 use igimp_linear::{LinearSolver, MultifrontalLu, SolverKind};
 use igimp_linear::{Pattern, TangentMatrix};
 use nalgebra::DVector;
-use support::{Body, distance, manufactured, stored};
 
 const PLANNED: [SolverKind; 3] = [
     SolverKind::Auto,

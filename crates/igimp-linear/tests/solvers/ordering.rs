@@ -1,9 +1,7 @@
 //! GOAL: the geometric nested dissection is an order of elimination, for bodies of any shape, that
 //! fills the factors less than the minimum degree order of `faer`.
 
-#[path = "support/mod.rs"]
-mod support;
-
+use crate::support::Body;
 use faer::Side;
 use faer::perm::PermRef;
 use faer::sparse::SymbolicSparseColMatRef;
@@ -14,7 +12,6 @@ use faer::sparse::linalg::cholesky::{
 use igimp_linear::NestedDissection;
 use igimp_linear::{NodeBlock, Pattern};
 use proptest::prelude::*;
-use support::Body;
 
 /// Fails unless every unknown appears once, those of a node together and in their order.
 fn assert_is_an_order(pattern: &Pattern) {

@@ -1,8 +1,6 @@
 //! Matrices that look like a tangent: particles spread over the cells of a grid, each adding a
 //! small symmetric positive semi-definite block to the 3^D nodes of its support.
 
-#![allow(dead_code, reason = "each test target uses its part")]
-
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 

@@ -1,8 +1,6 @@
 //! Flow with a free surface, rain and drains, in the plane and in space.
 
-mod common;
-
-use common::{faces, flow, grid, rectangle};
+use crate::common::{faces, flow, grid, rectangle};
 use igimp_geometry::region::Region;
 use igimp_geometry::solid::Prism;
 use igimp_seepage::{

@@ -1,12 +1,9 @@
 //! GOAL: a record keeps the system that it was asked for and changes nothing.
 //! ORACLE: the same solver without a record, and the systems that it was given.
 
-#[path = "support/mod.rs"]
-mod support;
-
+use crate::support::{Body, manufactured};
 use igimp_linear::TangentMatrix;
 use igimp_linear::{LinearSolver, LinearSolverError, Record, SolverKind};
-use support::{Body, manufactured};
 
 fn solve(solver: &mut dyn LinearSolver, matrix: &TangentMatrix, rhs: &[f64]) -> Vec<f64> {
     let mut solution = vec![0.0; rhs.len()];

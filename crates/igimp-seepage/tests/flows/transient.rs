@@ -1,10 +1,8 @@
 //! Flow in time: consolidation of layers, a sudden drawdown, rain on dry soil.
 
-mod common;
-
 use std::time::Instant;
 
-use common::{faces, flow, grid, rectangle};
+use crate::common::{faces, flow, grid, rectangle};
 use igimp_geometry::region::Region;
 use igimp_seepage::{
     Conditions, Course, Curve, History, OnFaces, Seepage, SeepageBody, SeepageError, Soil,

@@ -1,8 +1,6 @@
 //! Dams with vertical faces on an impervious base.
 
-mod common;
-
-use common::dam;
+use crate::common::dam;
 
 /// Length, water upstream and downstream \[m\], cells over the height, exit point and free surface at L/4, L/2 and 3 L/4 \[m\].
 ///

@@ -1,15 +1,12 @@
 //! GOAL: all linear solvers recover the same known solution, on matrices like the tangent of a
 //! body of particles on one- to three-dimensional grids, and do so with the same bits every time.
 
-#[path = "support/mod.rs"]
-mod support;
-
 use std::collections::BTreeMap;
 
+use crate::support::{Body, chain, distance, manufactured, stored};
 use igimp_linear::TangentMatrix;
 use igimp_linear::{LinearSolver, MultifrontalLu, SolverKind};
 use proptest::prelude::*;
-use support::{Body, chain, distance, manufactured, stored};
 
 const DIRECT: [SolverKind; 5] = [
     SolverKind::Auto,

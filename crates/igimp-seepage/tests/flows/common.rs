@@ -1,5 +1,4 @@
 //! Ground and conditions that several tests share.
-#![allow(dead_code, unreachable_pub, reason = "each test takes what it needs")]
 
 use igimp_geometry::region::Region;
 use igimp_seepage::{
@@ -8,13 +7,18 @@ use igimp_seepage::{
 use igimp_shape::{Axis, Grid};
 
 /// A grid of square cells from a corner on.
-pub fn grid(from: [f64; 2], cell: f64, cells: [usize; 2]) -> Grid<2> {
+pub(crate) fn grid(from: [f64; 2], cell: f64, cells: [usize; 2]) -> Grid<2> {
     let axis = |k: usize| Axis::uniform(from[k], cell, cells[k]).unwrap();
     Grid::new([axis(0), axis(1)])
 }
 
 /// A box of faces under a name.
-pub fn faces(name: &str, lower: [f64; 2], upper: [f64; 2], what: OnFaces) -> Named<2, OnFaces> {
+pub(crate) fn faces(
+    name: &str,
+    lower: [f64; 2],
+    upper: [f64; 2],
+    what: OnFaces,
+) -> Named<2, OnFaces> {
     Named {
         name: name.to_owned(),
         within: Extent { lower, upper },
@@ -23,12 +27,12 @@ pub fn faces(name: &str, lower: [f64; 2], upper: [f64; 2], what: OnFaces) -> Nam
 }
 
 /// The corners of a rectangle.
-pub fn rectangle([x0, y0]: [f64; 2], [x1, y1]: [f64; 2]) -> Vec<[f64; 2]> {
+pub(crate) fn rectangle([x0, y0]: [f64; 2], [x1, y1]: [f64; 2]) -> Vec<[f64; 2]> {
     vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
 }
 
 /// Solves for polygons with a soil each, in their order, without free water.
-pub fn flow(
+pub(crate) fn flow(
     grid: &Grid<2>,
     polygons: &[Vec<[f64; 2]>],
     conditions: &Conditions<2>,
@@ -45,7 +49,7 @@ pub fn flow(
 
 /// A dam with vertical faces at x = 0 and `length` on an impervious base, water at `high` and `low`, the grid laid so that
 /// its lines lie `shift` cells to the left of the faces.
-pub fn dam(length: f64, high: f64, low: f64, cell: f64, shift: f64) -> Seepage<2> {
+pub(crate) fn dam(length: f64, high: f64, low: f64, cell: f64, shift: f64) -> Seepage<2> {
     let count = |size: f64| (size / cell).round() as usize;
     let extra = usize::from(shift > 0.0);
     let grid = grid(

@@ -1,15 +1,12 @@
 //! GOAL: what cannot be solved ends in a typed error, never in a panic or in a silent NaN, and
 //! what is merely awkward (zero diagonals, indefinite matrices) is solved.
 
-#[path = "support/mod.rs"]
-mod support;
-
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::support::{Body, Random, assemble, distance, from_dense, manufactured, stored};
 use igimp_linear::{GeneralLu, LinearSolver, LinearSolverError, MultifrontalLu, SolverKind};
 use igimp_linear::{NodeBlock, Pattern, TangentMatrix};
-use support::{Body, Random, assemble, distance, from_dense, manufactured, stored};
 
 const CHOLESKY: [SolverKind; 3] = [
     SolverKind::FaerCholesky,

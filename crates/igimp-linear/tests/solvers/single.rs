@@ -2,13 +2,10 @@
 //! do not serve, double precision does, and the reason is told.
 //! ORACLE: known solutions; the solution of the factors in double precision.
 
-#[path = "support/mod.rs"]
-mod support;
-
+use crate::support::{Body, distance, manufactured};
 use igimp_linear::TangentMatrix;
 use igimp_linear::{AutoSolver, LinearSolver, LinearSolverError, Reason, SolverKind};
 use rayon::ThreadPoolBuilder;
-use support::{Body, distance, manufactured};
 
 /// Bodies with one particle a cell, large enough to be cut into tasks.
 fn bodies() -> [Body; 3] {

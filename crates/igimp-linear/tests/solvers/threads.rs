@@ -2,12 +2,9 @@
 //! is cut into tasks and large fronts are shared.
 //! ORACLE: the bits of one thread, and the known solution.
 
-#[path = "support/mod.rs"]
-mod support;
-
+use crate::support::{Body, distance, manufactured};
 use igimp_linear::SolverKind;
 use rayon::ThreadPoolBuilder;
-use support::{Body, distance, manufactured};
 
 fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
