@@ -210,18 +210,10 @@ pub fn march_from<const D: usize>(
         steps: Vec::new(),
         failures: Vec::new(),
     };
-    let nominal = settings.nominal();
-    let least = settings.cut_factor.powf(f64::from(settings.cuts) + 0.5);
-    // Where steps are chosen, the smallest goes by the one that is tried first.
-    let mut smallest = least * settings.pace.map_or(nominal, |_| state.size);
-    let mut cuts = 0;
-    let next = |at: f64, size: f64| match settings.pace {
-        None => next_factor(at, size, nominal),
-        Some(_) => next_landing(at, size, nominal),
-    };
+    let mut stride = Stride::new(settings, &state);
     while state.at < 1.0 {
         let at = state.at;
-        let to = next(at, state.size);
+        let to = stride.next(at, state.size);
         let result = conditions_at(load_path, at, to).and_then(|conditions| {
             step(
                 body,
@@ -235,16 +227,7 @@ pub fn march_from<const D: usize>(
         });
         match result {
             Ok((conditions, step, forces)) => {
-                state.at = to;
-                state.successes += 1;
-                cuts = 0;
-                if let Some(pace) = &settings.pace {
-                    state.size = pace.next(state.size, to - at, step.pace);
-                    smallest = least * state.size;
-                } else if state.successes >= SUCCESSES_TO_GROW && state.size < nominal {
-                    state.size = (state.size * settings.growth).min(nominal);
-                    state.successes = 0;
-                }
+                stride.accept(&mut state, to, step.pace);
                 let accepted = Accepted {
                     body,
                     conditions: &conditions,
@@ -262,22 +245,7 @@ pub fn march_from<const D: usize>(
             Err(error) => {
                 observer.on_cut(&error);
                 report.failures.push(error.clone());
-                // The last step may have been shorter than its size, so as to end on 1.
-                let tried = if settings.pace.is_some() {
-                    to - at
-                } else {
-                    1.0 - at
-                };
-                state.size = settings.cut_factor * state.size.min(tried);
-                state.successes = 0;
-                cuts += 1;
-                let next = next(at, state.size);
-                let is_a_cut = at < next && next < to;
-                if cuts > settings.cuts
-                    || state.size < smallest
-                    || !is_a_cut
-                    || error.failure.leaves_grid()
-                {
+                if !stride.cut(&mut state, to) || error.failure.leaves_grid() {
                     report.outcome = Outcome::StepTooSmall {
                         last_converged: at,
                         cause: error,
@@ -288,6 +256,71 @@ pub fn march_from<const D: usize>(
         }
     }
     report
+}
+
+/// The sizes of the steps of a march.
+struct Stride<'a> {
+    settings: &'a MarchSettings,
+    nominal: f64,
+    /// The smallest size over that of a step that is not cut \[-\].
+    least: f64,
+    smallest: f64,
+    /// Cuts in succession.
+    cuts: u32,
+}
+
+impl<'a> Stride<'a> {
+    fn new(settings: &'a MarchSettings, state: &MarchState) -> Self {
+        let nominal = settings.nominal();
+        let least = settings.cut_factor.powf(f64::from(settings.cuts) + 0.5);
+        Self {
+            settings,
+            nominal,
+            least,
+            // Where steps are chosen, the smallest goes by the one that is tried first.
+            smallest: least * settings.pace.map_or(nominal, |_| state.size),
+            cuts: 0,
+        }
+    }
+
+    /// The load factor after a step of a size.
+    fn next(&self, at: f64, size: f64) -> f64 {
+        match self.settings.pace {
+            None => next_factor(at, size, self.nominal),
+            Some(_) => next_landing(at, size, self.nominal),
+        }
+    }
+
+    /// A step to a load factor was accepted; it would have one follow that is `factor` times as long.
+    fn accept(&mut self, state: &mut MarchState, to: f64, factor: f64) {
+        let taken = to - state.at;
+        state.at = to;
+        state.successes += 1;
+        self.cuts = 0;
+        if let Some(pace) = &self.settings.pace {
+            state.size = pace.next(state.size, taken, factor);
+            self.smallest = self.least * state.size;
+        } else if state.successes >= SUCCESSES_TO_GROW && state.size < self.nominal {
+            state.size = (state.size * self.settings.growth).min(self.nominal);
+            state.successes = 0;
+        }
+    }
+
+    /// A step to a load factor failed: the next one is shorter; whether there is one.
+    fn cut(&mut self, state: &mut MarchState, to: f64) -> bool {
+        // The last step may have been shorter than its size, so as to end on 1.
+        let tried = if self.settings.pace.is_some() {
+            to - state.at
+        } else {
+            1.0 - state.at
+        };
+        state.size = self.settings.cut_factor * state.size.min(tried);
+        state.successes = 0;
+        self.cuts += 1;
+        let next = self.next(state.at, state.size);
+        let is_a_cut = state.at < next && next < to;
+        self.cuts <= self.settings.cuts && state.size >= self.smallest && is_a_cut
+    }
 }
 
 impl Pace {

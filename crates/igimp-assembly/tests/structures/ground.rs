@@ -6,17 +6,14 @@ use std::sync::Arc;
 
 use crate::common::{Random, conditions, displacements, grid, laws, particles};
 use igimp_assembly::{
-    AbsorbingWall, GroundMotion, Method, Rayleigh, Stencils, System, TiedWalls, TimeScheme,
-    TimeStep, WallNode, Walls,
+    AbsorbingWall, GroundMotion, Method, Rayleigh, SharedLaw, Stencils, StepConditions, System,
+    TiedWalls, TimeScheme, TimeStep, WallNode, Walls,
 };
 use igimp_material::TangentKind;
+use igimp_shape::Grid;
 
-#[test]
-fn the_tangent_of_walls_and_damping_is_the_derivative_of_the_force() {
-    let mut random = Random(11);
-    let grid = grid::<2>(4);
-    let (_, law) = laws().remove(0);
-    let method = Method::default();
+/// A step in time between walls, ties and moving ground, in damped soil.
+fn shaken(grid: &Grid<2>, law: &SharedLaw, scheme: TimeScheme) -> StepConditions<2> {
     let wall = |normal, upper| AbsorbingWall {
         normal,
         upper,
@@ -29,36 +26,46 @@ fn the_tangent_of_walls_and_damping_is_the_derivative_of_the_force() {
             displacement: [1e-3 * node as f64, 2e-3],
         })
         .collect();
+    let time = TimeStep {
+        duration: 0.05,
+        scheme,
+        lumped: 0.0,
+        is_first: false,
+        must_resolve: false,
+    };
+    let walls = Walls {
+        absorbing: vec![wall(1, false), wall(0, true)],
+        tied: Some(TiedWalls::across(0)),
+        nodes: Arc::new(nodes),
+        beside: Arc::new(Vec::new()),
+    };
+    let ground = GroundMotion {
+        before: [0.1, 0.0],
+        after: [0.4, 0.0],
+    };
+    let damping = Rayleigh {
+        mass: 0.7,
+        stiffness: 0.02,
+    };
+    conditions(grid, law)
+        .with_time(Some(time))
+        .and_then(|own| own.with_walls(Some(walls)))
+        .and_then(|own| own.with_ground(Some(ground)))
+        .and_then(|own| own.with_damping(Some(damping)))
+        .unwrap()
+}
+
+#[test]
+fn the_tangent_of_walls_and_damping_is_the_derivative_of_the_force() {
+    let mut random = Random(11);
+    let grid = grid::<2>(4);
+    let (_, law) = laws().remove(0);
+    let method = Method::default();
     for scheme in [TimeScheme::BackwardEuler, TimeScheme::Newmark] {
         let body = particles(&grid, 0.1, &mut random);
         let velocities = (body.x.iter()).map(|x| [0.3 * x[1], 0.1 * x[0]]).collect();
         let body = body.with_velocities(velocities).unwrap();
-        let conditions = conditions(&grid, &law)
-            .with_time(Some(TimeStep {
-                duration: 0.05,
-                scheme,
-                lumped: 0.0,
-                is_first: false,
-                must_resolve: false,
-            }))
-            .unwrap()
-            .with_walls(Some(Walls {
-                absorbing: vec![wall(1, false), wall(0, true)],
-                tied: Some(TiedWalls::across(0)),
-                nodes: Arc::new(Vec::clone(&nodes)),
-                beside: Arc::new(Vec::new()),
-            }))
-            .unwrap()
-            .with_ground(Some(GroundMotion {
-                before: [0.1, 0.0],
-                after: [0.4, 0.0],
-            }))
-            .unwrap()
-            .with_damping(Some(Rayleigh {
-                mass: 0.7,
-                stiffness: 0.02,
-            }))
-            .unwrap();
+        let conditions = shaken(&grid, &law, scheme);
         let stencils = Stencils::build(&body, &method, &conditions).unwrap();
         let system = System::new(&body, &stencils, &conditions, &method)
             .unwrap()

@@ -484,6 +484,11 @@ fn open_and_twisted_surfaces_are_refused() {
     assert!(
         (body(made(&inside_out).unwrap()).distance(&[0.0; 3]) + 1.0 / 3.0_f64.sqrt()).abs() < 1e-12
     );
+}
+
+/// Shapes that are too large, that cross themselves, and whose edges are rounded away are refused.
+#[test]
+fn shapes_that_make_no_surface_are_refused() {
     for far in [1e9, 1e300, f64::INFINITY] {
         assert!(Surface::sphere(far, 0.1).is_err());
         assert!(Surface::cuboid([far, 1.0, 1.0], 0.0, 1e-3).is_err());

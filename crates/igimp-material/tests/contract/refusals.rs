@@ -29,7 +29,6 @@ fn mohr_coulomb(c: f64, friction: f64, dilation: f64) -> Result<MohrCoulomb, Mat
 fn parameters_out_of_range_are_named() {
     let yield_stress = |value| VonMises::from_yield_stress(elasticity(), value);
     let undrained = |value| VonMises::from_undrained_strength(elasticity(), value);
-    let quarter = std::f64::consts::FRAC_PI_2;
     let cases = [
         (
             message(Elasticity::new(0.0, 0.3)),
@@ -63,6 +62,16 @@ fn parameters_out_of_range_are_named() {
             message(Tresca::new(elasticity(), f64::NAN)),
             "`undrained_strength` = NaN must be positive and finite",
         ),
+    ];
+    for (found, expected) in cases {
+        assert_eq!(found, expected);
+    }
+}
+
+#[test]
+fn parameters_of_mohr_coulomb_out_of_range_are_named() {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let cases = [
         (
             message(mohr_coulomb(-1.0, 0.5, 0.1)),
             "`cohesion` = -1 must be finite and not negative",
