@@ -215,23 +215,18 @@ impl HoekBrown {
         if self.srf.to_bits() == 1.0_f64.to_bits() {
             return Some(given);
         }
-        let (mut low, mut high) = (self.least_base(), f64::INFINITY);
-        let mut base = given;
-        for correction in 1..=MOST_CORRECTIONS {
+        let mut search = Search::new(self.least_base(), given);
+        for _ in 0..MOST_CORRECTIONS {
+            let base = search.base;
             let [_, [found, rate]] = self.touching(base).stress;
             let gap = minor - found;
-            if gap > 0.0 {
-                low = base;
-            } else {
-                high = base;
-            }
-            let next = next_base([low, high], base + gap / rate, correction);
+            let next = search.next(gap, base + gap / rate);
             if (next - base).abs() <= f64::EPSILON * base {
                 break;
             }
-            base = next;
+            search.base = next;
         }
-        Some(base)
+        Some(search.base)
     }
 
     /// Difference of major and minor stress that strength admits at a minor one, compression positive, and sin φ there.
@@ -251,9 +246,10 @@ impl HoekBrown {
         trial: &Principal,
         history: &History,
     ) -> Result<Option<(Touching, ReturnMap, Principal)>, MaterialError> {
-        let (mut low, mut high) = (self.least_base(), f64::INFINITY);
-        let mut base = self.base_at(-trial[0]).unwrap_or(2.0 * self.least_base());
-        for correction in 1..=MOST_CORRECTIONS {
+        let first = self.base_at(-trial[0]);
+        let mut search = Search::new(self.least_base(), first.unwrap_or(2.0 * self.least_base()));
+        for _ in 0..MOST_CORRECTIONS {
+            let base = search.base;
             let touching = self.touching(base);
             let pyramid = &touching.changing.strength;
             let map = pyramid.return_map(&self.elasticity, strain, *history)?;
@@ -262,19 +258,13 @@ impl HoekBrown {
             let [_, [minor, minor_rate]] = touching.stress;
             let gap = -map.tau[0] - minor;
             let slope = minor_rate + moves[0];
-            if gap > 0.0 {
-                low = base;
-            } else {
-                high = base;
-            }
-            let newton = base + gap / slope.max(0.01 * minor_rate);
-            let next = next_base([low, high], newton, correction);
+            let next = search.next(gap, base + gap / slope.max(0.01 * minor_rate));
             // Where a pyramid touches, an error of the point is one of its square on the surface.
             if (next - base).abs() <= 4.0 * f64::EPSILON * base {
                 return Ok((base > 1.5 * self.least_base() && regime != Regime::Apex)
                     .then_some((touching, map, moves)));
             }
-            base = next;
+            search.base = next;
         }
         Err(MaterialError::NotConverged { law: self.name() })
     }
@@ -302,15 +292,44 @@ impl HoekBrown {
     }
 }
 
-/// The next base of Newton's method between bounds; every fourth correction halves what is left, in its logarithm.
-fn next_base([low, high]: [f64; 2], newton: f64, correction: usize) -> f64 {
-    let is_inside = newton > low && newton < high;
-    if is_inside && (!correction.is_multiple_of(4) || high.is_infinite()) {
-        newton
-    } else if high.is_infinite() {
-        4.0 * low
-    } else {
-        (low * high).sqrt()
+/// Newton's method for a base, between bounds.
+struct Search {
+    low: f64,
+    high: f64,
+    base: f64,
+    /// The last correction.
+    step: f64,
+}
+
+impl Search {
+    fn new(least: f64, base: f64) -> Self {
+        Self {
+            low: least,
+            high: f64::INFINITY,
+            base,
+            step: f64::INFINITY,
+        }
+    }
+
+    /// The next base where `gap` is left, which is positive below the one that is sought: that of Newton's method while its corrections
+    /// at least halve, else the middle of the bounds in their logarithm.
+    fn next(&mut self, gap: f64, newton: f64) -> f64 {
+        if gap > 0.0 {
+            self.low = self.base;
+        } else {
+            self.high = self.base;
+        }
+        let is_inside = newton > self.low && newton < self.high;
+        let halves = 2.0 * (newton - self.base).abs() <= self.step.abs();
+        let next = if is_inside && (halves || self.high.is_infinite()) {
+            newton
+        } else if self.high.is_infinite() {
+            4.0 * self.low
+        } else {
+            (self.low * self.high).sqrt()
+        };
+        self.step = next - self.base;
+        next
     }
 }
 
