@@ -250,6 +250,7 @@ fn equilibrium<const D: usize>(
         corrector.correct(&mut u, &mut residual)?;
     }
 
+    let at_round_off = residual.relative_norm > corrector.sufficient(&u, &residual);
     let linear = corrector.effort();
     let Corrector {
         system,
@@ -295,7 +296,7 @@ fn equilibrium<const D: usize>(
         iterations,
         worst: history.worst(grid),
         residuals: std::mem::take(&mut history.residuals),
-        at_round_off: residual.relative_norm > settings.tolerance,
+        at_round_off,
         unknowns,
         plastic_share,
         false_support,

@@ -40,6 +40,7 @@ fn the_tangent_of_walls_and_damping_is_the_derivative_of_the_force() {
                 lumped: 0.0,
                 is_first: false,
                 must_resolve: false,
+                equilibrium: 0.0,
             }))
             .unwrap()
             .with_walls(Some(Walls {
