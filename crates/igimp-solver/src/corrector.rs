@@ -293,7 +293,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
     }
 
     /// The relative residual that suffices in a step that takes time and need not be found to the tolerance: what it would add to the
-    /// motion is a small share of the error that the step aims at (theory, eq. 131).
+    /// motion is a small share of the error that the step aims at (theory, eq. 68a).
     fn goal_of_motion(&self, u: &[[f64; D]], residual: &OutOfBalance) -> Option<f64> {
         let time = self.system.conditions().time?;
         if time.equilibrium == 0.0 {

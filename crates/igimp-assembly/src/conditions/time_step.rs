@@ -14,7 +14,7 @@ pub struct TimeStep {
     pub is_first: bool,
     /// Whether the step is refused where motion changes by more than it resolves.
     pub must_resolve: bool,
-    /// The share of the error that a step aims at which its out-of-balance force may leave (theory, eq. 131); zero where equilibrium is
+    /// The share of the error that a step aims at which its out-of-balance force may leave (theory, eq. 68a); zero where equilibrium is
     /// found to the tolerance of Newton's method \[-\].
     pub equilibrium: f64,
 }

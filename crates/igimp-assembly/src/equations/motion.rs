@@ -8,7 +8,7 @@ use crate::equations::system::System;
 
 impl<const D: usize> System<'_, D> {
     /// The displacement that the out-of-balance force at `u` \[length\] would add to a step if inertia alone answered it, as a share
-    /// of the motion of the step (theory, eq. 131) \[-\]: with stiffness it is less. None in statics.
+    /// of the motion of the step (theory, eq. 68a) \[-\]: with stiffness it is less. None in statics.
     pub fn unbalanced_motion(&self, u: &[[f64; D]], residual: &OutOfBalance) -> Option<f64> {
         let inertia = self.inertia.as_ref()?;
         let mut squared = 0.0;

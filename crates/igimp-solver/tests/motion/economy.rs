@@ -66,14 +66,14 @@ fn march<const D: usize>(
     corrections
 }
 
-/// GOAL: a residual that adds a hundredth of the aimed error to the motion of a step (theory, eq. 131) changes the way of sand by as
+/// GOAL: a residual that adds a hundredth of the aimed error to the motion of a step (theory, eq. 68a) changes the way of sand by as
 /// little, and saves corrections; the energy closes with the work of what is left.
 /// ORACLE: the same steps to round-off.
 #[test]
 fn equilibrium_need_not_be_better_than_the_time_integration() {
     let grid = unit_grid([10, 6]);
     let gravity = 1e-3 * YOUNG;
-    let let_go = |equilibrium: f64| {
+    let release = |equilibrium: f64| {
         let mut body = block(&grid, [0, 0], [4, 4]);
         let mut constraints = Constraints::free(&grid);
         constraints.fix_wall(&grid, 0, false, 0).unwrap();
@@ -93,8 +93,8 @@ fn equilibrium_need_not_be_better_than_the_time_integration() {
         let corrections = march(&mut body, &conditions, time, 30);
         (body.particles.displacement.clone(), corrections)
     };
-    let (close, dear) = let_go(0.0);
-    let (loose, cheap) = let_go(0.01);
+    let (close, dear) = release(0.0);
+    let (loose, cheap) = release(0.01);
     let largest = |m: f64, own: f64| m.max(own.abs());
     let way = close.as_flattened().iter().copied().fold(0.0, largest);
     let pairs = std::iter::zip(close.as_flattened(), loose.as_flattened());
