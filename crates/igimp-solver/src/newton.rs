@@ -250,8 +250,7 @@ fn equilibrium<const D: usize>(
         corrector.correct(&mut u, &mut residual)?;
     }
 
-    let at_round_off = residual.relative_norm > corrector.sufficient(&u, &residual);
-    let linear = corrector.effort();
+    let (linear, enough) = (corrector.effort(), corrector.sufficient(&u, &residual));
     let Corrector {
         system,
         factor,
@@ -296,7 +295,7 @@ fn equilibrium<const D: usize>(
         iterations,
         worst: history.worst(grid),
         residuals: std::mem::take(&mut history.residuals),
-        at_round_off,
+        at_round_off: residual.relative_norm > enough,
         unknowns,
         plastic_share,
         false_support,
