@@ -4,8 +4,9 @@ use igimp_material::{MaterialError, Tensor, logarithmic_strain};
 use rayon::prelude::*;
 
 use crate::body::particles::CHUNK;
-use crate::contributions::inertia::{Motion, product};
+use crate::contributions::inertia::Motion;
 use crate::contributions::nodal_forces::NodalForces;
+use crate::contributions::nodal_mass::product;
 use crate::equations::kinematics::{ParticleTrial, gradients};
 use crate::equations::system::System;
 use crate::equations::trial::Trial;

@@ -120,6 +120,7 @@ impl<const D: usize> FreeField<D> {
         own.held = None;
         if let Some(time) = &mut own.time {
             time.must_resolve = false;
+            time.equilibrium = 0.0;
         }
         own.with_walls(walls)
     }
@@ -197,6 +198,7 @@ impl<const D: usize> FreeField<D> {
             let at_wall = self.node_of_body(of_body, own.node_place(node));
             let free = FreeMotion {
                 node: at_wall,
+                normal: self.normal,
                 displacement: [self.nodes[node].displacement, nodes[node].displacement],
                 velocity: [motion.before[node], motion.after[node]],
                 force: tie.force.map(|force| force.map(|own| sign * own)),

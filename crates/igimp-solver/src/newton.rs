@@ -249,7 +249,7 @@ fn equilibrium<const D: usize>(
         corrector.correct(&mut u, &mut residual)?;
     }
 
-    let linear = corrector.effort();
+    let (linear, enough) = (corrector.effort(), corrector.sufficient(&u, &residual));
     let Corrector {
         system,
         factor,
@@ -294,7 +294,7 @@ fn equilibrium<const D: usize>(
         iterations,
         worst: history.worst(grid),
         residuals: std::mem::take(&mut history.residuals),
-        at_round_off: residual.relative_norm > settings.tolerance,
+        at_round_off: residual.relative_norm > enough,
         unknowns,
         plastic_share,
         false_support,

@@ -39,6 +39,8 @@ impl TiedWalls {
 pub struct FreeMotion<const D: usize> {
     /// The node of the grid.
     pub node: usize,
+    /// The axis across the wall: other walls that meet it in the node stand on still ground.
+    pub normal: usize,
     /// Displacement since the wall replaced its supports \[length\].
     pub displacement: [[f64; D]; 2],
     /// Velocity \[length/time\].
@@ -58,6 +60,7 @@ impl<const D: usize> FreeMotion<D> {
     pub(crate) fn still(node: usize) -> Self {
         Self {
             node,
+            normal: 0,
             displacement: [[0.0; D]; 2],
             velocity: [[0.0; D]; 2],
             force: [[0.0; D]; 2],

@@ -8,32 +8,26 @@
 //!
 //! The particles are the quadrature of the mass, as they are of stress: momentum and energy of the map are exact.
 
+use std::sync::OnceLock;
+
 use igimp_shape::Support;
-use rayon::prelude::*;
 
 use crate::body::particles::Particles;
 use crate::conditions::time_step::{TimeScheme, TimeStep, Weights};
 use crate::contributions::nodal_forces::AddBlock;
+use crate::contributions::nodal_mass::{NodalMass, add_scaled, product};
 use crate::contributions::rigid::{NODES_PER_BODY, RigidBody};
 use crate::error::AssemblyError;
 use crate::step::stencils::Stencils;
-use crate::step::strips::split;
 use crate::step::unknowns::Unknowns;
-
-/// The share of their momentum that the velocities of the grid leave when no more iterations are made \[-\].
-const FOUND: f64 = 1e-14;
-
-/// The share that they may leave \[-\]: nodes that few particles reach keep round-off from going further.
-const ACCEPTED: f64 = 1e-9;
-
-/// Most iterations for the velocities of the grid: the scaled matrix is well conditioned, but for nodes that few particles reach.
-const MOST_ITERATIONS: usize = 500;
 
 /// Inertia of one step.
 #[derive(Debug)]
 pub(crate) struct Inertia<const D: usize> {
     step: TimeStep,
     mass: NodalMass,
+    /// The entries of the mass of soil by their places in the matrix, once they are known \[mass\].
+    entries: OnceLock<Vec<(u32, f64)>>,
     /// By node that stands for the motion of a rigid body: its mass, or its moment of inertia over its squared size \[mass\].
     of_bodies: Vec<[[f64; D]; D]>,
     /// At the start, by node \[length/time\].
@@ -77,16 +71,20 @@ impl<const D: usize> Inertia<D> {
                     })
                 })
                 .collect();
-            let found = mass.solve(sums, mean.clone(), unknowns)?;
+            let found = mass.solve(&sums, mean.clone(), unknowns)?;
             Ok::<_, AssemblyError>((found, mean))
         };
-        let (mut velocity, mut mean_velocity) = on_grid(&particles.velocity)?;
         let carries = step.asks_for_acceleration() && !step.is_first;
-        let mut acceleration = if carries {
-            on_grid(&particles.acceleration)?.0
-        } else {
-            vec![[0.0; D]; nodes]
-        };
+        let (of_velocity, of_acceleration) = rayon::join(
+            || on_grid(&particles.velocity),
+            || {
+                carries
+                    .then(|| on_grid(&particles.acceleration))
+                    .transpose()
+            },
+        );
+        let (mut velocity, mut mean_velocity) = of_velocity?;
+        let mut acceleration = of_acceleration?.map_or(vec![[0.0; D]; nodes], |(found, _)| found);
         for body in bodies {
             let own = body.nodal(&body.motion.velocity, &body.motion.spin);
             velocity.extend(own);
@@ -102,6 +100,7 @@ impl<const D: usize> Inertia<D> {
             of_bodies: bodies.iter().flat_map(RigidBody::nodal_mass).collect(),
             step,
             mass,
+            entries: OnceLock::new(),
             velocity,
             mean_velocity,
             acceleration,
@@ -185,9 +184,9 @@ impl<const D: usize> Inertia<D> {
         if self.step.is_first {
             let nodes = self.mass.diagonal.len();
             let driving = |node: &[f64; D]| node.map(|f| -f);
-            let on_grid = force[..nodes].iter().map(driving).collect();
+            let on_grid: Vec<_> = force[..nodes].iter().map(driving).collect();
             let still = vec![[0.0; D]; nodes];
-            self.acceleration = self.mass.solve(on_grid, still, unknowns)?;
+            self.acceleration = self.mass.solve(&on_grid, still, unknowns)?;
             for (index, mass) in self.of_bodies.iter().enumerate() {
                 let node = nodes + index;
                 // The mass is diagonal but for a turning body of three different moments, whose first step this is.
@@ -207,8 +206,8 @@ impl<const D: usize> Inertia<D> {
         Ok(())
     }
 
-    /// Adds inertia at nodal step displacements `u` \[length\] to the internal force `f` \[force\], with its derivative; the norm
-    /// of the force of acceleration \[force\].
+    /// Adds inertia at nodal step displacements `u` \[length\] to the internal force `f` \[force\], with the derivative of that of
+    /// rigid bodies; the norm of the force of acceleration \[force\].
     pub(crate) fn add(
         &self,
         u: &[[f64; D]],
@@ -230,7 +229,7 @@ impl<const D: usize> Inertia<D> {
             }
         }
         if let Some(blocks) = blocks {
-            self.add_mass(blocks);
+            self.add_mass_of_bodies(blocks);
         }
         squared.sqrt()
     }
@@ -260,7 +259,7 @@ impl<const D: usize> Inertia<D> {
     }
 
     /// The factor of the mass in the derivative of the force \[1/time²\].
-    fn mass_rate(&self) -> f64 {
+    pub(crate) fn mass_rate(&self) -> f64 {
         let weights = self.step.scheme.weights();
         self.step.rate() * (1.0 - weights.of_mass) / (1.0 - weights.of_force)
     }
@@ -276,13 +275,32 @@ impl<const D: usize> Inertia<D> {
         let change: Vec<[f64; D]> = std::iter::zip(&accelerated, &self.acceleration)
             .map(|(after, before)| std::array::from_fn(|a| after[a] - before[a]))
             .collect();
-        let size = |values: &[[f64; D]]| product(&self.times(values), values).max(0.0).sqrt();
         let squared = self.step.duration.powi(2);
-        let motion = size(u) + squared * size(&accelerated);
+        let motion = self.size_of_motion(u);
         if motion > 0.0 {
-            squared / 12.0 * size(&change) / motion
+            squared / 12.0 * self.size(&change) / motion
         } else {
             0.0
+        }
+    }
+
+    /// The norm √(x M x) of values by node.
+    fn size(&self, values: &[[f64; D]]) -> f64 {
+        product(&self.times(values), values).max(0.0).sqrt()
+    }
+
+    /// The size ‖u‖ + Δt² ‖a₁‖ of the motion over a step by `u` \[length\] (theory, eq. 68) \[length·√mass\].
+    pub(crate) fn size_of_motion(&self, u: &[[f64; D]]) -> f64 {
+        let accelerated = self.motion(u).acceleration;
+        self.size(u) + self.step.duration.powi(2) * self.size(&accelerated)
+    }
+
+    /// The mass that answers a force on a component of a node by itself \[mass\]; zero where none does.
+    pub(crate) fn carried(&self, node: usize, axis: usize) -> f64 {
+        let nodes = self.mass.diagonal.len();
+        match node.checked_sub(nodes) {
+            None => self.mass.diagonal[node],
+            Some(beyond) => (self.of_bodies.get(beyond)).map_or(0.0, |own| own[axis][axis]),
         }
     }
 
@@ -306,32 +324,41 @@ impl<const D: usize> Inertia<D> {
         4.0 * f64::EPSILON * rate * squared.sqrt()
     }
 
-    /// Hands the derivative of the force of acceleration on in blocks of nodes.
-    fn add_mass(&self, blocks: &mut AddBlock<'_, D>) {
+    /// Adds the derivative of the force of acceleration of soil to the values of the matrix; the place of an entry by its row and
+    /// column node and its component, if both are unknown.
+    pub(crate) fn add_mass_of_soil(
+        &self,
+        values: &mut [f64],
+        place: &dyn Fn(usize, usize, usize) -> Option<usize>,
+    ) {
+        let rate = self.mass_rate() + self.damping * self.step.velocity_rate();
+        let entries = self.entries.get_or_init(|| {
+            let mut entries = Vec::new();
+            let mut add = |row: usize, column: usize, mass: f64| {
+                let places = (0..D).filter_map(|axis| place(row, column, axis));
+                entries.extend(places.map(|place| (place as u32, mass)));
+            };
+            for (node, &mass) in self.mass.diagonal.iter().enumerate() {
+                if mass > 0.0 {
+                    add(node, node, mass);
+                }
+            }
+            for (node, other, mass) in self.mass.beyond_diagonal() {
+                add(node, other, mass);
+                add(other, node, mass);
+            }
+            entries
+        });
+        for &(place, mass) in entries {
+            values[place as usize] += rate * mass;
+        }
+    }
+
+    /// Hands the derivative of the force of acceleration of rigid bodies on in blocks of nodes.
+    fn add_mass_of_bodies(&self, blocks: &mut AddBlock<'_, D>) {
         let rate = self.mass_rate();
-        let of_soil = rate + self.damping * self.step.velocity_rate();
-        let scaled = |mass: f64| {
-            let mut block = [[0.0; D]; D];
-            for (a, row) in block.iter_mut().enumerate() {
-                row[a] = of_soil * mass;
-            }
-            block
-        };
-        let NodalMass { diagonal, beyond } = &self.mass;
-        for (node, &own) in diagonal.iter().enumerate() {
-            if own > 0.0 {
-                blocks(node, node, &scaled(own));
-            }
-        }
-        for (node, row) in beyond.iter().enumerate() {
-            for &(other, mass) in row {
-                let block = scaled(mass);
-                blocks(node, other as usize, &block);
-                blocks(other as usize, node, &block);
-            }
-        }
         for (node, mass) in self.of_bodies.iter().enumerate() {
-            let node = diagonal.len() + node;
+            let node = self.mass.diagonal.len() + node;
             blocks(node, node, &mass.map(|row| row.map(|own| rate * own)));
         }
     }
@@ -373,169 +400,6 @@ impl<const D: usize> Motion<D> {
     }
 }
 
-/// The mass matrix of the grid: the same for every component.
-#[derive(Debug)]
-struct NodalMass {
-    /// M_ii by node \[mass\].
-    diagonal: Vec<f64>,
-    /// By node, the nodes behind it that it shares particles with, and M_ij \[mass\].
-    beyond: Vec<Vec<(u32, f64)>>,
-}
-
-impl NodalMass {
-    /// Sums the mass matrix over the particles, strip by strip, a share of it lumped.
-    fn of<const D: usize>(
-        lumped: f64,
-        mass_of: &(dyn Fn(usize) -> f64 + Sync),
-        stencils: &Stencils<D>,
-        nodes: usize,
-    ) -> Self {
-        let mut mass = Self {
-            diagonal: vec![0.0; nodes],
-            beyond: vec![Vec::new(); nodes],
-        };
-        for parity in 0..2 {
-            let strips = stencils.strips().of_parity(parity);
-            let nodes = strips.clone().map(|(nodes, _)| nodes.clone());
-            let diagonal = split(&mut mass.diagonal, nodes.clone());
-            let beyond = split(&mut mass.beyond, nodes);
-            let tasks: Vec<_> = strips.zip(diagonal).zip(beyond).collect();
-            tasks
-                .into_par_iter()
-                .for_each(|(((nodes, slots), diagonal), beyond)| {
-                    for &particle in &stencils.order()[slots.clone()] {
-                        let own = stencils.of(particle as usize);
-                        let m = mass_of(particle as usize);
-                        for (k, row) in own.iter().enumerate() {
-                            let share = m * row.value;
-                            let own_share = lumped + (1.0 - lumped) * row.value;
-                            diagonal[row.node - nodes.start] += share * own_share;
-                            if lumped >= 1.0 {
-                                continue;
-                            }
-                            let row = &mut beyond[row.node - nodes.start];
-                            for other in &own[k + 1..] {
-                                add_entry(
-                                    row,
-                                    other.node as u32,
-                                    (1.0 - lumped) * share * other.value,
-                                );
-                            }
-                        }
-                    }
-                });
-        }
-        mass
-    }
-
-    /// The product with values by node.
-    fn multiply<const D: usize>(&self, values: &[[f64; D]], product: &mut [[f64; D]]) {
-        for (node, own) in self.diagonal.iter().enumerate() {
-            product[node] = values[node].map(|value| own * value);
-        }
-        for (node, row) in self.beyond.iter().enumerate() {
-            let mut sum = product[node];
-            for &(other, mass) in row {
-                for a in 0..D {
-                    sum[a] += mass * values[other as usize][a];
-                    product[other as usize][a] += mass * values[node][a];
-                }
-            }
-            product[node] = sum;
-        }
-    }
-}
-
-impl NodalMass {
-    /// Values by node whose product with the mass matrix is `sums` where a component is unknown, zero where it is not: of particle
-    /// velocities weighted by mass, those of the grid that come closest to them. Conjugate gradients, scaled by the diagonal, that
-    /// begin with a `guess`: what no particle sees stays as guessed.
-    ///
-    /// # Errors
-    /// [`AssemblyError::MotionNotFound`].
-    fn solve<const D: usize>(
-        &self,
-        mut sums: Vec<[f64; D]>,
-        guess: Vec<[f64; D]>,
-        unknowns: &Unknowns<D>,
-    ) -> Result<Vec<[f64; D]>, AssemblyError> {
-        let scaled = |values: &[[f64; D]]| -> Vec<[f64; D]> {
-            std::iter::zip(values, &self.diagonal)
-                .map(|(value, own)| value.map(|v| if *own > 0.0 { v / own } else { 0.0 }))
-                .collect()
-        };
-        mask(&mut sums, unknowns);
-        let mut found = guess;
-        mask(&mut found, unknowns);
-        let mut left = sums;
-        let reference = product(&left, &scaled(&left));
-        if reference == 0.0 {
-            found.fill([0.0; D]);
-            return Ok(found);
-        }
-        let mut image = vec![[0.0; D]; found.len()];
-        self.multiply(&found, &mut image);
-        mask(&mut image, unknowns);
-        add_scaled(&mut left, -1.0, &image);
-        let mut way = scaled(&left);
-        let mut size = product(&left, &way);
-        for _ in 0..MOST_ITERATIONS {
-            if size <= FOUND.powi(2) * reference {
-                break;
-            }
-            self.multiply(&way, &mut image);
-            mask(&mut image, unknowns);
-            let curvature = product(&way, &image);
-            // In a direction that no particle sees nothing is left to be found.
-            if curvature <= 0.0 {
-                break;
-            }
-            let length = size / curvature;
-            add_scaled(&mut found, length, &way);
-            add_scaled(&mut left, -length, &image);
-            let towards = scaled(&left);
-            let next = product(&left, &towards);
-            for own in way.as_flattened_mut() {
-                *own *= next / size;
-            }
-            add_scaled(&mut way, 1.0, &towards);
-            size = next;
-        }
-        let left = (size / reference).sqrt();
-        // Not a number is none that is small enough.
-        if left <= ACCEPTED {
-            Ok(found)
-        } else {
-            Err(AssemblyError::MotionNotFound { left })
-        }
-    }
-}
-
-/// Sets to zero what is not unknown.
-fn mask<const D: usize>(values: &mut [[f64; D]], unknowns: &Unknowns<D>) {
-    for (node, values) in values.iter_mut().enumerate() {
-        for (axis, value) in values.iter_mut().enumerate() {
-            if unknowns.index(node, axis).is_none() {
-                *value = 0.0;
-            }
-        }
-    }
-}
-
-/// The sum of products of values by node.
-pub(crate) fn product<const D: usize>(a: &[[f64; D]], b: &[[f64; D]]) -> f64 {
-    let pairs = std::iter::zip(a.as_flattened(), b.as_flattened());
-    pairs.map(|(a, b)| a * b).sum()
-}
-
-/// Adds to the entry of a node in a row.
-fn add_entry(row: &mut Vec<(u32, f64)>, node: u32, mass: f64) {
-    match row.iter_mut().find(|(own, _)| *own == node) {
-        Some((_, sum)) => *sum += mass,
-        None => row.push((node, mass)),
-    }
-}
-
 /// Values of particles weighted by mass, by node: Σ_p m_p S_ip a_p.
 fn weighted<const D: usize>(
     values: &[[f64; D]],
@@ -554,11 +418,4 @@ fn weighted<const D: usize>(
         }
     }
     sums
-}
-
-/// Adds `factor` times `other` to values.
-fn add_scaled<const D: usize>(values: &mut [[f64; D]], factor: f64, other: &[[f64; D]]) {
-    for (value, other) in std::iter::zip(values.as_flattened_mut(), other.as_flattened()) {
-        *value += factor * other;
-    }
 }

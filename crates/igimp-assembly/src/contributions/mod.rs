@@ -8,6 +8,7 @@ pub(crate) mod ghost;
 pub(crate) mod inertia;
 pub(crate) mod loads;
 pub(crate) mod nodal_forces;
+pub(crate) mod nodal_mass;
 pub(crate) mod nonlocal;
 pub(crate) mod pore_water;
 pub(crate) mod reinforcement;

@@ -34,6 +34,9 @@ struct NodeAtWall<const D: usize> {
     dashpot: [f64; D],
     /// \[force/length\].
     spring: [f64; D],
+    /// What of dashpots \[force·time/length\] and springs \[force/length\] moves against the free field, and not against the ground:
+    /// that of its own wall.
+    followed: [[f64; D]; 2],
     /// At the start of the step \[length\].
     displacement: [f64; D],
     /// At the start of the step \[length/time\].
@@ -59,8 +62,14 @@ impl<const D: usize> NodeAtWall<D> {
     fn join(&mut self, wall: &AbsorbingWall<D>, per_volume: f64, share: &Shares) {
         for a in 0..D {
             let wave = usize::from(a != wall.normal);
-            self.dashpot[a] += per_volume * share.impedance[wave];
-            self.spring[a] += per_volume * share.modulus[wave] * wall.spring[a];
+            let dashpot = per_volume * share.impedance[wave];
+            let spring = per_volume * share.modulus[wave] * wall.spring[a];
+            self.dashpot[a] += dashpot;
+            self.spring[a] += spring;
+            if wall.normal == self.beside.normal {
+                self.followed[0][a] += dashpot;
+                self.followed[1][a] += spring;
+            }
         }
     }
 }
@@ -120,6 +129,7 @@ impl<const D: usize> WallForces<D> {
                     node,
                     dashpot: [0.0; D],
                     spring: [0.0; D],
+                    followed: [[0.0; D]; 2],
                     displacement: displacement(node),
                     velocity: [0.0; D],
                     acceleration: [0.0; D],
@@ -156,7 +166,8 @@ impl<const D: usize> WallForces<D> {
         for own in &self.nodes {
             let free = &own.beside;
             for a in 0..D {
-                f[own.node][a] += own.dashpot[a] * (velocity[own.node][a] - free.velocity[0][a]);
+                f[own.node][a] += own.dashpot[a] * velocity[own.node][a]
+                    - own.followed[0][a] * free.velocity[0][a];
             }
         }
         if what_differs {
@@ -167,7 +178,7 @@ impl<const D: usize> WallForces<D> {
                     ..
                 } = &own.beside;
                 for a in 0..D {
-                    f[own.node][a] += own.spring[a] * (d1[a] - d0[a]) + (f1[a] - f0[a]);
+                    f[own.node][a] += own.followed[1][a] * (d1[a] - d0[a]) + (f1[a] - f0[a]);
                 }
             }
             return;
@@ -175,7 +186,8 @@ impl<const D: usize> WallForces<D> {
         for own in &self.nodes {
             let free = &own.beside;
             for a in 0..D {
-                f[own.node][a] += own.spring[a] * (own.displacement[a] - free.displacement[0][a])
+                f[own.node][a] += own.spring[a] * own.displacement[a]
+                    - own.followed[1][a] * free.displacement[0][a]
                     - free.force[0][a];
             }
         }
@@ -228,8 +240,9 @@ impl<const D: usize> NodalForces<D> for WallForces<D> {
                 still
             };
             for a in 0..D {
-                f[own.node][a] += own.dashpot[a] * (velocity[a] - of_free[a])
-                    + own.spring[a] * (own.displacement[a] + by[a] - free.displacement[1][a])
+                f[own.node][a] += own.dashpot[a] * velocity[a] - own.followed[0][a] * of_free[a]
+                    + own.spring[a] * (own.displacement[a] + by[a])
+                    - own.followed[1][a] * free.displacement[1][a]
                     - free.force[1][a];
             }
         }

@@ -3,8 +3,9 @@
 
 use igimp_material::TangentKind;
 
-use crate::contributions::inertia::{Inertia, product};
+use crate::contributions::inertia::Inertia;
 use crate::contributions::nodal_forces::NodalForces as _;
+use crate::contributions::nodal_mass::product;
 use crate::equations::damping::StiffnessDamping;
 use crate::equations::system::System;
 use crate::equations::trial::Trial;

@@ -7,6 +7,7 @@ pub(crate) mod ground;
 pub(crate) mod kinematics;
 pub(crate) mod linearised;
 pub(crate) mod mirror;
+pub(crate) mod motion;
 pub(crate) mod pass;
 pub(crate) mod patch;
 pub(crate) mod reach;

@@ -34,6 +34,7 @@ fn over(duration: f64, scheme: TimeScheme) -> TimeStep {
         lumped: 0.0,
         is_first: false,
         must_resolve: false,
+        equilibrium: 0.0,
     }
 }
 
@@ -452,7 +453,7 @@ fn a_disc_keeps_its_angular_momentum_to_second_order() {
     // A share of lumped mass costs angular momentum at the rim, of first order: the page on limits states it.
     let [coarse, fine] = [0.25, 0.125].map(|h| turn(h, 0.01, alpha).0);
     assert!(
-        (coarse - 0.038).abs() < 0.001 && (fine - 0.021).abs() < 0.001,
+        (coarse - 0.036).abs() < 0.001 && (fine - 0.020).abs() < 0.001,
         "{coarse} {fine}"
     );
     let [coarse, fine] = [0.25, 0.125].map(|h| turn(h, 0.0, TimeScheme::BackwardEuler).0);

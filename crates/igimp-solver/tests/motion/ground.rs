@@ -85,6 +85,7 @@ impl<const D: usize> Motion<D> {
             lumped: 0.0,
             is_first: true,
             must_resolve: false,
+            equilibrium: 0.0,
         };
         let walls = Walls {
             absorbing,

@@ -107,6 +107,10 @@ impl<const D: usize> System<'_, D> {
         trial.inertia = inertia.map_or(0.0, |own| {
             own.add(u, &mut trial.f_int, Some(&mut add_block))
         });
+        if let Some(inertia) = inertia {
+            let place = |row, column, axis| self.place_of(row, column, axis);
+            inertia.add_mass_of_soil(&mut matrix.values, &place);
+        }
         self.add_damping(u, &mut trial.f_int, Some(&mut matrix.values));
         Ok(())
     }
