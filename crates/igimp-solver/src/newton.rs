@@ -4,10 +4,10 @@
 use std::time::Instant;
 
 use igimp_assembly::{
-    AssemblyError, Geometry, LoadPoint, Method, OutOfBalance, Particles, Reinforcement, Stencils,
-    StepConditions, System, Trial,
+    AcceptedContact, AssemblyError, Geometry, LoadPoint, Method, OutOfBalance, Particles,
+    PoresAfter, Reinforcement, Stencils, StepConditions, System, Trial, WaterMoved,
 };
-use igimp_linear::SolverKind;
+use igimp_linear::{LinearEffort, SolverKind};
 use igimp_material::{Regime, TangentKind};
 use igimp_shape::Grid;
 
@@ -16,7 +16,7 @@ use crate::corrector::Corrector;
 use crate::free_factor::{FreeFactor, Guess};
 use crate::free_field;
 use crate::pace;
-use crate::report::{NodalForces, StepError, StepFailure, StepReport, padded};
+use crate::report::{NodalForces, PhaseTimes, StepError, StepFailure, StepReport, padded};
 use crate::residual_history::ResidualHistory;
 use crate::settings::LoadPath;
 use crate::{NewtonSettings, Workspace};
@@ -255,69 +255,139 @@ fn equilibrium<const D: usize>(
         factor,
         trial,
         iterations,
-        mut times,
+        times,
         ..
     } = corrector;
     let to = factor.as_ref().map_or(attempt.to, |factor| factor.at);
     let factor_in_doubt = factor.map_or(0.0, |factor| {
         factor.doubt(&system.by_unknown(&u), &residual)
     });
-    let load_points = carried(body, method, grid, &stencils, &u)?;
-    let reinforcement = system.reinforcement_at(&u);
+    let found = Found {
+        reactions: system.reactions(trial),
+        system,
+        trial,
+        u,
+        iterations,
+    };
+    let load_points = carried(body, method, grid, &stencils, &found.u)?;
+    let reinforcement = found.system.reinforcement_at(&found.u);
     on_grid(&reinforcement, grid)?;
     let clock = Instant::now();
-    let reactions = system.reactions(trial);
-    let unknowns = system.unknowns().len();
-    let (false_support, drag_share) = (system.false_support(&reactions), system.drag_share(&u));
-    let plastic_share = plastic_share(trial);
-    let work = (attempt.measures_work)
-        .then(|| system.work(trial, &u))
-        .transpose()?;
-    let pace = pace_after(&system, trial, &u, iterations)?;
-    let energy = system.energy(trial, &u)?;
-    let (external_work, gross_work) = (system.work_of_loads(&u), system.gross_work_of_loads(&u));
-    let (motion, ties) = (system.motion(&u), system.tie_forces(&u));
-    let contact = system.bodies_at(&u)?;
-    let pores = system.into_pores(&u);
-    body.particles.commit(&stencils, method, trial, &u);
-    if let Some(motion) = &motion {
-        body.particles.accelerate(&stencils, motion);
-    }
-    body.particles.fill_pores(&pores);
-    body.particles.push_out(&contact.push_out);
-    (body.load_points, body.rigid) = (load_points, contact.bodies);
-    body.reinforcement = reinforcement;
-    times.commit = clock.elapsed();
     let report = StepReport {
-        from: attempt.from,
         to,
-        iterations,
-        worst: history.worst(grid),
-        residuals: std::mem::take(&mut history.residuals),
         at_round_off: residual.relative_norm > enough,
-        unknowns,
-        plastic_share,
-        false_support,
-        ghost_penalty: attempt.ghost_penalty,
-        drag_share,
-        work,
-        duration: conditions.duration(),
-        energy,
-        water: pores.water_moved,
-        pace,
-        external_work,
-        gross_work,
         factor_in_doubt,
         linear,
         times,
+        ..found.report(attempt)?
     };
-    let forces = NodalForces {
-        reactions,
-        u,
-        motion,
-        ties,
+    let changes = found.changes()?;
+    let (forces, water) = changes.accept(body, method, &stencils, trial);
+    (body.load_points, body.reinforcement) = (load_points, reinforcement);
+    let mut times = report.times;
+    times.commit = clock.elapsed();
+    let report = StepReport {
+        worst: history.worst(grid),
+        residuals: std::mem::take(&mut history.residuals),
+        water,
+        times,
+        ..report
     };
     Ok((report, forces))
+}
+
+/// The equilibrium at the end of a step.
+struct Found<'a, const D: usize> {
+    system: System<'a, D>,
+    trial: &'a Trial<D>,
+    u: Vec<[f64; D]>,
+    reactions: Vec<[f64; D]>,
+    iterations: usize,
+}
+
+impl<const D: usize> Found<'_, D> {
+    /// What the step says of itself before it is accepted.
+    ///
+    /// # Errors
+    /// [`StepFailure::TooLong`], and those of its energy and its work.
+    fn report(&self, attempt: &Attempt<'_, D>) -> Result<StepReport, StepFailure> {
+        let Self {
+            system, trial, u, ..
+        } = self;
+        let work = (attempt.measures_work)
+            .then(|| system.work(trial, u))
+            .transpose()?;
+        Ok(StepReport {
+            from: attempt.from,
+            to: attempt.to,
+            iterations: self.iterations,
+            worst: None,
+            residuals: Vec::new(),
+            at_round_off: false,
+            unknowns: system.unknowns().len(),
+            plastic_share: plastic_share(trial),
+            false_support: system.false_support(&self.reactions),
+            ghost_penalty: attempt.ghost_penalty,
+            drag_share: system.drag_share(u),
+            work,
+            duration: attempt.conditions.duration(),
+            pace: pace_after(system, trial, u, self.iterations)?,
+            energy: system.energy(trial, u)?,
+            water: None,
+            external_work: system.work_of_loads(u),
+            gross_work: system.gross_work_of_loads(u),
+            factor_in_doubt: 0.0,
+            linear: LinearEffort::default(),
+            times: PhaseTimes::default(),
+        })
+    }
+
+    /// What the step changes when it is accepted.
+    ///
+    /// # Errors
+    /// Those of soil that would be in a rigid body.
+    fn changes(self) -> Result<Changes<D>, StepFailure> {
+        let Self { system, u, .. } = self;
+        let (motion, ties) = (system.motion(&u), system.tie_forces(&u));
+        Ok(Changes {
+            contact: system.bodies_at(&u)?,
+            pores: system.into_pores(&u),
+            forces: NodalForces {
+                reactions: self.reactions,
+                u,
+                motion,
+                ties,
+            },
+        })
+    }
+}
+
+/// What an accepted step changes beside what soil carries along.
+struct Changes<const D: usize> {
+    forces: NodalForces<D>,
+    contact: AcceptedContact<D>,
+    pores: PoresAfter,
+}
+
+impl<const D: usize> Changes<D> {
+    /// Writes particles and rigid bodies; the forces at nodes, and the water that moved.
+    fn accept(
+        self,
+        body: &mut Body<D>,
+        method: &Method,
+        stencils: &Stencils<D>,
+        trial: &Trial<D>,
+    ) -> (NodalForces<D>, Option<WaterMoved>) {
+        let particles = &mut body.particles;
+        particles.commit(stencils, method, trial, &self.forces.u);
+        if let Some(motion) = &self.forces.motion {
+            particles.accelerate(stencils, motion);
+        }
+        particles.fill_pores(&self.pores);
+        particles.push_out(&self.contact.push_out);
+        body.rigid = self.contact.bodies;
+        (self.forces, self.pores.water_moved)
+    }
 }
 
 /// The start of a step, and what is prescribed of its motion carried through the body.
