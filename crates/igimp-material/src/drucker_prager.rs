@@ -37,7 +37,9 @@ pub enum Cone {
 /// Trial states beyond the end of the cone go to its apex p = c cot φ with a tangent of zero, with ψ = 0 too.
 ///
 /// ```
-/// use igimp_material::{Cone, ConstitutiveModel, DruckerPrager, Elasticity, History, Regime};
+/// use igimp_material::{
+///     Cone, ConstitutiveModel, DruckerPrager, Elasticity, History, PointContext, Regime, Strength,
+/// };
 ///
 /// let elasticity = Elasticity::new(1e5, 0.3)?;
 /// let friction = 20_f64.to_radians();

@@ -81,7 +81,9 @@ impl HoekBrownParameters {
 /// (Hammah and others 2005).
 ///
 /// ```
-/// use igimp_material::{ConstitutiveModel, Elasticity, HoekBrown, HoekBrownParameters};
+/// use igimp_material::{
+///     ConstitutiveModel, Elasticity, HoekBrown, HoekBrownParameters, PointContext, Strength,
+/// };
 ///
 /// let rock = HoekBrownParameters {
 ///     intact_strength: 30e6, gsi: 45.0, intact_ratio: 10.0, disturbance: 0.0, dilation_angle: 0.0,

@@ -31,7 +31,9 @@ use crate::{
 /// counted.
 ///
 /// ```
-/// use igimp_material::{ConstitutiveModel, Elasticity, History, MohrCoulomb, Regime};
+/// use igimp_material::{
+///     ConstitutiveModel, Elasticity, History, MohrCoulomb, PointContext, Regime, Strength,
+/// };
 ///
 /// let elasticity = Elasticity::new(1e5, 0.3)?;
 /// let law = MohrCoulomb::new(elasticity, 10.0, 20_f64.to_radians(), 0.0)?;

@@ -57,7 +57,9 @@ impl Default for Ratios {
 /// ε e/s, with stress times s, tangent times e and plastic strain times s/e: what the law with those parameters answers.
 ///
 /// ```
-/// use igimp_material::{ConstitutiveModel, Elasticity, History, Ratios, ScaledLaw, Tresca};
+/// use igimp_material::{
+///     ConstitutiveModel, Elasticity, History, PointContext, Ratios, ScaledLaw, Tresca,
+/// };
 ///
 /// let tresca = Tresca::new(Elasticity::new(100.0, 0.3)?, 1.0)?;
 /// let law: &dyn ConstitutiveModel = &tresca;

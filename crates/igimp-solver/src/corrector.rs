@@ -9,7 +9,6 @@ use igimp_material::TangentKind;
 use igimp_shape::Grid;
 
 use crate::free_factor::FreeFactor;
-use crate::pace;
 use crate::report::{Component, PhaseTimes, StepFailure, padded};
 use crate::residual_history::ResidualHistory;
 use crate::settings::{NewtonSettings, converged};
@@ -25,9 +24,6 @@ const OVERSHOOT: f64 = 20.0;
 /// The same where corrections are guarded: in space for soil by itself whose flow is not associated, as whole corrections swing
 /// near failure and one costs as much as twenty evaluations of the residual and more; and where the load factor is unknown.
 const OVERSHOOT_GUARDED: f64 = 1.0;
-
-/// The largest relative residual that suffices in motion, whatever the error that a step aims at \[-\].
-const LARGEST_IN_MOTION: f64 = 1e-3;
 
 /// How often a correction is shortened along itself.
 const MOST_SHORTENINGS: u32 = 8;
@@ -226,15 +222,9 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         Ok(residual)
     }
 
-    /// The relative residual that is small enough for an equilibrium at `u` \[-\].
-    pub(crate) fn sufficient(&self, u: &[[f64; D]], residual: &OutOfBalance) -> f64 {
-        let tolerance = self.settings.tolerance;
-        (self.goal_of_motion(u, residual)).map_or(tolerance, |goal| goal.max(tolerance))
-    }
-
     /// Whether the residual at `u` is that of an equilibrium.
     pub(crate) fn is_found(&self, u: &[[f64; D]], residual: &OutOfBalance) -> bool {
-        converged(residual, self.sufficient(u, residual))
+        converged(residual, self.settings.tolerance)
             && (self.factor.as_ref())
                 .is_none_or(|factor| factor.is_found(&self.system.by_unknown(u), residual))
     }
@@ -283,26 +273,10 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
     /// doubt.
     fn goal_at(&self, u: &[[f64; D]], residual: &OutOfBalance) -> f64 {
         let tolerance = self.settings.tolerance;
-        if let Some(goal) = self.goal_of_motion(u, residual) {
-            return goal.max(tolerance);
-        }
         self.factor.as_ref().map_or(tolerance, |factor| {
             let share = factor.share_wanted(&self.system.by_unknown(u), residual);
             tolerance.min(share * residual.relative_norm)
         })
-    }
-
-    /// The relative residual that suffices in a step that takes time and need not be found to the tolerance: what it would add to the
-    /// motion is a small share of the error that the step aims at (theory, eq. 68a).
-    fn goal_of_motion(&self, u: &[[f64; D]], residual: &OutOfBalance) -> Option<f64> {
-        let time = self.system.conditions().time?;
-        if time.equilibrium == 0.0 {
-            return None;
-        }
-        let added = self.system.unbalanced_motion(u, residual)?;
-        let goal = time.equilibrium * pace::ERROR * residual.relative_norm / added;
-        // Without mass to answer it, or without a residual, there is no such goal.
-        (goal > 0.0 && goal.is_finite()).then(|| goal.min(LARGEST_IN_MOTION))
     }
 
     /// The tangent at `u` once more.

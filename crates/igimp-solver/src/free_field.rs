@@ -120,7 +120,6 @@ impl<const D: usize> FreeField<D> {
         own.held = None;
         if let Some(time) = &mut own.time {
             time.must_resolve = false;
-            time.equilibrium = 0.0;
         }
         own.with_walls(walls)
     }

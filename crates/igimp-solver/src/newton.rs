@@ -249,7 +249,7 @@ fn equilibrium<const D: usize>(
         corrector.correct(&mut u, &mut residual)?;
     }
 
-    let (linear, enough) = (corrector.effort(), corrector.sufficient(&u, &residual));
+    let linear = corrector.effort();
     let Corrector {
         system,
         factor,
@@ -275,7 +275,7 @@ fn equilibrium<const D: usize>(
     let clock = Instant::now();
     let report = StepReport {
         to,
-        at_round_off: residual.relative_norm > enough,
+        at_round_off: residual.relative_norm > settings.tolerance,
         factor_in_doubt,
         linear,
         times,

@@ -4,9 +4,9 @@
 use igimp_assembly::{System, Trial};
 
 /// The error of a step that is aimed at, over its motion \[-\].
-pub(crate) const ERROR: f64 = 0.02;
+const ERROR: f64 = 0.02;
 
-/// The longest way of a particle in a step that is aimed at, in cells \[-\].
+/// The longest way of a node in a step that is aimed at, in cells \[-\].
 const WAY: f64 = 0.2;
 
 /// How many times as large error or way may be before the step is made again, shorter \[-\].
@@ -43,7 +43,13 @@ pub(crate) fn after<const D: usize>(
     let cell = (0..D)
         .flat_map(|axis| (0..grid.axes[axis].cell_count()).map(move |k| grid.axes[axis].spacing(k)))
         .fold(f64::INFINITY, f64::min);
-    let way = system.longest_way(u) / cell;
+    let length = |u: &[f64; D]| u.iter().map(|u| u * u).sum::<f64>().sqrt();
+    let way = u
+        .iter()
+        .take(grid.node_count())
+        .map(length)
+        .fold(0.0, f64::max)
+        / cell;
     let factor = (ERROR / error).sqrt().min(WAY / way);
     let refused = error > REFUSED * ERROR || way > REFUSED * WAY;
     let factor = factor.min(effort(iterations));

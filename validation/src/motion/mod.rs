@@ -67,7 +67,6 @@ fn moved<const D: usize>(
             lumped: steps.lumped,
             is_first: from == 0.0,
             must_resolve: false,
-            equilibrium: 0.0,
         }))
     };
     let mut settings = MarchSettings::steps(steps.count);

@@ -59,7 +59,6 @@ fn over(scheme: TimeScheme, duration: f64, is_first: bool) -> TimeStep {
         lumped: 0.01,
         is_first,
         must_resolve: false,
-        equilibrium: 0.0,
     }
 }
 

@@ -14,9 +14,6 @@ pub struct TimeStep {
     pub is_first: bool,
     /// Whether the step is refused where motion changes by more than it resolves.
     pub must_resolve: bool,
-    /// The share of the error that a step aims at which its out-of-balance force may leave (theory, eq. 68a); zero where equilibrium is
-    /// found to the tolerance of Newton's method \[-\].
-    pub equilibrium: f64,
 }
 
 /// A scheme of time integration (theory, eqs. 60 and 61).
@@ -121,11 +118,8 @@ impl TimeStep {
         (std::array::from_fn(|a| velocity[a] + gained(a)), after)
     }
 
-    /// Whether the duration is a positive number, and the lumped share and that of equilibrium lie between 0 and 1.
+    /// Whether the duration is a positive number, and the lumped share lies between 0 and 1.
     pub(crate) fn is_sound(&self) -> bool {
-        let shares = [self.lumped, self.equilibrium];
-        self.duration > 0.0
-            && self.rate().is_finite()
-            && shares.iter().all(|share| (0.0..=1.0).contains(share))
+        self.duration > 0.0 && self.rate().is_finite() && (0.0..=1.0).contains(&self.lumped)
     }
 }

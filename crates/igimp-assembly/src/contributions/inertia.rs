@@ -295,15 +295,6 @@ impl<const D: usize> Inertia<D> {
         self.size(u) + self.step.duration.powi(2) * self.size(&accelerated)
     }
 
-    /// The mass that answers a force on a component of a node by itself \[mass\]; zero where none does.
-    pub(crate) fn carried(&self, node: usize, axis: usize) -> f64 {
-        let nodes = self.mass.diagonal.len();
-        match node.checked_sub(nodes) {
-            None => self.mass.diagonal[node],
-            Some(beyond) => (self.of_bodies.get(beyond)).map_or(0.0, |own| own[axis][axis]),
-        }
-    }
-
     /// The product of the mass matrix with values by node.
     pub(crate) fn times(&self, values: &[[f64; D]]) -> Vec<[f64; D]> {
         let nodes = self.mass.diagonal.len();

@@ -252,7 +252,6 @@ fn space_and_inertia_are_refused() {
         lumped: 0.0,
         is_first: true,
         must_resolve: false,
-        equilibrium: 0.0,
     };
     assert_eq!(refused::<2>(4, Some(time)), Some("inertia"));
     assert_eq!(refused::<2>(4, None), None);

@@ -32,7 +32,6 @@ fn shaken(grid: &Grid<2>, law: &SharedLaw, scheme: TimeScheme) -> StepConditions
         lumped: 0.0,
         is_first: false,
         must_resolve: false,
-        equilibrium: 0.0,
     };
     let walls = Walls {
         absorbing: vec![wall(1, false), wall(0, true)],

@@ -312,7 +312,6 @@ impl<'a, const D: usize> StagePath<'a, D> {
                 lumped: integration.lumped,
                 is_first: from == 0.0,
                 must_resolve: true,
-                equilibrium: integration.equilibrium,
             }))
     }
 }
@@ -326,8 +325,6 @@ pub(crate) type OnGround<'a, const D: usize> = dyn Fn(&Controls, &Controls, Step
 pub(crate) struct TimeIntegration<'a, const D: usize> {
     pub(crate) scheme: TimeScheme,
     pub(crate) lumped: f64,
-    /// The share of the error aimed at that the out-of-balance force may leave \[-\].
-    pub(crate) equilibrium: f64,
     /// The conditions of a step between two controls with walls, motion of the ground and damping.
     pub(crate) on_ground: &'a OnGround<'a, D>,
 }

@@ -62,7 +62,9 @@ pub struct CamClayParameters {
 /// Strength is not reduced: [`reduced`](ConstitutiveModel::reduced) says why.
 ///
 /// ```
-/// use igimp_material::{CamClayParameters, ConstitutiveModel, ModifiedCamClay, ShearStiffness};
+/// use igimp_material::{
+///     CamClayParameters, ConstitutiveModel, ModifiedCamClay, PointContext, ShearStiffness,
+/// };
 ///
 /// let law = ModifiedCamClay::new(CamClayParameters {
 ///     compression: 0.1,
@@ -75,7 +77,8 @@ pub struct CamClayParameters {
 /// let sigma = [-100.0; 3];
 /// let history = law.initial_history(&sigma);
 /// let strain = law.elastic_strain(&sigma, &history)?;
-/// let answer = law.return_map(&strain.map(|e| e - 0.1 * 2f64.ln() / 3.0), &history, &PointContext::STATIC)?;
+/// let trial = strain.map(|e| e - 0.1 * 2f64.ln() / 3.0);
+/// let answer = law.return_map(&trial, &history, &PointContext::STATIC)?;
 /// assert!((answer.tau[0] + 200.0).abs() < 1e-9); // twice the pressure along the compression line
 /// # Ok::<(), igimp_material::MaterialError>(())
 /// ```

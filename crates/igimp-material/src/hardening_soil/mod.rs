@@ -61,7 +61,9 @@ const FLOOR: f64 = 0.01;
 /// else is implicit.
 ///
 /// ```
-/// use igimp_material::{ConstitutiveModel, HardeningSoil, HardeningSoilParameters};
+/// use igimp_material::{
+///     ConstitutiveModel, HardeningSoil, HardeningSoilParameters, PointContext,
+/// };
 ///
 /// let law = HardeningSoil::new(HardeningSoilParameters {
 ///     overconsolidation: 10.0,
@@ -70,7 +72,8 @@ const FLOOR: f64 = 0.01;
 /// let sigma = [-100e3; 3];
 /// let history = law.initial_history(&sigma);
 /// let strain = law.elastic_strain(&sigma, &history)?;
-/// let axial = law.return_map(&[strain[0] - 1e-3, strain[1], strain[2]], &history, &PointContext::STATIC)?;
+/// let trial = [strain[0] - 1e-3, strain[1], strain[2]];
+/// let axial = law.return_map(&trial, &history, &PointContext::STATIC)?;
 /// assert!(axial.regime.is_plastic() && axial.history.internal[0] > 0.0);
 /// # Ok::<(), igimp_material::MaterialError>(())
 /// ```

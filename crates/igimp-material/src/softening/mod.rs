@@ -75,11 +75,12 @@ pub struct FrictionalCurves {
 /// $`\kappa = \sum\sqrt{\tfrac23\,\Delta e_p:\Delta e_p}`$ from initial to residual values.
 ///
 /// ```
-/// use igimp_material::{ConstitutiveModel, Curve, Decay, Elasticity, Softening};
+/// use igimp_material::{ConstitutiveModel, Curve, Decay, Elasticity, PointContext, Softening};
 ///
 /// let cu = Curve { initial: 2.0, residual: 0.5, strain: 0.1, decay: Decay::Linear };
 /// let law = Softening::tresca(Elasticity::new(100.0, 0.3)?, cu)?;
-/// let answer = law.return_map(&[0.2, 0.0, -0.2], &law.initial_history(&[0.0; 3]), &PointContext::STATIC)?;
+/// let history = law.initial_history(&[0.0; 3]);
+/// let answer = law.return_map(&[0.2, 0.0, -0.2], &history, &PointContext::STATIC)?;
 /// assert!((answer.tau[0] - answer.tau[2] - 2.0 * 0.5).abs() < 1e-12); // sheared far
 /// # Ok::<(), igimp_material::MaterialError>(())
 /// ```

@@ -34,7 +34,6 @@ fn over(duration: f64, scheme: TimeScheme) -> TimeStep {
         lumped: 0.0,
         is_first: false,
         must_resolve: false,
-        equilibrium: 0.0,
     }
 }
 

@@ -85,7 +85,6 @@ impl<const D: usize> Motion<D> {
             lumped: 0.0,
             is_first: true,
             must_resolve: false,
-            equilibrium: 0.0,
         };
         let walls = Walls {
             absorbing,

@@ -5,7 +5,7 @@ mod body_support;
 mod contact;
 mod contact_in_space;
 mod dynamics;
-mod economy;
 mod free_field;
 mod ground;
+mod heavy_tip;
 mod impact;

@@ -24,9 +24,6 @@ use crate::run::state::{Controls, State};
 /// The first step over the time in which a wave crosses a cell \[-\].
 const FIRST_STEP: f64 = 1.0;
 
-/// The share of the error aimed at that the out-of-balance force of a step may leave \[-\].
-const EQUILIBRIUM: f64 = 0.01;
-
 /// How often a step may be cut in succession, at least: what is chosen by error and way may be far too long.
 const CUTS: u32 = 12;
 
@@ -81,7 +78,6 @@ pub(crate) fn dynamic<const D: usize>(
         time: Some(TimeIntegration {
             scheme: dynamic.scheme,
             lumped: dynamic.lumped_share,
-            equilibrium: EQUILIBRIUM,
             on_ground: &on_ground,
         }),
         left: resumption,
