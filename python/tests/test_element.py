@@ -26,17 +26,18 @@ def column(test, name):
 
 
 def test_failure_has_its_closed_form():
-    test = igimp.element(SAND, stress="100 kPa", strain=0.05)
+    test = igimp.element(SAND, stress="100 kPa", strain=0.05, small_strain=True)
     assert test.failure is None
     # σ_1 = K_p σ_3 + 2 c √K_p with K_p = 3.
     assert column(test, "q [kPa]")[-1] == pytest.approx(2 * 100 + 2 * 5 * 3**0.5, rel=1e-9)
-    twice = igimp.element(SAND, stress=200e3, strain=0.05)
+    twice = igimp.element(SAND, stress=200e3, strain=0.05, small_strain=True)
     assert column(twice, "q [kPa]")[-1] == pytest.approx(2 * 200 + 2 * 5 * 3**0.5, rel=1e-9)
 
 
 def test_a_law_in_python_is_driven():
-    own = igimp.element(CLAY, "simple-shear-undrained", strain=0.05, steps=20)
-    given = igimp.element(CLAY, "simple-shear-undrained", strain=0.05, steps=20, law=VonMises(30e3))
+    own = igimp.element(CLAY, "simple-shear-undrained", strain=0.05, steps=20, small_strain=True)
+    law = VonMises(30e3)
+    given = igimp.element(CLAY, "simple-shear-undrained", strain=0.05, steps=20, small_strain=True, law=law)
     ours, theirs = column(own, "tau_xy [kPa]"), column(given, "tau_xy [kPa]")
     assert ours[-1] == pytest.approx(30, rel=1e-6)
     np.testing.assert_allclose(theirs, ours, rtol=1e-8, atol=1e-8)

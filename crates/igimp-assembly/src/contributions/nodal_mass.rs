@@ -31,8 +31,7 @@ pub(crate) struct NodalMass {
 }
 
 impl NodalMass {
-    /// Sums the mass matrix over the particles, strip by strip, a share of it lumped. The mass of a particle beyond the faces of the
-    /// cell that its nodes are tied to is consistent, as one of its shares is below zero and would be a mass below zero.
+    /// Sums the mass matrix over the particles, strip by strip, a share of it lumped.
     pub(crate) fn of<const D: usize>(
         lumped: f64,
         mass_of: &(dyn Fn(usize) -> f64 + Sync),
@@ -53,8 +52,6 @@ impl NodalMass {
                     for &particle in &stencils.order()[slots.clone()] {
                         let own = stencils.of(particle as usize);
                         let m = mass_of(particle as usize);
-                        let is_within = own.iter().all(|support| support.value >= 0.0);
-                        let lumped = if is_within { lumped } else { 0.0 };
                         for (k, row) in own.iter().enumerate() {
                             let share = m * row.value;
                             let own_share = lumped + (1.0 - lumped) * row.value;

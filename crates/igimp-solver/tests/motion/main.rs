@@ -7,5 +7,4 @@ mod contact_in_space;
 mod dynamics;
 mod free_field;
 mod ground;
-mod heavy_tip;
 mod impact;
