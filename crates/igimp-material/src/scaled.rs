@@ -77,7 +77,7 @@ pub struct ScaledLaw<L> {
 
 impl<L: Deref<Target = dyn ConstitutiveModel>> ScaledLaw<L> {
     /// The `law` at these ratios; that of friction is not asked for, and belongs to the law
-    /// ([`ConstitutiveModel::at_friction`]).
+    /// ([`Strength::at_friction`]).
     ///
     /// # Errors
     /// [`MaterialError::InvalidParameter`] unless both are positive and finite.

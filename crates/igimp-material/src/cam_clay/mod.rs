@@ -59,7 +59,7 @@ pub struct CamClayParameters {
 /// cycle does no work. Pressure p and volumetric strain are positive in compression here. There is no strength in tension: p stays positive.
 ///
 /// The surface is round about the hydrostatic axis: M is the same in compression, in extension and in plane strain.
-/// Strength is not reduced: [`reduced`](ConstitutiveModel::reduced) says why.
+/// Strength is not reduced: [`reduced`](Strength::reduced) says why.
 ///
 /// ```
 /// use igimp_material::{

@@ -122,7 +122,7 @@ impl<const D: usize> System<'_, D> {
         self.beside.walls.of_ties(u)
     }
 
-    /// How the nodes move over a step by nodal step displacements `u` \[length\], for [`Particles::accelerate`]; none in statics.
+    /// How the nodes move over a step by nodal step displacements `u` \[length\], for [`Particles::accelerate`](crate::Particles::accelerate); none in statics.
     pub fn motion(&self, u: &[[f64; D]]) -> Option<Motion<D>> {
         self.inertia.as_ref().map(|inertia| inertia.motion(u))
     }
@@ -146,7 +146,7 @@ impl<const D: usize> System<'_, D> {
 
     /// What a step with nodal step displacements `u` \[length\] leaves of contact when it is accepted: the
     /// bodies at their new places, and the way back of particles whose centres came closer to one than half
-    /// of their seeded half-length, for [`Particles::push_out`]. All particles are looked at, with
+    /// of their seeded half-length, for [`Particles::push_out`](crate::Particles::push_out). All particles are looked at, with
     /// the way that they took. On a given geometry nothing moves, and none is put back.
     ///
     /// # Errors
@@ -181,7 +181,7 @@ impl<const D: usize> System<'_, D> {
         self.beside.reinforcement.accepted(u)
     }
 
-    /// What a step with nodal values `u` leaves in the pores when it is accepted, for [`Particles::fill_pores`].
+    /// What a step with nodal values `u` leaves in the pores when it is accepted, for [`Particles::fill_pores`](crate::Particles::fill_pores).
     pub fn into_pores(self, u: &[[f64; D]]) -> PoresAfter {
         let given = self.loads.pores.pressure;
         self.beside.consolidation.accepted(self.stencils, u, given)
