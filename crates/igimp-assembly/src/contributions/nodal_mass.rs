@@ -73,7 +73,7 @@ impl NodalMass {
 
     /// The matrix with these rows, on the nodes with mass.
     fn on_carrying_nodes(diagonal: Vec<f64>, rows: &[Vec<(u32, f64)>]) -> Self {
-        let carries = |node: &usize| diagonal[*node] > 0.0;
+        let carries = |node: &usize| diagonal[*node] != 0.0;
         let carrying: Vec<u32> = (0..diagonal.len())
             .filter(carries)
             .map(|node| node as u32)
@@ -170,7 +170,10 @@ impl NodalMass {
         };
         let scaled = |values: &[[f64; D]]| -> Vec<[f64; D]> {
             std::iter::zip(values, &self.carrying)
-                .map(|(value, node)| value.map(|v| v / self.diagonal[*node as usize]))
+                .map(|(value, node)| {
+                    let own = self.diagonal[*node as usize];
+                    value.map(|v| if own > 0.0 { v / own } else { 0.0 })
+                })
                 .collect()
         };
         let mut left = self.carried(sums);
