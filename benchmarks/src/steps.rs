@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use igimp_assembly::{Method, StepConditions};
+use igimp_assembly::{Method, StepConditions, TimeScheme, TimeStep};
 use igimp_cases::run::{Controls, Model};
 use igimp_input::shipped::find;
 use igimp_linear::SolverKind;
@@ -172,7 +172,7 @@ impl Setting {
 }
 
 /// A body in equilibrium, and the conditions of its next step.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct PreparedStep {
     /// Name in the bench's identifier.
     pub name: &'static str,
@@ -187,6 +187,21 @@ impl PreparedStep {
     /// A workspace with the solver that the cases use.
     pub fn workspace() -> Workspace<2> {
         Workspace::new(SolverKind::Auto.build())
+    }
+
+    /// The same step with inertia, over a duration \[s\], as one within a motion.
+    ///
+    /// # Errors
+    /// A duration that is not positive.
+    pub fn in_motion(mut self, duration: f64) -> BenchResult<Self> {
+        self.conditions = self.conditions.with_time(Some(TimeStep {
+            duration,
+            scheme: TimeScheme::GeneralisedAlpha,
+            lumped: 0.01,
+            is_first: false,
+            must_resolve: false,
+        }))?;
+        Ok(self)
     }
 
     /// Takes the step, from `body`, a clone of [`Self::body`].

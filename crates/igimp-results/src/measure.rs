@@ -185,11 +185,9 @@ pub fn eps_p_eq(particles: &Particles<2>) -> Vec<f64> {
 
 /// The domains of the particles as rectangles, corners counter-clockwise \[length\].
 pub fn domains(particles: &Particles<2>) -> Vec<Vec<[f64; 2]>> {
-    particles
-        .x
-        .iter()
-        .zip(&particles.half_length)
-        .map(|(x, l)| {
+    (particles.x.iter().enumerate())
+        .map(|(particle, x)| {
+            let l = particles.drawn_half_length(particle);
             [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
                 .iter()
                 .map(|corner| [x[0] + corner[0] * l[0], x[1] + corner[1] * l[1]])

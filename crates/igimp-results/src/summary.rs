@@ -177,6 +177,9 @@ pub struct StageSummary {
     /// Steps that a ghost penalty held at nodes which hardly touch soil.
     #[serde(default)]
     pub ghost_steps: usize,
+    /// Steps in which the grid took over means of the motion of the particles.
+    #[serde(default)]
+    pub steps_by_means: usize,
     /// Largest resistance of a footing that the stage pushed \[N/m\].
     pub peak_resistance: Option<f64>,
     /// Settlement of that footing at the end \[m\].

@@ -328,6 +328,7 @@ impl<const D: usize> Found<'_, D> {
             plastic_share: plastic_share(trial),
             false_support: system.false_support(&self.reactions),
             ghost_penalty: attempt.ghost_penalty,
+            moves_by_means: system.moves_by_means(),
             drag_share: system.drag_share(u),
             work,
             duration: attempt.conditions.duration(),

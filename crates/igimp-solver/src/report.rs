@@ -230,6 +230,9 @@ pub struct StepReport {
     /// The ghost penalty that the step was given because a node that hardly touches soil left its
     /// system singular; zero in a step that did without \[-\].
     pub ghost_penalty: f64,
+    /// Whether the grid took over means of the motion of the particles, which lose energy, as no motion that comes closest to it
+    /// was found.
+    pub moves_by_means: bool,
     /// Position \[length\] and axis of the largest out-of-balance force that was left.
     pub worst: Option<([f64; 3], usize)>,
     /// Share of the external force that drag against motion carries; zero in equilibrium \[-\].

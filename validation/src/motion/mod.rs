@@ -118,8 +118,6 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     disc::hold(&mut study, level)?;
     layers::hold(&mut study)?;
     rolling::hold(&mut study, level)?;
-    if level == Level::Full {
-        deposits::hold(&mut study)?;
-    }
+    deposits::hold(&mut study)?;
     Ok(study)
 }

@@ -212,7 +212,7 @@ pub(super) fn hold(study: &mut Study, level: Level) -> Result<(), CaseError> {
         time: 30.0,
     };
     cylinder.hold(study, 2.0 / 3.0 * SLOPE.sin(), 0.01)?;
-    let surface = Surface::sphere(1.0, 0.25).expect("the sphere has a volume");
+    let surface = Surface::sphere(1.0, 0.12).expect("the sphere has a volume");
     let mut body = RigidBody::new(surface, vec![rubbing(0.5)], [3.0, 2.5, 2.999]);
     body.motion.mass = 20.0;
     for axis in 0..3 {
@@ -226,5 +226,5 @@ pub(super) fn hold(study: &mut Study, level: Level) -> Result<(), CaseError> {
         turns: true,
         time: 15.0,
     };
-    sphere.hold(study, 5.0 / 7.0 * SLOPE.sin(), 0.03)
+    sphere.hold(study, 5.0 / 7.0 * SLOPE.sin(), 0.01)
 }

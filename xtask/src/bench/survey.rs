@@ -10,8 +10,9 @@ use crate::process::status;
 use crate::released::released;
 
 /// The parts of the survey.
-const PARTS: [&str; 6] = [
+const PARTS: [&str; 7] = [
     "survey/step",
+    "survey/motion",
     "survey/cost",
     "survey/factorisation",
     "survey/growth",

@@ -9,6 +9,7 @@ mod cost;
 mod factorisation;
 mod growth;
 mod memory;
+mod motion;
 mod plot;
 mod report;
 mod rounds;
@@ -49,8 +50,9 @@ struct Arguments {
 type Section = fn(&mut Scope) -> BenchResult;
 
 /// The parts by name, in the order of the report.
-const SECTIONS: [(&str, Section); 6] = [
+const SECTIONS: [(&str, Section); 7] = [
     ("survey/step", step::run),
+    ("survey/motion", motion::run),
     ("survey/cost", cost::run),
     ("survey/factorisation", factorisation::run),
     ("survey/growth", growth::run),

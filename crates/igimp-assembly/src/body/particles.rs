@@ -18,6 +18,10 @@ use crate::small::{determinant, identity};
 /// threads.
 pub(crate) const CHUNK: usize = 1024;
 
+/// How many times as long as it was seeded a domain is drawn at most \[-\]: by far more only single particles of spray are
+/// stretched, which count up to one cell.
+const LONGEST_DRAWN: f64 = 6.0;
+
 /// What is known of a particle before the first step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParticleSeed<const D: usize> {
@@ -288,6 +292,13 @@ impl<const D: usize> Particles<D> {
     /// Current volume V = det F · V_0 of a particle \[length^D\].
     pub fn volume(&self, particle: usize) -> f64 {
         determinant(&self.fields.def_grad[particle]) * self.fields.volume0[particle]
+    }
+
+    /// Half-lengths of the box by which results draw and measure a particle \[length\]: its domain, at most six times as long as
+    /// it was seeded. Domains of single particles that flow off stretch without end.
+    pub fn drawn_half_length(&self, particle: usize) -> [f64; D] {
+        let (now, seeded) = (&self.half_length[particle], &self.half_length0[particle]);
+        std::array::from_fn(|axis| now[axis].min(LONGEST_DRAWN * seeded[axis]))
     }
 
     /// Ratio of the volume of a particle to that at the start J = det F \[-\].

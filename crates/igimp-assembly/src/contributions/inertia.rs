@@ -15,7 +15,7 @@ use igimp_shape::Support;
 use crate::body::particles::Particles;
 use crate::conditions::time_step::{TimeScheme, TimeStep, Weights};
 use crate::contributions::nodal_forces::AddBlock;
-use crate::contributions::nodal_mass::{NodalMass, add_scaled, product};
+use crate::contributions::nodal_mass::{NodalMass, add_scaled, mask, product};
 use crate::contributions::rigid::{NODES_PER_BODY, RigidBody};
 use crate::error::AssemblyError;
 use crate::step::stencils::Stencils;
@@ -40,13 +40,16 @@ pub(crate) struct Inertia<const D: usize> {
     force_at_start: Vec<[f64; D]>,
     /// Damping of soil by its mass \[1/time\].
     damping: f64,
+    /// Whether velocities or accelerations at the start are means around nodes, as none that come closest were found.
+    by_means: bool,
 }
 
 impl<const D: usize> Inertia<D> {
-    /// The mass of particles and rigid bodies on the nodes of a step, and their motion.
+    /// The mass of particles and rigid bodies on the nodes of a step, and their motion: the one that comes closest to that of the
+    /// particles, and where none is found means around nodes, which lose energy.
     ///
     /// # Errors
-    /// [`AssemblyError::MotionNotFound`].
+    /// Never for particles of positive mass.
     pub(crate) fn of(
         step: TimeStep,
         particles: &Particles<D>,
@@ -71,8 +74,15 @@ impl<const D: usize> Inertia<D> {
                     })
                 })
                 .collect();
-            let found = mass.solve(&sums, mean.clone(), unknowns)?;
-            Ok::<_, AssemblyError>((found, mean))
+            match mass.solve(&sums, mean.clone(), unknowns) {
+                Ok(found) => Ok((found, mean, false)),
+                Err(AssemblyError::MotionNotFound { .. }) => {
+                    let mut found = means(values, mass_of, stencils, nodes);
+                    mask(&mut found, unknowns);
+                    Ok((found, mean, true))
+                }
+                Err(error) => Err(error),
+            }
         };
         let carries = step.asks_for_acceleration() && !step.is_first;
         let (of_velocity, of_acceleration) = rayon::join(
@@ -83,8 +93,12 @@ impl<const D: usize> Inertia<D> {
                     .transpose()
             },
         );
-        let (mut velocity, mut mean_velocity) = of_velocity?;
-        let mut acceleration = of_acceleration?.map_or(vec![[0.0; D]; nodes], |(found, _)| found);
+        let (mut velocity, mut mean_velocity, mut by_means) = of_velocity?;
+        let mut acceleration = vec![[0.0; D]; nodes];
+        if let Some((found, _, also)) = of_acceleration? {
+            acceleration = found;
+            by_means |= also;
+        }
         for body in bodies {
             let own = body.nodal(&body.motion.velocity, &body.motion.spin);
             velocity.extend(own);
@@ -106,12 +120,18 @@ impl<const D: usize> Inertia<D> {
             acceleration,
             force_at_start: Vec::new(),
             damping: 0.0,
+            by_means,
         })
     }
 
     /// The time integration of the step.
     pub(crate) fn step(&self) -> &TimeStep {
         &self.step
+    }
+
+    /// Whether the motion at the start is that of means around nodes.
+    pub(crate) fn is_by_means(&self) -> bool {
+        self.by_means
     }
 
     /// Damps soil by so much of its mass \[1/time\].
@@ -389,6 +409,34 @@ impl<const D: usize> Motion<D> {
         }
         after
     }
+}
+
+/// The mean of values by particle around each node, weighted by mass and by how much the node counts for the particle, zero
+/// where there is none: between the values of the particles, whatever shares are below zero.
+fn means<const D: usize>(
+    values: &[[f64; D]],
+    mass_of: &(dyn Fn(usize) -> f64 + Sync),
+    stencils: &Stencils<D>,
+    nodes: usize,
+) -> Vec<[f64; D]> {
+    let mut sums = vec![[0.0; D]; nodes];
+    let mut shares = vec![0.0; nodes];
+    for &particle in stencils.order() {
+        let particle = particle as usize;
+        for support in stencils.of(particle) {
+            let share = mass_of(particle) * support.value.abs();
+            shares[support.node] += share;
+            for (sum, value) in sums[support.node].iter_mut().zip(values[particle]) {
+                *sum += share * value;
+            }
+        }
+    }
+    for (sum, share) in sums.iter_mut().zip(shares) {
+        if share > 0.0 {
+            *sum = sum.map(|sum| sum / share);
+        }
+    }
+    sums
 }
 
 /// Values of particles weighted by mass, by node: Σ_p m_p S_ip a_p.

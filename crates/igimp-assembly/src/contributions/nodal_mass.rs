@@ -225,7 +225,7 @@ impl NodalMass {
 }
 
 /// Sets to zero what is not unknown.
-fn mask<const D: usize>(values: &mut [[f64; D]], unknowns: &Unknowns<D>) {
+pub(crate) fn mask<const D: usize>(values: &mut [[f64; D]], unknowns: &Unknowns<D>) {
     for (node, values) in values.iter_mut().enumerate() {
         for (axis, value) in values.iter_mut().enumerate() {
             if unknowns.index(node, axis).is_none() {

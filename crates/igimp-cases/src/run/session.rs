@@ -136,6 +136,7 @@ impl<const D: usize> Session<'_, D> {
         }
         stage.at_round_off += usize::from(report.at_round_off);
         stage.ghost_steps += usize::from(report.ghost_penalty > 0.0);
+        self.tally_means(stage, report);
         stage.plastic_share = report.plastic_share;
         let before = stage.false_support;
         stage.false_support = before.max(report.false_support);
@@ -175,6 +176,18 @@ impl<const D: usize> Session<'_, D> {
         *unknowns = report.unknowns.max(*unknowns);
         let course = (report.from, report.to, &report.residuals[..]);
         self.write_convergence(stage, course, true)
+    }
+
+    /// Counts a step whose motion began with means, and warns of it once.
+    fn tally_means(&mut self, stage: &mut StageSummary, report: &StepReport) {
+        if report.moves_by_means {
+            stage.steps_by_means += 1;
+            self.warn(format!(
+                "stage \"{}\": the motion of the particles could not be given to the grid as it is, and means around nodes were \
+                 taken, which lose energy: see what the map took in the energy of the stage",
+                stage.name
+            ));
+        }
     }
 
     /// Says once that the memory of this machine decided how systems are solved: another one comes to other last digits.

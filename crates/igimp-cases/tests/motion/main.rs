@@ -3,7 +3,6 @@
 #[path = "../common/resuming.rs"]
 mod resuming;
 
-mod collapse;
 mod dynamic;
 mod earthquake;
 mod pseudo_static;

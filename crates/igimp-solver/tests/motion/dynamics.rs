@@ -502,3 +502,49 @@ fn a_rigid_body_with_mass_moves_freely() {
     let kinetic = 0.5 * 2.0 * (0.25 + 4.0) + 0.5 * 0.25 * 0.16;
     assert!((energy.kinetic - kinetic).abs() < 1e-9, "{energy:?}");
 }
+
+/// GOAL: a motion for which the grid finds none that comes closest goes on, by means around its nodes, and says so.
+/// ORACLE: a bar that flies freely keeps its velocity, whatever the weights of a mean are. Of its tip, ten thousand times as dense and a
+/// tenth of a cell beyond the full ones, a hundredth is lumped to the node behind with a share below zero, which leaves no
+/// closest motion; with a light tip there is one.
+#[test]
+fn a_motion_without_a_closest_one_goes_on_by_means() {
+    let mut method = Method::igimp();
+    method.small_cuts.below = 0.2;
+    method.small_cuts.remedy = Remedy::Extrapolate;
+    for (density, is_by_means) in [(1.0, false), (1e4, true)] {
+        let grid = Grid::new([Axis::uniform(0.0, 1.0, 8).unwrap()]);
+        let part = |x: f64, half: f64, density: f64| ParticleSeed {
+            x: [x],
+            half_length: [half],
+            volume: 2.0 * half,
+            density,
+            law: 0,
+            centroid: [0.0; _],
+        };
+        let mut seeds: Vec<_> = (0..6)
+            .map(|k| part(1.25 + 0.5 * f64::from(k), 0.25, 1.0))
+            .collect();
+        seeds.push(part(4.05, 0.05, density));
+        let constraints = Constraints::free(&grid);
+        let loads = StepLoads::gravity([0.0]);
+        let conditions = StepConditions::new(grid, constraints, loads, vec![elastic()]).unwrap();
+        let particles = Particles::new(&seeds).unwrap();
+        let velocities = vec![[0.3]; particles.len()];
+        let mut body = Body::new(particles.with_velocities(velocities).unwrap());
+        let time = TimeStep {
+            lumped: 0.01,
+            ..over(0.01, TimeScheme::GeneralisedAlpha)
+        };
+        let reports = run(&mut body, &method, &conditions, time, 3);
+        assert!(
+            reports
+                .iter()
+                .all(|report| report.moves_by_means == is_by_means),
+            "{density}"
+        );
+        for velocity in &body.particles.velocity {
+            assert!((velocity[0] - 0.3).abs() < 1e-9, "{velocity:?}");
+        }
+    }
+}

@@ -24,7 +24,7 @@
 //! | `generated: WHAT` to `generated: end` | made by the program |
 //!
 //! In blocks of the language `console`, `igimp run` is tried as `igimp check`: the cases themselves are
-//! run by `tests/shipped.rs` of `igimp-cases`. A block of Python runs in the folder of its page. `coverage.rs` sees to it
+//! run by `tests/shipped` of `igimp-cases`. A block of Python runs in the folder of its page. `coverage.rs` sees to it
 //! that no block of any page is left out.
 //!
 //! Messages and what is generated are written anew with `INSTA_UPDATE=always`, like snapshots.

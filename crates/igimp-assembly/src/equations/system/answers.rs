@@ -2,7 +2,7 @@
 
 use super::System;
 use crate::contributions::consolidation::PoresAfter;
-use crate::contributions::inertia::Motion;
+use crate::contributions::inertia::{Inertia, Motion};
 use crate::contributions::reinforcement::Reinforcement;
 use crate::contributions::rigid::{AcceptedContact, Penetration};
 use crate::contributions::walls::TieForce;
@@ -24,6 +24,11 @@ impl<const D: usize> System<'_, D> {
             }
         }
         reactions
+    }
+
+    /// Whether the grid took over means of the motion of the particles, as no motion that comes closest to it was found.
+    pub fn moves_by_means(&self) -> bool {
+        (self.inertia.as_ref()).is_some_and(Inertia::is_by_means)
     }
 
     /// The force f_int − f_ext by node of the grid that would keep a trial where it is, zero where nothing is unknown

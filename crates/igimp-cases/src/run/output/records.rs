@@ -214,8 +214,8 @@ impl Records {
             }
             Quantity::Time => controls.time,
             Quantity::KineticEnergy => kinetic_energy(moment.particles, moment.rigid),
-            Quantity::Top => std::iter::zip(&moment.particles.x, &moment.particles.half_length)
-                .map(|(x, l)| x[D - 1] + l[D - 1])
+            Quantity::Top => (moment.particles.x.iter().enumerate())
+                .map(|(k, x)| x[D - 1] + moment.particles.drawn_half_length(k)[D - 1])
                 .fold(f64::NEG_INFINITY, f64::max),
         }
     }

@@ -1,0 +1,239 @@
+//! Footings and loads on level ground.
+
+use crate::resuming::{assert_done, assert_equal, everything, folder, run_into};
+use crate::{between, file, ran};
+use igimp_input::CaseFile;
+use igimp_input::shipped::find;
+use igimp_model::Strength;
+use igimp_results::summary::StageOutcome::Stopped;
+
+#[test]
+fn bearing_capacity_is_that_of_prandtl() {
+    let ran = ran(
+        "bearing_capacity",
+        &["grid.cell=2/9 m", "stages.0.steps=40"],
+    );
+    assert!(ran.run.failure.is_none());
+    between(ran.end_of("load-settlement"), 4.9, 5.9);
+}
+
+/// GOAL: a footing on clay whose strength goes with direction carries the share of the isotropic load that slip lines give, and with the
+/// logarithm of the rate as much more as the strength grows; the angle of compression is resumed and printed.
+/// ORACLE: N = 1 + s_p/s_a and half the girth of the ellipse of Davis and Christian (1971), by quadrature; 5.142 of one strength. A push
+/// that is 100 times as fast adds two log cycles of strength everywhere, so that N grows by two cycles times that of one strength.
+#[test]
+fn anisotropic_footing_carries_what_slip_lines_give() {
+    let coarse = ["grid.cell=2/7 m", "stages.0.steps=30"];
+    let isotropic = [
+        "materials.clay.anisotropy.simple_shear=1.0",
+        "materials.clay.anisotropy.passive=1.0",
+    ];
+    let end = |more: &[&str]| {
+        let ran = ran("anisotropic_footing", &[&coarse, more].concat());
+        assert!(ran.run.failure.is_none());
+        // Time alone is no consolidation.
+        let stages = ran.run.summary.stages.iter();
+        assert!({ stages }.all(|stage| stage.consolidation.is_none()));
+        ran.end_of("load-settlement")
+    };
+    let [own, plain] = [end(&[]), end(&isotropic)];
+    let exact = |shear: f64, passive: f64| {
+        let level = 0.5 * (1.0 + passive);
+        let upright = shear * level / passive.sqrt();
+        let arcs = 10_000;
+        let width = std::f64::consts::PI / f64::from(arcs);
+        let arc = |k: i32| {
+            let (sine, cosine) = ((f64::from(k) + 0.5) * width).sin_cos();
+            (level * sine).hypot(upright * cosine) * width
+        };
+        1.0 + passive + (0..arcs).map(arc).fold(0.0, |sum, own| sum + own)
+    };
+    assert!((exact(1.0, 1.0) / (2.0 + std::f64::consts::PI) - 1.0).abs() < 1e-6);
+    let share = exact(0.75, 0.5) / exact(1.0, 1.0);
+    println!(
+        "N {own:.4} of {plain:.4}: {:.4}, exact {share:.4}",
+        own / plain
+    );
+    between(plain, 4.9, 5.7);
+    between(own / plain / share, 0.96, 1.01);
+    let fast = |duration: &str| {
+        let rate = "materials.clay.rate={ per_log_cycle = 0.1, reference = \"1 %/h\" }";
+        let time = format!("stages.0.consolidation={{ duration = \"{duration}\" }}");
+        end(&[&isotropic[..], &[rate, &time, "output.figures=[]"]].concat())
+    };
+    let [hour, blow] = [fast("1 h"), fast("36 s")];
+    let grown = (blow - hour) / (0.2 * plain);
+    println!("N {hour:.4} in an hour, {blow:.4} in 36 s: {grown:.4} of two cycles");
+    between(grown, 0.95, 1.05);
+}
+
+/// GOAL: a footing on sand that stiffens with its stress is stiffer as it is relieved, goes on where it was left, and is resumed to the bit.
+/// ORACLE: where all stresses double, those of weight, cohesion, backfill and moduli with the pressure that they hold at, every strain is
+/// the same. Soil that
+/// was relieved carries in the end what soil carries that never was, and where it turned almost as much.
+#[test]
+fn dense_sand_footing_remembers_and_scales() {
+    let coarse = ["grid.cell=2/5 m", "output.figures=[]"];
+    let pressures = |more: &[&str]| {
+        let ran = ran("dense_sand_footing", &[&coarse, more].concat());
+        assert!(ran.run.failure.is_none());
+        ran.curve("load-settlement")
+    };
+    let own = pressures(&[]);
+    let at = |settlement: f64, points: &[[f64; 2]]| {
+        let pair = points.windows(2).find(|pair| {
+            let [from, to] = [pair[0][0], pair[1][0]];
+            (from - to).abs() > 0.0 && (from.min(to)..=from.max(to)).contains(&settlement)
+        });
+        let [from, to] = *pair.unwrap().as_array::<2>().unwrap();
+        from[1] + (to[1] - from[1]) * (settlement - from[0]) / (to[0] - from[0])
+    };
+    let turned = own
+        .iter()
+        .position(|point| (point[0] - 50.0).abs() < 1e-9)
+        .unwrap();
+    let (pushed, after) = own.split_at(turned + 1);
+    let lowest = after
+        .iter()
+        .position(|point| (point[0] - 45.0).abs() < 1e-9)
+        .unwrap();
+    let (relieved, again) = after.split_at(lowest + 1);
+    let slope = |points: &[[f64; 2]], far: f64| (at(50.0, points) - at(far, points)) / (50.0 - far);
+    let stiffer = slope(&[&pushed[turned..], relieved].concat(), 48.0) / slope(pushed, 46.0);
+    let returned = at(50.0, again) / pushed[turned][1];
+    let straight = pressures(&[
+        "stages.3.bodies=[{ body = 'footing', y = '-1 mm' }]",
+        "stages.4.bodies=[{ body = 'footing', y = '-49 mm' }]",
+    ]);
+    let same = own.last().unwrap()[1] / straight.last().unwrap()[1];
+    println!(
+        "relieved {stiffer:.3} times as stiff, {returned:.4} of the load back, {same:.4} of it at the end"
+    );
+    between(stiffer, 3.0, 5.0);
+    between(returned, 0.97, 1.01);
+    between(same, 0.995, 1.005);
+    let heavy = pressures(&[
+        "materials.sand.unit_weight=34 kN/m3",
+        "materials.sand.cohesion=2 kPa",
+        "materials.sand.e50=60 MPa",
+        "materials.sand.eur=180 MPa",
+        "materials.sand.eoed=60 MPa",
+        "materials.sand.reference_pressure=200 kPa",
+        "loads.0.pressure=34 kPa",
+    ]);
+    for (heavy, own) in heavy.iter().zip(&own) {
+        assert_eq!(heavy[0].to_bits(), own[0].to_bits());
+        assert!(
+            (heavy[1] - 2.0 * own[1]).abs() <= 1e-6 * 2000.0,
+            "{heavy:?} {own:?}"
+        );
+    }
+}
+
+/// GOAL: strengths by direction and rate are refused where they have no meaning, and go on where a run was stopped, to the bit.
+#[test]
+fn anisotropic_footing_resumes_and_refuses() {
+    // Strength that grows with depth, with softening and anisotropy at once.
+    let overrides = [
+        "grid.cell=2/5 m",
+        "stages.0.steps=8",
+        "materials.clay.cu={ at_top = \"40 kPa\", gradient = \"5 kPa/m\" }",
+        "materials.clay.softening={ cu = { residual = 0.5, strain = 0.5 } }",
+        "output.figures=[]",
+    ];
+    let case = file("anisotropic_footing", &overrides);
+    let (whole, stopped) = (folder("anisotropic-whole"), folder("anisotropic-stopped"));
+    let run = run_into((&case, case.case()), &whole, Start::Afresh, None);
+    assert_done(&run.summary);
+    run_into((&case, case.case()), &stopped, Start::Afresh, Some(3));
+    run_into((&case, case.case()), &stopped, Start::Resume, None);
+    assert_equal(
+        &everything(&whole),
+        &everything(&stopped),
+        "after it was taken up",
+    );
+    let angles = |particle: &[f64; 4]| (0.0..=std::f64::consts::FRAC_PI_2).contains(&particle[1]);
+    assert!(run.body.particles.internal.iter().all(angles));
+    let case = file("anisotropic_footing", &[]);
+    let material = &case.case().materials[0];
+    assert_eq!(material.law().unwrap().name(), "anisotropic Tresca");
+    assert_eq!(
+        material.law().unwrap().internal_variables()[0].name,
+        "angle of compression"
+    );
+    let refused = |set: &str| {
+        let text = find("anisotropic_footing").unwrap().text;
+        CaseFile::parse("footing", text, &[set.to_owned()])
+            .unwrap_err()
+            .to_string()
+    };
+    let no_time = refused("materials.clay.rate={ per_log_cycle = 0.1, reference = \"1 %/h\" }");
+    assert!(no_time.contains("no stage takes time"), "{no_time}");
+    let nothing = refused("materials.clay.anisotropy.passive=0.0");
+    assert!(nothing.contains("passive"), "{nothing}");
+    let no_rate = refused("stages.0.consolidation={ duration = \"1 h\" }");
+    assert!(no_rate.contains("no material is coupled"), "{no_rate}");
+}
+
+/// GOAL: sand on a hyperbola goes on where a run was stopped, to the bit; parameters that no sand has are refused at their key.
+/// ORACLE: the run that was not stopped; the key and the words.
+#[test]
+fn dense_sand_footing_resumes_and_refuses() {
+    let overrides = ["grid.cell=2/5 m", "stages.2.steps=6", "output.figures=[]"];
+    let case = file("dense_sand_footing", &overrides);
+    let (whole, stopped) = (folder("sand-whole"), folder("sand-stopped"));
+    let run = run_into((&case, case.case()), &whole, Start::Afresh, None);
+    assert_done(&run.summary);
+    run_into((&case, case.case()), &stopped, Start::Afresh, Some(17));
+    run_into((&case, case.case()), &stopped, Start::Resume, None);
+    let folders = [&whole, &stopped].map(|folder| everything(folder));
+    assert_equal(&folders[0], &folders[1], "after it was taken up");
+    let refused = [
+        (
+            "friction",
+            "\"0.5 deg\"",
+            "the friction angle is 1 deg to 80 deg",
+        ),
+        (
+            "dilation",
+            "\"43 deg\"",
+            "no larger than the friction angle",
+        ),
+        ("poisson", "0.5", "must be below 0.5"),
+        ("power", "1.2", "`power` is at most 1"),
+        ("failure_ratio", "1.0", "`failure_ratio` is below 1"),
+        ("ocr", "0.9", "`ocr` is 1 or more"),
+        ("k0_normal", "1.0", "`k0_normal` is below 1"),
+        ("eoed", "\"300 MPa\"", "no cap gives an oedometer modulus"),
+    ];
+    for (key, value, words) in refused {
+        let text = find("dense_sand_footing").unwrap().text;
+        let set = format!("materials.sand.{key}={value}");
+        let error = CaseFile::parse("footing", text, &[set]).unwrap_err();
+        let error = error.to_string();
+        assert!(
+            error.contains(words) && error.contains(key),
+            "{key}: {error}"
+        );
+    }
+}
+
+#[test]
+fn two_layer_footing_lies_between_its_layers() {
+    let ran = ran(
+        "two_layer_footing",
+        &[
+            "grid.cell.x=0.4 m",
+            "grid.cell.y=0.5 m",
+            "stages.0.steps=20",
+        ],
+    );
+    between(ran.end_of("load-settlement"), 2.571, 5.142);
+}
+
+#[test]
+fn strip_load_collapses_near_prandtl() {
+    let ran = ran("strip_load", &["grid.cell=0.25 m", "stages.0.steps=30"]);
+    assert_eq!(ran.outcomes(), [Stopped]);
+    between(ran.end_of("load-settlement"), 4.9, 6.0);
+}
