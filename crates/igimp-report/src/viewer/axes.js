@@ -56,7 +56,8 @@ class Axes {
     const xTicks = ticksOf(from[0], to[0], Math.max((right - room.left) / 80, 2));
     for (const x of xTicks) {
       const [at] = projected(place, this.scene.camera, [x, 0, 0]);
-      pen.fillText(`${tickText(x, xTicks)}${at > right - 50 ? " m" : ""}`, Math.min(at, right - 10), bottom + 15);
+      const isLast = x === xTicks[xTicks.length - 1];
+      pen.fillText(`${tickText(x, xTicks)}${isLast ? " m" : ""}`, Math.min(at, right - 10), bottom + 15);
       pen.fillRect(at, bottom, 1, 4);
     }
     pen.textAlign = "right";

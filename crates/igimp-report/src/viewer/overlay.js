@@ -1,13 +1,17 @@
-// What lies over the particles: edges of the bodies, reinforcement, arrows of a vector, principal stresses, a section.
+// What lies over the particles: contours, edges of the bodies, water, the slip line, reinforcement, arrows of a vector,
+// principal stresses, a section.
 
 // Most arrows or crosses, and their length where the value is largest [CSS pixel].
 const MOST_ARROWS = 450;
 const LONGEST_ARROW = 34;
 
+const SLIP = "#c00020";
+
 class Overlay {
   constructor(scene) {
     this.scene = scene;
     this.water = new Water(scene);
+    this.contours = new Contours(scene);
     this.arrows = null;
     this.section = null;
   }
@@ -66,19 +70,42 @@ class Overlay {
   }
 
   paint(pen, place) {
-    const { edges } = this.scene.boxes;
-    if (edges) {
-      pen.strokeStyle = cssColour("--ink") || cssColour("--soft");
-      pen.lineWidth = 1.1;
-      this.each(edges, place, (points) => {
-        this.scene.trace(pen, points);
-        pen.stroke();
-      });
-    }
+    const { scene } = this;
+    this.contours.paint(pen, place);
+    if (scene.outlined && scene.dimension === 2) this.edges(pen, place);
+    if (scene.outlined && scene.dimension === 3 && !scene.surface) sketched(pen, place, scene, [...scene.segments, ...scene.seams]);
     this.water.paint(pen, place);
+    this.slip(pen, place);
     this.members(pen, place);
     if (this.arrows) this.paintArrows(pen, place);
     if (this.section) this.paintSection(pen, place);
+  }
+
+  // The edges of the bodies of the plane.
+  edges(pen, place) {
+    const { edges } = this.scene.boxes;
+    if (!edges) return;
+    pen.strokeStyle = cssColour("--ink") || cssColour("--soft");
+    pen.lineWidth = 1.1;
+    this.each(edges, place, (points) => {
+      this.scene.trace(pen, points);
+      pen.stroke();
+    });
+  }
+
+  // The line along which soil shears most as it begins to fail.
+  slip(pen, place) {
+    const points = this.scene.bodies.slip.map(([x, y]) => this.see(place, x, y));
+    if (points.length < 2) return;
+    pen.lineJoin = "round";
+    for (const [width, colour] of [[5, "rgba(255,255,255,0.8)"], [2.4, SLIP]]) {
+      pen.lineWidth = width;
+      pen.strokeStyle = colour;
+      pen.beginPath();
+      Contours.curve(pen, points);
+      pen.stroke();
+    }
+    pen.lineJoin = "miter";
   }
 
   // Reinforcement: a heavy line with a light core, as in the pictures of a report.

@@ -51,9 +51,9 @@ function besideOf(name, what) {
   return index.files[own] ? () => fetched(`packed/${own}`) : null;
 }
 
-// The water tables of a stage.
-function waterOf(stage) {
-  return (index.water && index.water[stage]) || [];
+// What stands over the frames of a stage: water and slip line.
+function overOf(stage) {
+  return (index.over && index.over[stage]) || {};
 }
 
 function entryOf(name, label, more) {
@@ -73,7 +73,7 @@ async function framesOf() {
     const seconds = index.seconds[name];
     const when = seconds === undefined ? "" : `t = ${short(seconds)} s, `;
     const label = `Frame ${k + 1} of ${sets.length}: ${when}stage ${moment.stage + 1} “${stageName(moment.stage)}”, ${own && own.search ? "trial" : "step"} ${Math.ceil(moment.step)}`;
-    return entryOf(name, label, { moment, seconds, water: waterOf(moment.stage) });
+    return entryOf(name, label, { moment, seconds, ...overOf(moment.stage) });
   });
 }
 
@@ -87,7 +87,7 @@ function statesOf() {
     const other = name.replace("last-stable", "first-unstable");
     const isLast = stage === index.planned.length - 1 && stage === index.stages.length - 1;
     const isMechanism = isLast && (other === name || !index.files[other]);
-    return entryOf(name, `${stageName(stage)}: ${what[found[2]]}`, { moment: { stage, step: Infinity }, isMechanism, water: waterOf(stage) });
+    return entryOf(name, `${stageName(stage)}: ${what[found[2]]}`, { moment: { stage, step: Infinity }, isMechanism, ...overOf(stage) });
   }).filter(Boolean).sort((a, b) => b.name.localeCompare(a.name));
 }
 
@@ -165,6 +165,8 @@ const viewer = new Viewer(
     hover: numbersOf("hover"),
     framed: asked.has("frame"),
     arrows: asked.get("arrows"),
+    contours: asked.get("contours"),
+    outlines: asked.get("outlines"),
     section: numbersOf("section"),
     view: asked.get("view"),
     cut: numbersOf("cut"),
@@ -197,8 +199,21 @@ function frameLike({ frame, frames, seconds }) {
   return Math.round(((frame - 1) / Math.max(frames - 1, 1)) * (own.length - 1)) + 1;
 }
 
+// Hands the range of values over when it changes.
+viewer.ranged = (range) => {
+  const text = JSON.stringify(range);
+  if (!isBeside || text === viewer.toldRange || !range.own.every(Number.isFinite)) return;
+  viewer.toldRange = text;
+  window.parent.postMessage({ range }, location.origin);
+};
+
 window.addEventListener("message", (event) => {
   if (!isBeside || event.source !== window.parent || event.origin !== location.origin || viewer.frames.length === 0) return;
+  if (event.data.range) {
+    viewer.joint = event.data.range;
+    if (viewer.shown) viewer.paint();
+    return;
+  }
   const { slider, field, state } = viewer.part;
   const frame = frameLike(event.data);
   const isKnown = [...field.options].some((option) => option.value === event.data.field);
