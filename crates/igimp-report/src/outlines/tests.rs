@@ -7,7 +7,7 @@ use igimp_model::AnyCase;
 use super::*;
 
 /// Two boxes beside each other, cut by cells of two thirds of a metre.
-const TWO: &str = "igimp = 1\n[case]\nanalysis = \"3d\"\ngravity = \"9.81 m/s2\"\n\
+const TWO: &str = "igimp = 1\n[case]\ntitle = \"two\"\nanalysis = \"3d\"\ngravity = \"9.81 m/s2\"\n\
     [grid]\ncell = \"0.6 m\"\n\
     domain = { x = [\"0 m\", \"6 m\"], y = [\"0 m\", \"3 m\"], z = [\"0 m\", \"3 m\"] }\n\
     [materials.clay]\nmodel = \"elastic\"\nunit_weight = \"18 kN/m3\"\nyoung = \"10 MPa\"\npoisson = 0.0\n\

@@ -84,19 +84,38 @@ function valuesAt(pieces, places, values, centres) {
   return sums.map((sum, place) => sum / weights[place]);
 }
 
-// Calls for the triangles between the corners of each piece and its middle, by number, place and value of their corners; the
-// middle has the mean.
-function eachTriangle({ corners, ends }, { placeOf, count }, at, call) {
-  let start = 0;
-  ends.forEach((end, k) => {
-    const own = [];
-    for (let corner = start; corner < end; corner += 1) own.push({ number: placeOf[corner], x: corners[2 * corner], y: corners[2 * corner + 1], value: at[placeOf[corner]] });
-    start = end;
-    if (!own.every(({ value }) => Number.isFinite(value))) return;
-    const mean = (name) => own.reduce((sum, corner) => sum + corner[name], 0) / own.length;
-    const middle = { number: count + k, x: mean("x"), y: mean("y"), value: mean("value") };
-    own.forEach((corner, j) => call([corner, own[(j + 1) % own.length], middle]));
-  });
+// The triangles between the corners of a piece and its middle, by number, place and value of their corners; the middle has the
+// mean. None where a corner has no value.
+function trianglesIn({ corners, ends }, { placeOf, count }, at, k) {
+  const own = [];
+  for (let corner = k > 0 ? ends[k - 1] : 0; corner < ends[k]; corner += 1) own.push({ number: placeOf[corner], x: corners[2 * corner], y: corners[2 * corner + 1], value: at[placeOf[corner]] });
+  if (!own.every(({ value }) => Number.isFinite(value))) return [];
+  const mean = (name) => own.reduce((sum, corner) => sum + corner[name], 0) / own.length;
+  const middle = { number: count + k, x: mean("x"), y: mean("y"), value: mean("value") };
+  return own.map((corner, j) => [corner, own[(j + 1) % own.length], middle]);
+}
+
+// The shares of the corners of a triangle in a point.
+function sharesIn([a, b, c], x, y) {
+  const whole = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+  const first = ((b.x - x) * (c.y - y) - (c.x - x) * (b.y - y)) / whole;
+  const second = ((c.x - x) * (a.y - y) - (a.x - x) * (c.y - y)) / whole;
+  return [first, second, 1 - first - second];
+}
+
+// The field whose contours are drawn, as a function of the piece and the point in it.
+function fieldOver(pieces, values, centres, soil) {
+  const places = placesOf(pieces, soil);
+  const at = valuesAt(pieces, places, values, centres);
+  return (k, x, y) => {
+    let [best, least] = [NaN, -Infinity];
+    for (const triangle of trianglesIn(pieces, places, at, k)) {
+      const shares = sharesIn(triangle, x, y);
+      const own = Math.min(...shares);
+      if (own > least) [best, least] = [shares.reduce((sum, share, j) => sum + share * triangle[j].value, 0), own];
+    }
+    return best;
+  };
 }
 
 // The two points at which a level crosses the sides of a triangle, each with a key that it shares with the triangle beyond.
@@ -147,13 +166,15 @@ function contoursOf(pieces, values, centres, levels, soil) {
   const places = placesOf(pieces, soil);
   const at = valuesAt(pieces, places, values, centres);
   const segments = levels.map(() => []);
-  eachTriangle(pieces, places, at, (triangle) => {
-    const own = triangle.map(({ value }) => value);
-    const [low, high] = [Math.min(...own), Math.max(...own)];
-    levels.forEach((level, k) => {
-      if (low <= level && level < high) segments[k].push(crossed(triangle, level));
-    });
-  });
+  for (let piece = 0; piece < pieces.ends.length; piece += 1) {
+    for (const triangle of trianglesIn(pieces, places, at, piece)) {
+      const own = triangle.map(({ value }) => value);
+      const [low, high] = [Math.min(...own), Math.max(...own)];
+      levels.forEach((level, k) => {
+        if (low <= level && level < high) segments[k].push(crossed(triangle, level));
+      });
+    }
+  }
   return levels.map((level, k) => ({ level, lines: joined(segments[k]) }));
 }
 

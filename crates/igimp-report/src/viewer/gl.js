@@ -32,7 +32,7 @@ class Surface {
     this.arrays = { faces: gl.createVertexArray(), caps: gl.createVertexArray(), bodies: gl.createVertexArray(), pieces: gl.createVertexArray(), slices: gl.createVertexArray(), strips: gl.createVertexArray(), seams: gl.createVertexArray() };
     this.buffers = new Map();
     this.count = { faces: 0, caps: 0, bodies: 0, pieces: 0, slices: 0, strips: 0, seams: 0 };
-    this.levels = 0;
+    [this.levels, this.light] = [0, 0];
   }
 
   // Hands numbers over: `per` components of a type at a place of the program, for every instance.
@@ -87,10 +87,12 @@ class Surface {
     this.nearer = widths.sort((a, b) => a - b)[Math.floor(widths.length / 2)] || 0;
   }
 
-  // Contours: levels at the eight corners of every box, the first contour at 0, the next at 1; none without them.
-  contour(corners, levels) {
+  // Contours: levels at the eight corners of every box, the first contour at 0, the next at 1, with the colours of
+  // the scale there; none without them.
+  contour(corners, colours) {
     const { gl, pick } = this;
-    this.levels = corners ? levels : 0;
+    this.levels = corners ? colours.length : 0;
+    this.light = colours.reduce((bits, colour, k) => (isDark(colour) ? bits | (1 << k) : bits), 0);
     this.corners = corners;
     if (!corners) return;
     [0, 4].forEach((first, k) => {
@@ -186,6 +188,7 @@ class Surface {
       gl.uniform4f(at.scale, (2 * place.scale) / place.width, (2 * place.scale) / place.height, 0.45 / place.deep, 1 / place.scale);
       const normal = cut ? cut.normal : [0, 0, 0];
       gl.uniform2f(at.contours, dimension === 3 ? this.levels : 0, sharp);
+      gl.uniform1i(at.light, this.light);
       gl.uniform4f(at.cut, ...normal, cut ? cut.offset - dot(normal, origin) : 0);
       return at;
     };

@@ -5,8 +5,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use igimp_model::{Case, PoreSource, in_plane};
+use igimp_geometry::region::Region;
+use igimp_model::{Case, PoreSource, SeepageCase, in_plane};
 use igimp_results::tables::rows;
+use igimp_seepage::{Extent, OnFaces};
 use serde::Serialize;
 
 use crate::pictures::file_name;
@@ -82,33 +84,113 @@ fn tables<const D: usize>(case: &Case<D>, stage: usize) -> Vec<Surface> {
     in_plane::<Case<D>, Case<3>>(case).map_or_else(Vec::new, |case| rasters(case, stage))
 }
 
-/// The free surface of the flow at the end of a stage, by its table.
-fn free_surface<const D: usize>(case: &Case<D>, stage: usize, root: &Path) -> Option<Surface> {
-    let condition = case.water.get(case.water_after(stage)?)?;
-    let PoreSource::Seepage(_) = condition.source else {
-        return None;
+/// The free surface of the flow at the end of a stage, by its table, and the free water that stands over the ground.
+fn free_surface<const D: usize>(case: &Case<D>, stage: usize, root: &Path) -> Vec<Surface> {
+    let condition = case.water_after(stage);
+    let Some((condition, own)) = condition.and_then(|k| Some((k, case.water.get(k)?))) else {
+        return Vec::new();
     };
-    let name = file_name(&format!("seepage-{}", condition.name));
-    let rows = table(root, "sections", &name)?;
-    if D == 2 {
-        return Some(Surface::Line(points(&rows)));
-    }
-    let rows: Vec<[f64; 3]> = (rows.iter())
-        .filter_map(|row| row.first_chunk::<3>().copied())
+    let PoreSource::Seepage(flow) = &own.source else {
+        return Vec::new();
+    };
+    let name = file_name(&format!("seepage-{}", own.name));
+    let ground = Ground::new(case, condition, flow);
+    let rows = table(root, "sections", &name).unwrap_or_default();
+    let rows: Vec<([f64; D], Option<f64>)> = (rows.iter())
+        .filter_map(|row| row.first_chunk::<D>())
+        .map(|row| (*row, ground.level(row)))
         .collect();
+    if D == 2 {
+        let runs = rows.chunk_by(|a, b| a.1.is_some() == b.1.is_some());
+        let line = |run: &[([f64; D], Option<f64>)]| {
+            let points = run
+                .iter()
+                .filter_map(|(row, level)| Some([row[0], (*level)?]));
+            points.collect::<Vec<_>>()
+        };
+        let lines = runs.map(line).filter(|line| line.len() > 1);
+        return lines.map(Surface::Line).collect();
+    }
+    vec![over_lines(&rows)]
+}
+
+/// Levels over the crossings of lines.
+fn over_lines<const D: usize>(rows: &[([f64; D], Option<f64>)]) -> Surface {
     let along = |axis: usize| {
-        let mut places: Vec<f64> = rows.iter().map(|row| row[axis]).collect();
+        let mut places: Vec<f64> = rows.iter().map(|(row, _)| row[axis]).collect();
         places.sort_by(f64::total_cmp);
         places.dedup();
         places
     };
     let (x, y) = (along(0), along(1));
     let mut z = vec![vec![None; x.len()]; y.len()];
-    for row in &rows {
+    for (row, level) in rows {
         let of = |places: &[f64], at: f64| places.partition_point(|&own| own < at);
-        z[of(&y, row[1])][of(&x, row[0])] = Some(row[2]);
+        z[of(&y, row[1])][of(&x, row[0])] = *level;
     }
-    Some(Surface::Raster { x, y, z })
+    Surface::Raster { x, y, z }
+}
+
+/// The ground that a flow goes through, with the free water on it.
+struct Ground<'c, const D: usize> {
+    bodies: Vec<&'c dyn Region<D>>,
+    flow: &'c SeepageCase,
+    lower: [f64; D],
+    upper: [f64; D],
+    /// What is taken for round-off \[m\].
+    reach: f64,
+}
+
+impl<'c, const D: usize> Ground<'c, D> {
+    fn new(case: &'c Case<D>, condition: usize, flow: &'c SeepageCase) -> Self {
+        let (lower, upper) = (case.grid.lower(), case.grid.upper());
+        let size = (0..D).fold(0.0_f64, |most, k| most.max(upper[k] - lower[k]));
+        let bodies = case.bodies_of_water(condition).into_iter();
+        Self {
+            bodies: bodies.map(|(body, _)| body).collect(),
+            flow,
+            lower,
+            upper,
+            reach: 1e-6 * size,
+        }
+    }
+
+    /// The level of the free surface at a place whose computed one is its last coordinate \[m\]. Above the ground the heads of the
+    /// nearest soil go on and say nothing: there it is that of the free water; none where there is no water, or no ground.
+    fn level(&self, row: &[f64; D]) -> Option<f64> {
+        let mut place = *row;
+        for k in 0..D - 1 {
+            place[k] = row[k].clamp(self.lower[k] + self.reach, self.upper[k] - self.reach);
+        }
+        let tops = self.bodies.iter().filter_map(|body| body.top(&place));
+        let top = tops.reduce(f64::max)?;
+        if row[D - 1] <= top + self.reach {
+            return Some(row[D - 1]);
+        }
+        place[D - 1] = top;
+        self.free_water(&place).filter(|level| *level > top)
+    }
+
+    /// The level of the free water over a place on the ground \[m\].
+    fn free_water(&self, place: &[f64; D]) -> Option<f64> {
+        let table = self.flow.free_water.as_ref();
+        if let Some(level) = table.and_then(|own| own.table(place)) {
+            return Some(level);
+        }
+        // Of several boxes that hold a face the last counts.
+        let faces = &self.flow.conditions.faces;
+        let holds = |axis: usize, within: &Extent<3>| {
+            within.lower[axis] - self.reach <= place[axis]
+                && place[axis] <= within.upper[axis] + self.reach
+        };
+        let last = (0..faces.len()).rfind(|&k| (0..D).all(|axis| holds(axis, &faces[k].within)))?;
+        let OnFaces::Head(head) = faces[last].what else {
+            return None;
+        };
+        let moment = self.flow.in_time.as_ref();
+        let history = moment.and_then(|own| Some(own.histories.get(last)?.as_ref()?.at(own.time)));
+        Some(history.unwrap_or(head))
+    }
 }
 
 /// Water tables in space at the end of a stage; bodies that are there and have a table of their own show it over their plan.

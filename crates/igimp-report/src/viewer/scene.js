@@ -92,16 +92,21 @@ class Scene {
     this.paint();
   }
 
+  // The centres of the boxes in the plane.
+  centres() {
+    const { low, high, count } = this.boxes;
+    return new Float64Array(2 * count).map((_, k) => 0.5 * (low[3 * (k >> 1) + (k & 1)] + high[3 * (k >> 1) + (k & 1)]));
+  }
+
   // Contours of a field at levels, which have these colours on the scale, with texts where these are given.
   contour(values, levels, colours, texts) {
     const { boxes, bodies: { soil } } = this;
     if (this.dimension === 3) {
       const range = levels.length > 1 ? [levels[0], levels[1] - levels[0]] : [levels[0], 1];
-      if (this.surface) this.surface.contour(levels.length > 0 ? cornerValues(boxes, values).map((own) => (own - range[0]) / range[1]) : null, levels.length);
+      if (this.surface) this.surface.contour(levels.length > 0 ? cornerValues(boxes, values).map((own) => (own - range[0]) / range[1]) : null, colours);
       this.canvas.dataset.contourLevels = levels.join(" ");
     } else if (boxes.pieces) {
-      const centres = new Float64Array(2 * boxes.count).map((_, k) => 0.5 * (boxes.low[3 * (k >> 1) + (k & 1)] + boxes.high[3 * (k >> 1) + (k & 1)]));
-      this.overlay.contours.take(levels.length > 0 ? contoursOf(boxes.pieces, values, centres, levels, soil) : [], colours, texts);
+      this.overlay.contours.take(levels.length > 0 ? contoursOf(boxes.pieces, values, this.centres(), levels, soil) : [], colours, texts);
     }
     this.paint();
   }

@@ -28,9 +28,10 @@ float between(vec4 lower, vec4 upper, vec3 share) {
 `;
 
 // How much of the colour is left beside contours, which stand at whole numbers from 0 on; there is none where nothing changes, and none
-// where they would be closer than some pixels. They are light on dark colours.
+// where they would be closer than some pixels. Those whose bit is set are light.
 const CONTOURED = `
 uniform vec2 contours;
+uniform int light;
 float contoured(float level) {
   float across = fwidth(level);
   float own = floor(level + 0.5);
@@ -39,9 +40,9 @@ float contoured(float level) {
   bool isOne = contours.x > 0.5 && own > -0.5 && own < contours.x - 0.5 && across > 1e-6;
   return isOne ? 1.0 - 0.85 * line : 1.0;
 }
-vec3 inked(vec3 colour, float left) {
-  float bright = dot(colour, vec3(0.2126, 0.7152, 0.0722));
-  return mix(bright < 0.33 ? vec3(1.0) : vec3(0.06), colour, left);
+vec3 inked(vec3 colour, float left, float level) {
+  bool isLight = ((light >> int(clamp(level + 0.5, 0.0, 30.0))) & 1) == 1;
+  return mix(isLight ? vec3(1.0) : vec3(0.06), colour, left);
 }
 `;
 
@@ -114,7 +115,7 @@ void main() {
   // Darker than the face, on dark faces lighter.
   float dark = 1.0 - smoothstep(0.1, 0.3, dot(tint, vec3(0.2126, 0.7152, 0.0722)));
   vec3 own = mix(tint * (1.0 - lines), tint + 0.3 * lines * tint + 0.25 * lines * 0.3, dark);
-  ink = vec4(inked(min(mix(tint, own, line * room), 1.0), drawn), 1.0);
+  ink = vec4(inked(min(mix(tint, own, line * room), 1.0), drawn, level), 1.0);
 }`;
 
 const BODIES = `#version 300 es
@@ -150,7 +151,7 @@ ${CONTOURED}
 void main() {
   float drawn = contoured(level);
   if (tint.a < 0.5) discard;
-  ink = vec4(inked(tint.rgb, drawn), 1.0);
+  ink = vec4(inked(tint.rgb, drawn, level), 1.0);
 }`;
 
 const GREY = `#version 300 es

@@ -349,7 +349,7 @@ class Viewer {
       return mark;
     }));
     part["bar-label"].textContent = `${field.title}${this.unit[1] ? ` [${this.unit[1]}]` : ""}${field.rest}`;
-    part.when.textContent = this.shownEntry.label;
+    part.when.textContent = `${this.shownEntry.label}${this.scene.bodies.slip.length > 1 ? "; red: where soil shears most as it fails" : ""}`;
     part.slider.setAttribute("aria-valuetext", this.shownEntry.label);
   }
 

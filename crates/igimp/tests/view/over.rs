@@ -3,7 +3,7 @@
 
 use crate::support::{BLOCK, View, attribute, browser, dumped, looked_at, results_of};
 
-/// GOAL: a run that ends with a search opens on the way in which the body fails, with the nails where they are.
+/// GOAL: a run that ends with a search opens on the way in which the body fails, with the nails where they are and the slip line.
 #[test]
 fn a_search_opens_on_its_mechanism() {
     let Some(browser) = browser() else {
@@ -26,6 +26,15 @@ fn a_search_opens_on_its_mechanism() {
     assert!(label.starts_with("factor of safety: "), "{label}");
     let bars: usize = attribute(&page, "canvas", "data-members").parse().unwrap();
     assert!(bars > 10, "{bars}");
+    // The slip line has the points of its table, where there is one.
+    let lines = std::fs::read_dir(folder.0.join("results/slip_lines"));
+    let lines = lines.into_iter().flatten().flatten();
+    let rows = |own: std::fs::DirEntry| {
+        let text = std::fs::read_to_string(own.path()).unwrap();
+        text.lines().count() - 1
+    };
+    let points: usize = lines.map(rows).sum();
+    assert_eq!(attribute(&page, "canvas", "data-slip"), points.to_string());
     let page = looked_at(browser, &folder, &view, "frame=1");
     assert!(attribute(&page, "slider", "aria-valuetext").starts_with("Frame 1 of "));
 }

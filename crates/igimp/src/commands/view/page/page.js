@@ -29,15 +29,25 @@ function momentsOf(k) {
   return search || rows.length === 0 ? moments : rows[rows.length - 1][1];
 }
 
-// The stage and the step (or trial) at a time, which counts steps and trials of the whole run.
-function momentOf(time) {
-  let before = 0;
+// The stage and the step (or trial) at a time, which counts steps and trials of the whole run. A search that follows a path has
+// none: the stage of its frame is known by its name, at the stage of the frame before or later.
+function momentOf(time, name, last) {
+  let [before, found] = [0, null];
   for (const k of index.stages.keys()) {
     const moments = momentsOf(k);
-    if (time <= before + moments) return { stage: k, step: time - before };
+    if (k >= last && stageName(k) === name) return { stage: k, step: time - before };
+    if (!found && time <= before + moments) found = { stage: k, step: time - before };
     before += moments;
   }
-  return { stage: index.stages.length, step: time - before };
+  return found || { stage: index.stages.length, step: time - before };
+}
+
+// A moment in words.
+function whenOf({ stage, step }) {
+  const own = index.stages[stage];
+  const where = `stage ${stage + 1} “${stageName(stage)}”`;
+  if (own && own.search && step <= 0) return `${where}, as it ends`;
+  return `${where}, ${own && own.search ? "trial" : "step"} ${Math.ceil(step)}`;
 }
 
 function stageName(k) {
@@ -65,14 +75,14 @@ async function framesOf() {
   if (!index.files[collection]) return [];
   const page = new DOMParser().parseFromString(await fetched(collection), "application/xml");
   const sets = [...page.querySelectorAll("DataSet")].filter((set) => index.files[`paraview/${set.getAttribute("file")}`]);
+  let last = 0;
   return sets.map((set, k) => {
-    const time = Number(set.getAttribute("timestep"));
-    const moment = momentOf(time);
-    const own = index.stages[moment.stage];
+    const moment = momentOf(Number(set.getAttribute("timestep")), set.getAttribute("group"), last);
+    last = moment.stage;
     const name = `paraview/${set.getAttribute("file")}`;
     const seconds = index.seconds[name];
     const when = seconds === undefined ? "" : `t = ${short(seconds)} s, `;
-    const label = `Frame ${k + 1} of ${sets.length}: ${when}stage ${moment.stage + 1} “${stageName(moment.stage)}”, ${own && own.search ? "trial" : "step"} ${Math.ceil(moment.step)}`;
+    const label = `Frame ${k + 1} of ${sets.length}: ${when}${whenOf(moment)}`;
     return entryOf(name, label, { moment, seconds, ...overOf(moment.stage) });
   });
 }
