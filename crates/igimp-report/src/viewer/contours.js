@@ -273,7 +273,13 @@ class Contours {
       pen.stroke();
     });
     pen.lineJoin = "miter";
-    this.scene.canvas.dataset.contourLabels = this.texts ? this.label(pen, place, sets) : 0;
+  }
+
+  // Writes the values of the lines, over all that lies over these.
+  write(pen, place) {
+    const see = ([x, y]) => projected(place, this.scene.camera, [x, y, 0]);
+    const sets = this.texts ? this.sets.map(({ lines }) => lines.map((line) => line.map(see))) : [];
+    this.scene.canvas.dataset.contourLabels = this.label(pen, place, sets);
   }
 
   // A line whose corners are rounded off.
@@ -296,7 +302,7 @@ class Contours {
         const spot = Contours.spot(line, (at) => isInside(at) && taken.every((own) => Math.hypot(own[0] - at[0], own[1] - at[1]) > APART));
         if (!spot) continue;
         taken.push(spot.at);
-        Contours.write(pen, this.texts[k], spot);
+        Contours.label(pen, this.texts[k], spot);
       }
     });
     return taken.length;
@@ -323,7 +329,7 @@ class Contours {
     return null;
   }
 
-  static write(pen, text, { at, angle }) {
+  static label(pen, text, { at, angle }) {
     pen.save();
     pen.translate(...at);
     pen.rotate(angle);

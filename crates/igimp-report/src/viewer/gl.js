@@ -29,9 +29,9 @@ class Surface {
     if (!this.gl) throw new Error("no WebGL2");
     const { gl } = this;
     this.programs = { boxes: program(gl, [BOXES, INK]), bodies: program(gl, [BODIES, GREY]), pieces: program(gl, [PIECES, PLAIN]), strips: program(gl, [STRIPS, STRIP]) };
-    this.arrays = { faces: gl.createVertexArray(), caps: gl.createVertexArray(), bodies: gl.createVertexArray(), pieces: gl.createVertexArray(), slices: gl.createVertexArray(), strips: gl.createVertexArray(), seams: gl.createVertexArray() };
+    this.arrays = { faces: gl.createVertexArray(), caps: gl.createVertexArray(), bodies: gl.createVertexArray(), pieces: gl.createVertexArray(), slices: gl.createVertexArray(), strips: gl.createVertexArray(), seams: gl.createVertexArray(), water: gl.createVertexArray() };
     this.buffers = new Map();
-    this.count = { faces: 0, caps: 0, bodies: 0, pieces: 0, slices: 0, strips: 0, seams: 0 };
+    this.count = { faces: 0, caps: 0, bodies: 0, pieces: 0, slices: 0, strips: 0, seams: 0, water: 0 };
     [this.levels, this.light] = [0, 0];
   }
 
@@ -200,16 +200,35 @@ class Surface {
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     gl.depthMask(false);
-    if (this.count.bodies > 0) {
-      const own = use(this.programs.bodies);
-      gl.uniform3fv(own.grey, sharesOf(cssColour("--soft")));
-      gl.bindVertexArray(this.arrays.bodies);
-      gl.drawArrays(gl.TRIANGLES, 0, this.count.bodies);
-    }
+    this.paintSheets(use(this.programs.bodies));
     if (outlined && dimension === 3) this.paintStrips(use(this.programs.strips), place, cut);
     gl.depthMask(true);
     gl.disable(gl.BLEND);
     gl.disable(gl.SCISSOR_TEST);
+  }
+
+  // Rigid bodies, and water: faint in the soil, clear above it.
+  paintSheets(at) {
+    const { gl, count } = this;
+    const draw = (of, test, colour, share) => {
+      if (count[of] === 0) return;
+      gl.bindVertexArray(this.arrays[of]);
+      gl.depthFunc(test);
+      gl.uniform4f(at.grey, ...sharesOf(colour), share);
+      gl.drawArrays(gl.TRIANGLES, 0, count[of]);
+    };
+    draw("water", gl.GREATER, WATER, 0.14);
+    draw("water", gl.LEQUAL, WATER, 0.5);
+    draw("bodies", gl.LEQUAL, cssColour("--soft"), 0.62);
+    gl.depthFunc(gl.LEQUAL);
+  }
+
+  // Water surfaces: triangles by their corners.
+  sheets(triangles, { origin }) {
+    const { gl } = this;
+    const corners = triangles.flat();
+    this.hand("water", 0, 3, gl.FLOAT, Float32Array.from(corners.flat(), (x, k) => x - origin[k % 3]), 0);
+    this.count.water = corners.length;
   }
 
   // Outlines, faint behind the soil and dark before it, and the lines of a cut that faces the eye.

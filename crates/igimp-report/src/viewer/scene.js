@@ -82,7 +82,9 @@ class Scene {
     const rigid = creasesOf(this.bodies.triangles);
     this.segments = [...soil, ...rigid];
     Object.assign(this.canvas.dataset, { edgeLength: lengthOf(soil), rigidEdgeLength: lengthOf(rigid) });
-    if (this.surface) this.surface.lines("strips", this.segments, this.boxes);
+    if (!this.surface) return;
+    this.surface.lines("strips", this.segments, this.boxes);
+    this.surface.sheets(this.overlay.water.triangles(), this.boxes);
   }
 
   // Shows the outlines of bodies, or leaves them out.

@@ -158,14 +158,14 @@ const GREY = `#version 300 es
 precision highp float;
 in vec3 place;
 uniform vec4 cut;
-uniform vec3 grey;
+uniform vec4 grey;
 ${LIGHT}
 out vec4 ink;
 void main() {
   if (dot(cut.xyz, place) > cut.w) discard;
   vec3 normal = normalize(cross(dFdx(place), dFdy(place)));
   if (dot(normal, eye) < 0.0) normal = -normal;
-  ink = vec4(grey * lightOf(normal, 0.5), 1.0) * 0.62;
+  ink = vec4(grey.rgb * lightOf(normal, 0.5), 1.0) * grey.a;
 }`;
 
 // A segment as a strip of even width that faces the eye.
