@@ -112,7 +112,7 @@ struct Bins<'a> {
     seeds: &'a [ParticleSeed<3>],
     /// Size of the largest domain by direction \[m\].
     size: Point,
-    bins: HashMap<[i64; 3], Vec<usize>>,
+    by_bin: HashMap<[i64; 3], Vec<usize>>,
 }
 
 impl<'a> Bins<'a> {
@@ -124,10 +124,10 @@ impl<'a> Bins<'a> {
         let mut all = Self {
             seeds,
             size,
-            bins: HashMap::new(),
+            by_bin: HashMap::new(),
         };
         for (number, seed) in seeds.iter().enumerate() {
-            all.bins.entry(all.bin(&seed.x)).or_default().push(number);
+            all.by_bin.entry(all.bin(&seed.x)).or_default().push(number);
         }
         all
     }
@@ -142,7 +142,7 @@ impl<'a> Bins<'a> {
         (0..27).flat_map(move |k| {
             let shift = [k % 3, k / 3 % 3, k / 9].map(|shift| shift - 1);
             let bin: [i64; 3] = std::array::from_fn(|k| own[k].saturating_add(shift[k]));
-            self.bins.get(&bin).into_iter().flatten().copied()
+            self.by_bin.get(&bin).into_iter().flatten().copied()
         })
     }
 

@@ -211,7 +211,7 @@ fn of_pieces(frame: &Frame<'_>, keep: Keep, pieces: &Pieces) -> Option<Vec<Array
     };
     let (polygons, whose) = pieces.now(carriers);
     let edges = pieces.edges(carriers);
-    let ends = ends_of(polygons.iter().chain(&edges).flatten());
+    let ends = ends_of(&polygons.iter().chain(&edges).flatten());
     let mut arrays = Vec::from(lines(["pieces", "piece-ends"], &polygons, keep, &ends));
     arrays.push(whole("whose", whose.iter().copied()));
     arrays.extend(lines(["edges", "edge-ends"], &edges, keep, &ends));
@@ -221,13 +221,13 @@ fn of_pieces(frame: &Frame<'_>, keep: Keep, pieces: &Pieces) -> Option<Vec<Array
 /// The edges of the bodies in space: corners one after another, and where each line ends among them.
 fn of_outlines(frame: &Frame<'_>, keep: Keep, outlines: &Outlines) -> Option<Vec<Array>> {
     let edges = outlines.now(&FrameParticles::of(frame)?);
-    let ends = ends_of(edges.iter().flatten());
+    let ends = ends_of(&edges.iter().flatten());
     Some(lines(["edges", "edge-ends"], &edges, keep, &ends).into())
 }
 
 /// Least and largest coordinate by axis.
 fn ends_of<'a, const D: usize>(
-    points: impl Iterator<Item = &'a [f64; D]> + Clone,
+    points: &(impl Iterator<Item = &'a [f64; D]> + Clone),
 ) -> [[f64; 2]; D] {
     std::array::from_fn(|axis| {
         let places = points.clone().map(|point| point[axis]);
