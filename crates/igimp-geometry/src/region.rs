@@ -106,6 +106,13 @@ pub trait Region<const D: usize>: Debug + Send + Sync {
     /// Corners between which its boundary is straight, or nearly so \[length\]; of a polygon in order.
     fn corners(&self) -> Vec<[f64; D]>;
 
+    /// The edges of its boundary that a drawing shows, as lines by their corners \[length\]; a closed line ends where it begins.
+    /// Faces that meet in a blunt angle have no edge between them, nor has a round face. None of a region of the plane, which
+    /// has its polygon.
+    fn edges(&self) -> Vec<Vec<[f64; D]>> {
+        Vec::new()
+    }
+
     /// Corners in order, of a polygon in the plane; of another region none.
     fn polygon(&self) -> &[[f64; D]] {
         &[]

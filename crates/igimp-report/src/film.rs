@@ -8,7 +8,7 @@ use igimp_model::{Case, Field, StageKind};
 use igimp_results::ResultsError;
 use igimp_results::fields::{self, Scale};
 use igimp_results::paraview::pvd::{self, Frame};
-use igimp_results::paraview::read_back::{self, PlaneParticles};
+use igimp_results::paraview::read_back::{self, FrameParticles};
 use igimp_results::vtu::read;
 use igimp_text::short;
 use rayon::prelude::*;
@@ -58,7 +58,7 @@ pub struct Film {
 
 /// A frame as it is drawn.
 struct Scene {
-    particles: PlaneParticles,
+    particles: FrameParticles<2>,
     half_length0: Vec<[f64; 2]>,
     values: Vec<f64>,
     over: Vec<Outline>,
@@ -180,7 +180,7 @@ fn scene(
         why: format!("{} cannot be read as a frame in the plane", path.display()),
     };
     let frame = read::Frame::of(&text).ok_or_else(unread)?;
-    let particles = PlaneParticles::of(&frame).ok_or_else(unread)?;
+    let particles = FrameParticles::<2>::of(&frame).ok_or_else(unread)?;
     let half_length = |&number: &usize| pieces.half_length(number);
     let halves: Option<Vec<_>> = particles.number.iter().map(half_length).collect();
     let values = read_back::values(&frame, field).ok_or_else(|| ReportError::NoFilm {

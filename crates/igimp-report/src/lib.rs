@@ -3,6 +3,7 @@
 mod error;
 pub mod failure_mechanism;
 pub mod film;
+pub mod outlines;
 pub mod patches;
 pub mod pictures;
 pub mod report;

@@ -18,7 +18,7 @@ use crate::error::ReportError;
 
 /// Corners that a particle carries further from their middle than so many times its size have
 /// parted \[-\].
-const PARTED: f64 = 1.5;
+pub(crate) const PARTED: f64 = 1.5;
 /// A corner is drawn no further from its particle than so many times as far as it was seeded \[-\]: what has flowed far is
 /// sheared into threads that no soil has.
 const MOST_STRETCHED: f64 = 3.0;
@@ -44,16 +44,22 @@ impl Corner {
             there.particles.x[particle],
             there.particles.def_grad[particle],
         );
-        let [dx, dy] = self.offset;
-        let arm = [0, 1].map(|a| f[a][0] * dx + f[a][1] * dy);
-        let stretch = arm[0].hypot(arm[1]) / dx.hypot(dy);
-        let shown = if stretch > MOST_STRETCHED {
-            MOST_STRETCHED / stretch
-        } else {
-            1.0
-        };
-        Some([0, 1].map(|a| x[a] + shown * arm[a]))
+        Some(carried(x, f, self.offset))
     }
+}
+
+/// Where a particle at `x` with the deformation gradient `f` carries a point (theory, eq. 41) that stood at an offset from it,
+/// but no further than it may be stretched \[m\].
+pub(crate) fn carried<const D: usize>(x: [f64; D], f: [[f64; D]; D], offset: [f64; D]) -> [f64; D] {
+    let length = |v: &[f64; D]| v.iter().fold(0.0_f64, |sum, x| sum.hypot(*x));
+    let arm: [f64; D] = std::array::from_fn(|a| (0..D).map(|b| f[a][b] * offset[b]).sum());
+    let stretch = length(&arm) / length(&offset);
+    let shown = if stretch > MOST_STRETCHED {
+        MOST_STRETCHED / stretch
+    } else {
+        1.0
+    };
+    std::array::from_fn(|a| x[a] + shown * arm[a])
 }
 
 /// What pieces need to know of particles: of a body, or of a frame that was read back.

@@ -14,9 +14,8 @@ use minijinja::value::Serde;
 use minijinja::{Environment, Value};
 use serde::Serialize;
 
-use super::viewer::{Held, held};
+use super::viewer::{Held, Surroundings, held};
 use crate::error::ReportError;
-use crate::patches::Pieces;
 
 /// The page; values are escaped as they are filled in.
 const TEMPLATE: &str = include_str!("report.html");
@@ -24,18 +23,18 @@ const TEMPLATE: &str = include_str!("report.html");
 /// Makes `report.html` of what lies in a results folder, and returns its path.
 ///
 /// `summary.json` must be there; pictures, tables, `convergence.csv` and the two texts of the case
-/// take part as far as they exist. Pictures are embedded, tables are linked by relative paths. Frames of the plane show the
-/// pieces of the bodies where these are given, else the domains of the particles.
+/// take part as far as they exist. Pictures are embedded, tables are linked by relative paths. Frames show the bodies
+/// and the water of the case as far as `around` has them, else the domains of the particles alone.
 ///
 /// # Errors
 /// [`ResultsError::File`] if the summary cannot be read or the report cannot be written.
-pub fn write_report(folder: &Path, pieces: Option<&Pieces>) -> Result<PathBuf, ReportError> {
+pub fn write_report(folder: &Path, around: &Surroundings) -> Result<PathBuf, ReportError> {
     let path = folder.join("summary.json");
     let summary = std::fs::read(&path)
         .and_then(|bytes| Ok(serde_json::from_slice::<Summary>(&bytes)?))
         .map_err(|source| ResultsError::File { path, source })?;
     let path = folder.join("report.html");
-    let page = render(folder, &summary, pieces).map_err(|source| ResultsError::File {
+    let page = render(folder, &summary, around).map_err(|source| ResultsError::File {
         path: path.clone(),
         source: std::io::Error::other(source),
     })?;
@@ -49,7 +48,7 @@ pub fn write_report(folder: &Path, pieces: Option<&Pieces>) -> Result<PathBuf, R
 fn render(
     folder: &Path,
     summary: &Summary,
-    pieces: Option<&Pieces>,
+    around: &Surroundings,
 ) -> Result<String, minijinja::Error> {
     let pictures = files::pictures(folder, summary);
     let tables = files::tables(folder);
@@ -65,7 +64,7 @@ fn render(
     let (convergence, pictures): (Vec<_>, Vec<_>) = pictures
         .into_iter()
         .partition(|group| group.id == "convergence");
-    let held = held(folder, pieces);
+    let held = held(folder, around);
     let reinforcement = rows::reinforcement(summary);
     let entries = contents(
         [

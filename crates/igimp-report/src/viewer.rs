@@ -1,9 +1,12 @@
 //! Parts of pages that show frames in a browser: `igimp view`, and the frames of a report.
 //!
 //! The script draws plane and space alike, and needs no other script and no network. It takes frames as
-//! [`packed`] makes them of those in `paraview/`, the only states along a run that a results folder keeps.
+//! [`packed`] makes them of those in `paraview/`, the only states along a run that a results folder keeps. What stands over
+//! them, water and slip lines, comes from the case and its tables ([`over`]).
 
+pub mod over;
 mod packed;
+mod surroundings;
 
 use std::fmt::Write as _;
 use std::fs;
@@ -15,8 +18,7 @@ use igimp_text::short;
 pub use packed::{Keep, packed};
 use rayon::prelude::*;
 use serde::Serialize;
-
-use crate::patches::Pieces;
+pub use surroundings::{Bodies, Surroundings};
 
 /// The section `soil` of a page: choices, canvas, slider.
 pub const SECTION: &str = include_str!("viewer/soil.html");
@@ -25,18 +27,25 @@ pub const SECTION: &str = include_str!("viewer/soil.html");
 pub const STYLE: &str = include_str!("viewer/viewer.css");
 
 /// The script in parts.
-const PARTS: [&str; 12] = [
+const PARTS: [&str; 19] = [
     include_str!("viewer/frame.js"),
     include_str!("viewer/camera.js"),
     include_str!("viewer/slant.js"),
+    include_str!("viewer/shaders.js"),
     include_str!("viewer/gl.js"),
     include_str!("viewer/axes.js"),
     include_str!("viewer/water.js"),
+    include_str!("viewer/contours.js"),
+    include_str!("viewer/outlines.js"),
     include_str!("viewer/overlay.js"),
+    include_str!("viewer/seams.js"),
+    include_str!("viewer/plain.js"),
     include_str!("viewer/scene.js"),
     include_str!("viewer/section.js"),
     include_str!("viewer/saving.js"),
     include_str!("viewer/pointing.js"),
+    include_str!("viewer/cutting.js"),
+    include_str!("viewer/colours.js"),
     include_str!("viewer/viewer.js"),
 ];
 
@@ -71,14 +80,14 @@ pub fn script() -> String {
     text
 }
 
-/// A frame of a results folder as pages take it, by its file, with the pieces of the bodies of the plane where these are given;
+/// A frame of a results folder as pages take it, by its file, with the pieces and edges of the bodies where these are given;
 /// none where it cannot be read.
-pub fn frame(file: &Path, keep: Keep, pieces: Option<&Pieces>) -> Option<String> {
+pub fn frame(file: &Path, keep: Keep, bodies: Option<&Bodies>) -> Option<String> {
     let about = fs::symlink_metadata(file).ok()?;
     if !about.is_file() || about.len() > LARGEST_FILE {
         return None;
     }
-    packed(&fs::read_to_string(file).ok()?, keep, pieces)
+    packed(&fs::read_to_string(file).ok()?, keep, bodies)
 }
 
 /// The frames of a results folder, as a report holds them.
@@ -89,6 +98,8 @@ pub(super) struct Held {
     script: String,
     /// Those that fit into a page, the last among them; none if that one is too large.
     frames: Vec<HeldFrame>,
+    /// What stands over the frames of each stage, as JSON.
+    over: String,
     /// How many there are.
     all: usize,
     /// The size of the frames in words, or that of the last frame where there is none.
@@ -102,6 +113,8 @@ struct HeldFrame {
     label: String,
     /// Its time \[s\], where the soil moves in time.
     seconds: Option<f64>,
+    /// The number of its stage, from 0, where that is known.
+    stage: Option<usize>,
     data: String,
     /// The rigid bodies of that frame, where the case has some.
     bodies: Option<String>,
@@ -110,13 +123,20 @@ struct HeldFrame {
 }
 
 /// The last frame of particles, and as many before it as there is room for; none if it cannot be read.
-pub(super) fn held(folder: &Path, pieces: Option<&Pieces>) -> Option<Held> {
+pub(super) fn held(folder: &Path, around: &Surroundings) -> Option<Held> {
     let folder = folder.join("paraview");
     let particles = pvd::frames(&folder, pvd::PARTICLES)?;
     let beside = |stem| pvd::frames(&folder, stem).unwrap_or_default();
     let (bodies, members) = (beside(pvd::RIGID), beside(pvd::REINFORCEMENT));
     let seconds = pvd::seconds(&folder);
     let all = particles.len();
+    let stages: Vec<Option<usize>> = (particles.iter())
+        .scan(0, |last, own| {
+            let stage = around.stage(&own.stage, *last);
+            *last = stage.unwrap_or(*last);
+            Some(stage)
+        })
+        .collect();
     let of = |k: usize, keep| {
         let packed = |own: Option<&pvd::Frame>| frame(&folder.join(&own?.file), keep, None);
         let own = &particles[k];
@@ -128,7 +148,8 @@ pub(super) fn held(folder: &Path, pieces: Option<&Pieces>) -> Option<Held> {
         Some(HeldFrame {
             label: format!("Frame {} of {all}, {when}", k + 1),
             seconds,
-            data: frame(&folder.join(&own.file), keep, pieces)?,
+            stage: stages[k],
+            data: frame(&folder.join(&own.file), keep, around.bodies.as_ref())?,
             bodies: packed(bodies.get(k)),
             members: packed(members.get(k)),
         })
@@ -161,6 +182,7 @@ pub(super) fn held(folder: &Path, pieces: Option<&Pieces>) -> Option<Held> {
         style: STYLE,
         script: script() + "\n" + include_str!("viewer/held.js"),
         frames,
+        over: serde_json::to_string(&around.over).ok()?,
         all,
         size: format!("{:.1} MB", size as f64 / 1e6),
     })

@@ -8,6 +8,7 @@ use igimp_model::{Case, Every, Stage, StageKind, in_plane};
 use igimp_report::patches::Pieces;
 use igimp_report::pictures;
 use igimp_report::report;
+use igimp_report::viewer::Surroundings;
 use igimp_results::atomic::write_whole;
 use igimp_results::checkpoint;
 use igimp_results::folder::provenance::Claim;
@@ -468,7 +469,8 @@ impl<const D: usize> Output<D> {
         self.write_summary(summary)?;
         if self.report {
             let pieces = in_plane(case).and_then(|case| self.pieces(case).ok());
-            report::write_report(self.folder.root(), pieces.as_deref())?;
+            let root = self.folder.root();
+            report::write_report(root, &Surroundings::of(case, root, pieces))?;
         }
         if !summary.interrupted {
             folder::mark(self.folder.root(), &self.claim, true)?;

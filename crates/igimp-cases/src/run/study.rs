@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
 use igimp_model::{Case, meshes};
+use igimp_report::viewer::Surroundings;
 use igimp_report::{pictures, report};
 use igimp_results::checkpoint::sha256;
 use igimp_results::ending::Ending;
@@ -303,7 +304,7 @@ fn write<const D: usize>(
     summary.seconds = clock.elapsed().as_secs_f64();
     write_summary(root, summary)?;
     if case.output.report {
-        report::write_report(root, None)?;
+        report::write_report(root, &Surroundings::default())?;
     }
     Ok(())
 }

@@ -10,6 +10,7 @@ use igimp_model::Field;
 use igimp_report::pictures::{InSpace, Seen, Shown};
 use igimp_report::report::write_report;
 use igimp_report::skin::{Boxes, Skin};
+use igimp_report::viewer::Surroundings;
 use igimp_results::paraview::particles::{Extras, of_particles};
 use igimp_results::paraview::pvd::{Collection, PARTICLES};
 use igimp_results::summary::Summary;
@@ -113,7 +114,7 @@ fn results(name: &str, width: f64, frames: usize) -> (PathBuf, Particles<3>) {
     };
     let text = serde_json::to_string(&summary).unwrap();
     std::fs::write(folder.join("summary.json"), text).unwrap();
-    write_report(&folder, None).unwrap();
+    write_report(&folder, &Surroundings::default()).unwrap();
     (folder, last)
 }
 

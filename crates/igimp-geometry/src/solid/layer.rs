@@ -55,8 +55,8 @@ pub enum LayerError {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
     plan: Polygon,
-    bottom: Height,
-    top: Height,
+    pub(super) bottom: Height,
+    pub(super) top: Height,
     lower: [f64; 3],
     upper: [f64; 3],
 }

@@ -5,6 +5,7 @@
 //! faces are flat (theory, eq. 44a and 44b), for a cylinder too; [`Sphere`] and [`Difference`] say how right they are.
 
 mod difference;
+mod edges;
 mod facets;
 mod layer;
 mod prism;
@@ -154,6 +155,10 @@ impl Region<3> for Solid {
             Self::Cuboid(lower, upper) => vec![*lower, *upper],
             other => other.region().corners(),
         }
+    }
+
+    fn edges(&self) -> Vec<Vec<[f64; 3]>> {
+        edges::of(self)
     }
 
     fn words(&self) -> String {

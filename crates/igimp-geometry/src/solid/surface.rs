@@ -84,7 +84,7 @@ fn place([x, y, z]: &[f64; 3]) -> String {
 /// A closed surface of triangles that face out of a body; it may have several pieces, and hollows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedSurface {
-    facets: Facets,
+    pub(super) facets: Facets,
 }
 
 impl ClosedSurface {

@@ -15,13 +15,20 @@ function ticksOf(low, high, about) {
   return ticks;
 }
 
-// A tick with as many digits as the step between ticks asks for.
+// A tick with as many digits as the step between ticks asks for; very small and large ones by the same power of ten.
 function tickText(tick, ticks) {
   const step = ticks.length > 1 ? Math.abs(ticks[1] - ticks[0]) : Math.abs(tick);
   const largest = Math.max(...ticks.map(Math.abs));
-  if (!(step > 0) || largest >= 1e6 || largest < 1e-3) return short(tick);
-  const digits = Math.min(Math.max(-Math.floor(Math.log10(step) + 1e-9), 0), 6);
-  return tick.toFixed(digits).replace("-", "−");
+  if (!(step > 0)) return short(tick);
+  const power = largest >= 1e6 || largest < 2e-3 ? Math.floor(Math.log10(largest) + 1e-9) : 0;
+  const digits = Math.min(Math.max(power - Math.floor(Math.log10(step) + 1e-9), 0), 6);
+  const text = (tick / 10 ** power).toFixed(digits).replace("-", "−");
+  return power === 0 || tick === 0 ? text.replace(/^−?0\.0+$/, "0") : `${text}·10${raised(power)}`;
+}
+
+// A whole number as a raised one.
+function raised(power) {
+  return [...String(power)].map((sign) => (sign === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(sign)])).join("");
 }
 
 // The same range, or one of visible width about it where the values are equal but for rounding.
@@ -56,7 +63,8 @@ class Axes {
     const xTicks = ticksOf(from[0], to[0], Math.max((right - room.left) / 80, 2));
     for (const x of xTicks) {
       const [at] = projected(place, this.scene.camera, [x, 0, 0]);
-      pen.fillText(`${tickText(x, xTicks)}${at > right - 50 ? " m" : ""}`, Math.min(at, right - 10), bottom + 15);
+      const isLast = x === xTicks[xTicks.length - 1];
+      pen.fillText(`${tickText(x, xTicks)}${isLast ? " m" : ""}`, Math.min(at, right - 10), bottom + 15);
       pen.fillRect(at, bottom, 1, 4);
     }
     pen.textAlign = "right";

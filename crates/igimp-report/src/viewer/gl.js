@@ -1,131 +1,11 @@
 // Boxes drawn by WebGL2: a quad for every face that is seen, one for every box that the cut goes through, pieces of the
 // plane in their place where there are some, and rigid bodies as translucent triangles.
 
-const LIGHT = `
-uniform vec3 right, up, eye;
-float lightOf(vec3 normal, float open) {
-  vec3 towards = normalize(-0.35 * right + 0.6 * up + 0.72 * eye);
-  float hollow = clamp((open - 0.12) / 0.3, 0.0, 1.0);
-  return (0.5 + 0.52 * max(dot(normal, towards), 0.0)) * (0.72 + 0.28 * hollow);
+// A colour of a style as three shares.
+function sharesOf(colour) {
+  const digits = /^#(..)(..)(..)$/.exec(colour);
+  return digits ? digits.slice(1).map((part) => parseInt(part, 16) / 255) : [0.7, 0.7, 0.7];
 }
-// Dark colours would hide the shape.
-vec3 lifted(vec3 colour) {
-  return mix(colour, vec3(1.0), 0.07);
-}
-uniform vec3 moved;
-uniform vec4 scale;
-vec4 seen(vec3 at) {
-  return vec4(dot(right, at) * scale.x + moved.x, dot(up, at) * scale.y + moved.y, -dot(eye, at) * scale.z, 1.0);
-}
-`;
-
-const BOXES = `#version 300 es
-precision highp float;
-layout(location = 0) in vec3 low;
-layout(location = 1) in vec3 high;
-layout(location = 2) in vec4 lie;
-layout(location = 3) in vec4 colour;
-layout(location = 4) in float face;
-uniform vec4 cut;
-uniform float caps, flatly;
-out vec2 at;
-out vec3 place;
-flat out vec3 tint;
-${LIGHT}
-void main() {
-  vec2 corner = vec2(gl_VertexID == 1 || gl_VertexID == 3, gl_VertexID >= 2);
-  // The axis across a cap is that of the cut.
-  int axis = caps > 0.5 ? (cut.x != 0.0 ? 0 : cut.y != 0.0 ? 1 : 2) : int(face) / 2;
-  float side = caps > 0.5 ? cut[axis] : 2.0 * float(int(face) % 2) - 1.0;
-  vec3 normal = vec3(0.0);
-  normal[axis] = side;
-  vec3 size = high - low;
-  int one = (axis + 1) % 3, two = (axis + 2) % 3;
-  place = low;
-  // A little larger than it is, over the seams between neighbours.
-  place[one] += size[one] * corner.x + (corner.x - 0.5) * 0.7 * scale.w;
-  place[two] += size[two] * corner.y + (corner.y - 0.5) * 0.7 * scale.w;
-  if (caps > 0.5) place[axis] = cut.w * side;
-  else if (side > 0.0) place[axis] = high[axis];
-  // Where the cut runs between boxes, or through a narrow crack, those that stay are seen.
-  vec2 ends = vec2(low[axis], high[axis]) + size[axis] * (side > 0.0 ? vec2(1e-4, 0.1) : vec2(-0.1, -1e-4));
-  bool crosses = caps < 0.5 || (ends.x <= place[axis] && place[axis] <= ends.y);
-  vec3 about = (lie.xyz * 255.0 - 128.0) / 127.0;
-  vec3 smoothed = normalize(normal * 0.3 + about);
-  bool isBack = dot(normal, eye) <= 1e-6;
-  if (flatly > 0.5) tint = colour.rgb;
-  else if (caps > 0.5) tint = lifted(colour.rgb) * 0.97;
-  else tint = lifted(colour.rgb) * (isBack ? 0.35 : lightOf(smoothed, lie.w));
-  at = corner;
-  // The insides of the far walls are seen through cracks.
-  bool shown = colour.a > 0.5 && crosses && !(isBack && (caps > 0.5 || flatly > 0.5));
-  gl_Position = shown ? seen(place) : vec4(2.0, 2.0, 2.0, 1.0);
-}`;
-
-const INK = `#version 300 es
-precision highp float;
-in vec2 at;
-in vec3 place;
-flat in vec3 tint;
-uniform vec4 cut;
-uniform float caps, lines;
-out vec4 ink;
-void main() {
-  if (caps < 0.5 && dot(cut.xyz, place) > cut.w) discard;
-  // Lines along the edges of boxes that are large enough for them.
-  vec2 step = max(fwidth(at), vec2(1e-6));
-  vec2 from = min(at, 1.0 - at) / step;
-  float line = 1.0 - smoothstep(0.3, 1.3, min(from.x, from.y));
-  float room = smoothstep(5.0, 16.0, min(1.0 / step.x, 1.0 / step.y));
-  // Darker than the face, on dark faces lighter.
-  float dark = 1.0 - smoothstep(0.1, 0.3, dot(tint, vec3(0.2126, 0.7152, 0.0722)));
-  vec3 own = mix(tint * (1.0 - lines), tint + 0.3 * lines * tint + 0.25 * lines * 0.3, dark);
-  ink = vec4(min(mix(tint, own, line * room), 1.0), 1.0);
-}`;
-
-const BODIES = `#version 300 es
-precision highp float;
-layout(location = 0) in vec3 low;
-out vec3 place;
-${LIGHT}
-void main() {
-  place = low;
-  gl_Position = seen(low);
-}`;
-
-const PIECES = `#version 300 es
-precision highp float;
-layout(location = 0) in vec3 low;
-layout(location = 1) in vec4 colour;
-out vec4 tint;
-${LIGHT}
-void main() {
-  tint = colour;
-  gl_Position = seen(low);
-}`;
-
-const PLAIN = `#version 300 es
-precision highp float;
-in vec4 tint;
-out vec4 ink;
-void main() {
-  if (tint.a < 0.5) discard;
-  ink = vec4(tint.rgb, 1.0);
-}`;
-
-const GREY = `#version 300 es
-precision highp float;
-in vec3 place;
-uniform vec4 cut;
-uniform vec3 grey;
-${LIGHT}
-out vec4 ink;
-void main() {
-  if (dot(cut.xyz, place) > cut.w) discard;
-  vec3 normal = normalize(cross(dFdx(place), dFdy(place)));
-  if (dot(normal, eye) < 0.0) normal = -normal;
-  ink = vec4(grey * lightOf(normal, 0.5), 1.0) * 0.62;
-}`;
 
 function program(gl, sources) {
   const made = gl.createProgram();
@@ -148,10 +28,11 @@ class Surface {
     this.gl = canvas.getContext("webgl2", { antialias: true, alpha: true, premultipliedAlpha: true, preserveDrawingBuffer: true });
     if (!this.gl) throw new Error("no WebGL2");
     const { gl } = this;
-    this.programs = { boxes: program(gl, [BOXES, INK]), bodies: program(gl, [BODIES, GREY]), pieces: program(gl, [PIECES, PLAIN]) };
-    this.arrays = { faces: gl.createVertexArray(), caps: gl.createVertexArray(), bodies: gl.createVertexArray(), pieces: gl.createVertexArray(), slices: gl.createVertexArray() };
+    this.programs = { boxes: program(gl, [BOXES, INK]), bodies: program(gl, [BODIES, GREY]), pieces: program(gl, [PIECES, PLAIN]), strips: program(gl, [STRIPS, STRIP]) };
+    this.arrays = { faces: gl.createVertexArray(), caps: gl.createVertexArray(), bodies: gl.createVertexArray(), pieces: gl.createVertexArray(), slices: gl.createVertexArray(), strips: gl.createVertexArray(), seams: gl.createVertexArray(), water: gl.createVertexArray() };
     this.buffers = new Map();
-    this.count = { faces: 0, caps: 0, bodies: 0, pieces: 0, slices: 0 };
+    this.count = { faces: 0, caps: 0, bodies: 0, pieces: 0, slices: 0, strips: 0, seams: 0, water: 0 };
+    [this.levels, this.light] = [0, 0];
   }
 
   // Hands numbers over: `per` components of a type at a place of the program, for every instance.
@@ -168,8 +49,10 @@ class Surface {
   }
 
   // Boxes relative to `origin`, and which of them the faces that are seen belong to.
-  shape({ low, high, lie, faces, origin, pieces }, triangles) {
+  shape(boxes, triangles) {
     const { gl } = this;
+    const { low, high, lie, faces, origin, pieces } = boxes;
+    this.boxes = boxes;
     const near = (numbers) => Float32Array.from(numbers, (x, k) => x - origin[k % 3]);
     const [own, ends] = [near(low), near(high)];
     const pick = (numbers, per) => {
@@ -188,7 +71,47 @@ class Surface {
     this.hand("caps", 1, 3, gl.FLOAT, ends);
     this.hand("bodies", 0, 3, gl.FLOAT, near(triangles), 0);
     const corners = pieces ? this.fans(pieces, origin) : 0;
-    this.count = { faces: faces.box.length, caps: own.length / 3, bodies: triangles.length / 3, pieces: corners, slices: 0 };
+    this.count = { ...this.count, faces: faces.box.length, caps: own.length / 3, bodies: triangles.length / 3, pieces: corners, slices: 0 };
+    this.levels = 0;
+  }
+
+  // Outlines or the lines of a cut: segments of six numbers. They are drawn nearer to the eye by the width of a box, whose corners
+  // would hide them.
+  lines(of, segments, { low, high, origin, count }) {
+    const { gl } = this;
+    const end = (from) => Float32Array.from({ length: segments.length / 2 }, (_, k) => segments[6 * Math.floor(k / 3) + from + (k % 3)] - origin[k % 3]);
+    [0, 3].forEach((from, place) => this.hand(of, place, 3, gl.FLOAT, end(from)));
+    this.count[of] = segments.length / 6;
+    const some = Array.from({ length: Math.min(count, 999) }, (_, k) => Math.floor((k * count) / 999)).filter((box) => box < count);
+    const widths = some.map((box) => Math.max(...[0, 1, 2].map((axis) => high[3 * box + axis] - low[3 * box + axis])));
+    this.nearer = widths.sort((a, b) => a - b)[Math.floor(widths.length / 2)] || 0;
+  }
+
+  // Contours: levels at the eight corners of every box, the first contour at 0, the next at 1, with the colours of
+  // the scale there; none without them.
+  contour(corners, colours) {
+    const { gl, pick } = this;
+    this.levels = corners ? colours.length : 0;
+    this.light = colours.reduce((bits, colour, k) => (isDark(colour) ? bits | (1 << k) : bits), 0);
+    this.corners = corners;
+    if (!corners) return;
+    [0, 4].forEach((first, k) => {
+      const own = Float32Array.from({ length: corners.length / 2 }, (_, at) => corners[8 * (at >> 2) + first + (at & 3)]);
+      this.hand("faces", 5 + k, 4, gl.FLOAT, pick(own, 4));
+      this.hand("caps", 5 + k, 4, gl.FLOAT, own);
+    });
+    this.levelSlices();
+  }
+
+  // Levels at the corners of the slanted cut.
+  levelSlices() {
+    const { gl, corners, slicePlaces, boxes } = this;
+    if (this.levels === 0 || this.count.slices === 0) return;
+    const own = Float32Array.from(this.sliced, (box, k) => {
+      const share = [0, 1, 2].map((axis) => (slicePlaces[3 * k + axis] - boxes.low[3 * box + axis]) / (boxes.high[3 * box + axis] - boxes.low[3 * box + axis]));
+      return [0, 1, 2, 3, 4, 5, 6, 7].reduce((sum, j) => sum + corners[8 * box + j] * share.reduce((product, x, axis) => product * ((j >> axis) & 1 ? x : 1 - x), 1), 0);
+    });
+    this.hand("slices", 2, 1, gl.FLOAT, own, 0);
   }
 
   // Pieces as triangles around their first corners, and whose each corner is; the number of corners.
@@ -214,9 +137,10 @@ class Surface {
   slice({ places, owners }, origin) {
     const { gl } = this;
     this.hand("slices", 0, 3, gl.FLOAT, Float32Array.from(places, (x, k) => x - origin[k % 3]), 0);
-    this.sliced = owners;
+    Object.assign(this, { sliced: owners, slicePlaces: places });
     this.count.slices = owners.length;
     this.colourSlices();
+    this.levelSlices();
   }
 
   colourSlices() {
@@ -240,8 +164,8 @@ class Surface {
     this.hand("caps", 3, 4, gl.UNSIGNED_BYTE, colours);
   }
 
-  // The view of a camera; `cut` has the direction of what is taken away, and how far it stands.
-  paint(place, camera, cut, dimension, sharp, grey, origin) {
+  // A scene as its camera sees it; the cut has the direction of what is taken away, and how far it stands.
+  paint(place, camera, { cut, dimension, outlined, boxes: { origin } }, sharp) {
     const { gl, canvas } = this;
     canvas.width = Math.round(place.width * sharp);
     canvas.height = Math.round(place.height * sharp);
@@ -263,6 +187,8 @@ class Surface {
       gl.uniform3f(at.moved, (2 * x) / place.width - 1, 1 - (2 * y) / place.height, 0);
       gl.uniform4f(at.scale, (2 * place.scale) / place.width, (2 * place.scale) / place.height, 0.45 / place.deep, 1 / place.scale);
       const normal = cut ? cut.normal : [0, 0, 0];
+      gl.uniform2f(at.contours, dimension === 3 ? this.levels : 0, sharp);
+      gl.uniform1i(at.light, this.light);
       gl.uniform4f(at.cut, ...normal, cut ? cut.offset - dot(normal, origin) : 0);
       return at;
     };
@@ -271,18 +197,63 @@ class Surface {
       gl.bindVertexArray(this.arrays.pieces);
       gl.drawArrays(gl.TRIANGLES, 0, this.count.pieces);
     } else this.paintBoxes(use, cut, dimension);
-    if (this.count.bodies > 0) {
-      const own = use(this.programs.bodies);
-      gl.uniform3fv(own.grey, grey);
-      gl.enable(gl.BLEND);
-      gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-      gl.depthMask(false);
-      gl.bindVertexArray(this.arrays.bodies);
-      gl.drawArrays(gl.TRIANGLES, 0, this.count.bodies);
-      gl.depthMask(true);
-      gl.disable(gl.BLEND);
-    }
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    gl.depthMask(false);
+    this.paintSheets(use(this.programs.bodies));
+    if (outlined && dimension === 3) this.paintStrips(use(this.programs.strips), place, cut);
+    gl.depthMask(true);
+    gl.disable(gl.BLEND);
     gl.disable(gl.SCISSOR_TEST);
+  }
+
+  // Rigid bodies, and water: faint in the soil, clear above it.
+  paintSheets(at) {
+    const { gl, count } = this;
+    const draw = (of, test, colour, share) => {
+      if (count[of] === 0) return;
+      gl.bindVertexArray(this.arrays[of]);
+      gl.depthFunc(test);
+      gl.uniform4f(at.grey, ...sharesOf(colour), share);
+      gl.drawArrays(gl.TRIANGLES, 0, count[of]);
+    };
+    draw("water", gl.GREATER, WATER, 0.14);
+    draw("water", gl.LEQUAL, WATER, 0.5);
+    draw("bodies", gl.LEQUAL, cssColour("--soft"), 0.62);
+    gl.depthFunc(gl.LEQUAL);
+  }
+
+  // Water surfaces: triangles by their corners.
+  sheets(triangles, { origin }) {
+    const { gl } = this;
+    const corners = triangles.flat();
+    this.hand("water", 0, 3, gl.FLOAT, Float32Array.from(corners.flat(), (x, k) => x - origin[k % 3]), 0);
+    this.count.water = corners.length;
+  }
+
+  // Outlines, faint behind the soil and dark before it, and the lines of a cut that faces the eye.
+  paintStrips(at, place, cut) {
+    const { gl, count } = this;
+    gl.uniform2f(at.pixel, 2 / place.width, 2 / place.height);
+    gl.uniform1f(at.nearer, this.nearer);
+    const ink = sharesOf(cssColour("--ink"));
+    const draw = (of, test, half, share) => {
+      gl.bindVertexArray(this.arrays[of]);
+      gl.depthFunc(test);
+      gl.uniform1f(at.half_width, half);
+      gl.uniform4f(at.colour, ...ink, share);
+      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count[of]);
+    };
+    if (count.strips > 0) {
+      draw("strips", gl.GREATER, 0.5, 0.22);
+      draw("strips", gl.LEQUAL, 0.75, 0.95);
+    }
+    if (count.seams > 0 && cut && dot(cut.normal, place.eye) > 1e-6) {
+      // They lie in the plane of the cut, which takes nothing of them away.
+      gl.uniform4f(at.cut, 0, 0, 0, 0);
+      draw("seams", gl.LEQUAL, 0.75, 0.95);
+    }
+    gl.depthFunc(gl.LEQUAL);
   }
 
   paintBoxes(use, cut, dimension) {

@@ -1,13 +1,17 @@
-// What lies over the particles: edges of the bodies, reinforcement, arrows of a vector, principal stresses, a section.
+// What lies over the particles: contours, edges of the bodies, water, the slip line, reinforcement, arrows of a vector,
+// principal stresses, a section.
 
 // Most arrows or crosses, and their length where the value is largest [CSS pixel].
 const MOST_ARROWS = 450;
 const LONGEST_ARROW = 34;
 
+const SLIP = "#c00020";
+
 class Overlay {
   constructor(scene) {
     this.scene = scene;
     this.water = new Water(scene);
+    this.contours = new Contours(scene);
     this.arrows = null;
     this.section = null;
   }
@@ -43,7 +47,13 @@ class Overlay {
 
   // Whose the piece is that is drawn last over a point, and -1 where there is none.
   pieceAt(x, y) {
-    const { corners, ends, whose } = this.scene.boxes.pieces;
+    const piece = this.pieceOver(x, y);
+    return piece < 0 ? -1 : this.scene.boxes.pieces.whose[piece];
+  }
+
+  // The piece that is drawn last over a point, and -1 where there is none.
+  pieceOver(x, y) {
+    const { corners, ends } = this.scene.boxes.pieces;
     for (let k = ends.length - 1; k >= 0; k -= 1) {
       const [start, end] = [k > 0 ? ends[k - 1] : 0, ends[k]];
       let isInside = false;
@@ -51,7 +61,7 @@ class Overlay {
         const [xa, ya, xb, yb] = [corners[2 * at], corners[2 * at + 1], corners[2 * before], corners[2 * before + 1]];
         if (ya > y !== yb > y && x < xa + ((xb - xa) * (y - ya)) / (yb - ya)) isInside = !isInside;
       }
-      if (isInside) return whose[k];
+      if (isInside) return k;
     }
     return -1;
   }
@@ -66,19 +76,43 @@ class Overlay {
   }
 
   paint(pen, place) {
-    const { edges } = this.scene.boxes;
-    if (edges) {
-      pen.strokeStyle = cssColour("--ink") || cssColour("--soft");
-      pen.lineWidth = 1.1;
-      this.each(edges, place, (points) => {
-        this.scene.trace(pen, points);
-        pen.stroke();
-      });
-    }
+    const { scene } = this;
+    this.contours.paint(pen, place);
+    if (scene.outlined && scene.dimension === 2) this.edges(pen, place);
+    if (scene.outlined && scene.dimension === 3 && !scene.surface) sketched(pen, place, scene, [...scene.segments, ...scene.seams]);
     this.water.paint(pen, place);
+    this.slip(pen, place);
     this.members(pen, place);
+    if (scene.dimension === 2) this.contours.write(pen, place);
     if (this.arrows) this.paintArrows(pen, place);
     if (this.section) this.paintSection(pen, place);
+  }
+
+  // The edges of the bodies of the plane.
+  edges(pen, place) {
+    const { edges } = this.scene.boxes;
+    if (!edges) return;
+    pen.strokeStyle = cssColour("--ink") || cssColour("--soft");
+    pen.lineWidth = 1.1;
+    this.each(edges, place, (points) => {
+      this.scene.trace(pen, points);
+      pen.stroke();
+    });
+  }
+
+  // The line along which soil shears most as it begins to fail.
+  slip(pen, place) {
+    const points = this.scene.bodies.slip.map(([x, y]) => this.see(place, x, y));
+    if (points.length < 2) return;
+    pen.lineJoin = "round";
+    for (const [width, colour] of [[5, "rgba(255,255,255,0.8)"], [2.4, SLIP]]) {
+      pen.lineWidth = width;
+      pen.strokeStyle = colour;
+      pen.beginPath();
+      Contours.curve(pen, points);
+      pen.stroke();
+    }
+    pen.lineJoin = "miter";
   }
 
   // Reinforcement: a heavy line with a light core, as in the pictures of a report.
@@ -137,15 +171,17 @@ class Overlay {
     this.scene.canvas.dataset.arrows = spots.length;
     for (const { box, x, y } of spots) {
       const own = numbers.subarray(components * box, components * (box + 1));
-      if (kind === "stress") this.cross(pen, x, y, own, size);
+      // Light on dark soil.
+      const inks = isDark(this.scene.colours.subarray(4 * box, 4 * box + 3)) ? ["rgba(0,0,0,0.5)", "#ffffff"] : ["rgba(255,255,255,0.6)", "#101010"];
+      if (kind === "stress") this.cross(pen, x, y, own, size, inks);
       else {
         const across = [place.right, place.up].map((way) => size * dot(way, own));
-        Overlay.arrow(pen, x, y, across[0], -across[1]);
+        Overlay.arrow(pen, x, y, across[0], -across[1], inks);
       }
     }
   }
 
-  static arrow(pen, x, y, dx, dy) {
+  static arrow(pen, x, y, dx, dy, inks) {
     const length = Math.hypot(dx, dy);
     if (!(length > 0.8)) return;
     const head = Math.min(5, 0.5 * length);
@@ -160,16 +196,16 @@ class Overlay {
       }
       pen.stroke();
     };
-    pen.strokeStyle = "rgba(255,255,255,0.7)";
-    pen.lineWidth = 2.6;
+    pen.strokeStyle = inks[0];
+    pen.lineWidth = 2.4;
     trace();
-    pen.strokeStyle = "#101010";
-    pen.lineWidth = 1.1;
+    pen.strokeStyle = inks[1];
+    pen.lineWidth = 1.2;
     trace();
   }
 
-  // The two principal stresses in the plane, by σxx, σyy and σxy with tension positive: dark in compression, red in tension.
-  cross(pen, x, y, own, size) {
+  // The two principal stresses in the plane, by σxx, σyy and σxy with tension positive: dark or light in compression, red in tension.
+  cross(pen, x, y, own, size, inks) {
     for (const { value, angle } of principal(own[0], own[1], own[3])) {
       const half = 0.5 * size * Math.abs(value);
       if (half < 0.4) continue;
@@ -180,10 +216,10 @@ class Overlay {
         pen.lineTo(x + dx, y + dy);
         pen.stroke();
       };
-      pen.strokeStyle = "rgba(255,255,255,0.7)";
-      pen.lineWidth = 2.6;
+      pen.strokeStyle = value > 0 ? "rgba(255,255,255,0.8)" : inks[0];
+      pen.lineWidth = 2.4;
       trace();
-      pen.strokeStyle = value > 0 ? "#c00020" : "#101010";
+      pen.strokeStyle = value > 0 ? "#c00020" : inks[1];
       pen.lineWidth = 1.2;
       trace();
     }

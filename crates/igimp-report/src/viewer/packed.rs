@@ -10,13 +10,14 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use igimp_figures::Polygon;
-use igimp_results::paraview::read_back::PlaneParticles;
+use igimp_results::paraview::read_back::FrameParticles;
 use igimp_results::vtu::CellKind;
 use igimp_results::vtu::read::{Frame, Stored};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::Bodies;
+use crate::outlines::Outlines;
 use crate::patches::{Carriers, Pieces};
 use crate::skin::{Boxes, Lie, Skin};
 
@@ -89,11 +90,11 @@ struct Array {
 
 /// A frame, of particles, rigid bodies or reinforcement, as JSON that no script ends in; none where it cannot be read.
 ///
-/// Particles of the plane are there by the pieces of the bodies too, where these are given.
-pub fn packed(text: &str, keep: Keep, pieces: Option<&Pieces>) -> Option<String> {
+/// With the bodies of the case particles of the plane are there by their pieces too, and the edges of the bodies stand beside.
+pub fn packed(text: &str, keep: Keep, bodies: Option<&Bodies>) -> Option<String> {
     let frame = Frame::of(text)?;
     let packed = match frame.kind() {
-        Some(CellKind::Quad | CellKind::Hexahedron) => of_boxes(&frame, keep, pieces)?,
+        Some(CellKind::Quad | CellKind::Hexahedron) => of_boxes(&frame, keep, bodies)?,
         Some(kind) => of_bodies(&frame, kind)?,
         None if frame.cells == 0 => nothing(),
         None => return None,
@@ -128,7 +129,7 @@ fn of_bodies(frame: &Frame<'_>, kind: CellKind) -> Option<Packed> {
     })
 }
 
-fn of_boxes(frame: &Frame<'_>, keep: Keep, pieces: Option<&Pieces>) -> Option<Packed> {
+fn of_boxes(frame: &Frame<'_>, keep: Keep, bodies: Option<&Bodies>) -> Option<Packed> {
     let kind = frame.kind()?;
     let dimension = if kind == CellKind::Quad { 2 } else { 3 };
     let corners = kind.corners().len();
@@ -166,13 +167,12 @@ fn of_boxes(frame: &Frame<'_>, keep: Keep, pieces: Option<&Pieces>) -> Option<Pa
             .collect();
         places.extend([bytes("faces", 1, &faces), bytes("lie", 4, &lie)]);
     }
-    if dimension == 2 {
-        places.extend(
-            pieces
-                .and_then(|pieces| of_pieces(frame, keep, pieces))
-                .unwrap_or_default(),
-        );
-    }
+    let shapes = match bodies {
+        Some(Bodies::Plane(pieces)) if dimension == 2 => of_pieces(frame, keep, pieces),
+        Some(Bodies::Space(outlines)) if dimension == 3 => of_outlines(frame, keep, outlines),
+        _ => None,
+    };
+    places.extend(shapes.unwrap_or_default());
     let fields = frame.arrays("CellData");
     let wanted: Vec<&Stored<'_>> = fields
         .iter()
@@ -196,7 +196,7 @@ fn of_boxes(frame: &Frame<'_>, keep: Keep, pieces: Option<&Pieces>) -> Option<Pa
 /// The pieces that particles carry, and the edges of the bodies: corners one after another, where each piece or edge ends among
 /// them, and whose a piece is.
 fn of_pieces(frame: &Frame<'_>, keep: Keep, pieces: &Pieces) -> Option<Vec<Array>> {
-    let particles = PlaneParticles::of(frame)?;
+    let particles = FrameParticles::of(frame)?;
     let half_length = |&number: &usize| pieces.half_length(number);
     let half_length0: Vec<[f64; 2]> = particles
         .number
@@ -211,33 +211,48 @@ fn of_pieces(frame: &Frame<'_>, keep: Keep, pieces: &Pieces) -> Option<Vec<Array
     };
     let (polygons, whose) = pieces.now(carriers);
     let edges = pieces.edges(carriers);
-    let ends = [0, 1].map(|axis| {
-        let places = polygons.iter().chain(&edges).flatten().map(|x| x[axis]);
+    let ends = ends_of(&polygons.iter().chain(&edges).flatten());
+    let mut arrays = Vec::from(lines(["pieces", "piece-ends"], &polygons, keep, &ends));
+    arrays.push(whole("whose", whose.iter().copied()));
+    arrays.extend(lines(["edges", "edge-ends"], &edges, keep, &ends));
+    Some(arrays)
+}
+
+/// The edges of the bodies in space: corners one after another, and where each line ends among them.
+fn of_outlines(frame: &Frame<'_>, keep: Keep, outlines: &Outlines) -> Option<Vec<Array>> {
+    let edges = outlines.now(&FrameParticles::of(frame)?);
+    let ends = ends_of(&edges.iter().flatten());
+    Some(lines(["edges", "edge-ends"], &edges, keep, &ends).into())
+}
+
+/// Least and largest coordinate by axis.
+fn ends_of<'a, const D: usize>(
+    points: &(impl Iterator<Item = &'a [f64; D]> + Clone),
+) -> [[f64; 2]; D] {
+    std::array::from_fn(|axis| {
+        let places = points.clone().map(|point| point[axis]);
         places.fold([f64::MAX, f64::MIN], |[a, b], x| [a.min(x), b.max(x)])
+    })
+}
+
+/// Lines by their names: corners one after another, and where each line ends among them.
+fn lines<const D: usize>(
+    names: [&str; 2],
+    lines: &[Vec<[f64; D]>],
+    keep: Keep,
+    ends: &[[f64; 2]],
+) -> [Array; 2] {
+    let numbers: Vec<f64> = lines.iter().flatten().flatten().copied().collect();
+    let corners = if keep.rounded {
+        rounded(names[0], &numbers, ends)
+    } else {
+        exact(names[0], D, &numbers)
+    };
+    let last = lines.iter().scan(0, |last, line| {
+        *last += line.len();
+        Some(*last)
     });
-    let corners = |name: &str, lines: &[Polygon]| {
-        let numbers: Vec<f64> = lines.iter().flatten().flatten().copied().collect();
-        if keep.rounded {
-            rounded(name, &numbers, &ends)
-        } else {
-            exact(name, 2, &numbers)
-        }
-    };
-    let last_of = |name: &str, lines: &[Polygon]| {
-        let mut last = 0;
-        let ends = lines.iter().map(|line| {
-            last += line.len();
-            last
-        });
-        whole(name, ends)
-    };
-    Some(vec![
-        corners("pieces", &polygons),
-        last_of("piece-ends", &polygons),
-        whole("whose", whose.iter().copied()),
-        corners("edges", &edges),
-        last_of("edge-ends", &edges),
-    ])
+    [corners, whole(names[1], last)]
 }
 
 /// Whole numbers.

@@ -4,12 +4,6 @@
 // Of rigid bodies so much is in sight beside the soil, as a share of its larger side.
 const BESIDE = 0.12;
 
-// A colour of a style as three shares.
-function sharesOf(colour) {
-  const digits = /^#(..)(..)(..)$/.exec(colour);
-  return digits ? digits.slice(1).map((part) => parseInt(part, 16) / 255) : [0.7, 0.7, 0.7];
-}
-
 // Least and largest corner of points, three numbers each.
 function extentOf(points, start = { low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity] }) {
   const { low, high } = start;
@@ -38,7 +32,10 @@ class Scene {
     this.below = below;
     this.dimension = 0;
     this.boxes = null;
-    this.bodies = { lines: [], triangles: [], members: [], water: [] };
+    this.bodies = { lines: [], triangles: [], members: [], water: [], slip: [], soil: null };
+    this.segments = [];
+    this.seams = [];
+    this.outlined = true;
     this.overlay = new Overlay(this);
     this.extent = extentOf([]);
     this.cut = null;
@@ -75,6 +72,45 @@ class Scene {
     this.canvas.dataset.water = bodies.water.length;
     this.canvas.dataset.pieces = pieces ? pieces.ends.length : 0;
     this.canvas.dataset.edges = edges ? edges.ends.length : 0;
+    this.canvas.dataset.slip = bodies.slip.length;
+    if (dimension === 3) this.lineate(edges);
+  }
+
+  // The outlines in space.
+  lineate(edges) {
+    const soil = edges ? segmentsOf(edges) : [];
+    const rigid = creasesOf(this.bodies.triangles);
+    this.segments = [...soil, ...rigid];
+    Object.assign(this.canvas.dataset, { edgeLength: lengthOf(soil), rigidEdgeLength: lengthOf(rigid) });
+    if (!this.surface) return;
+    this.surface.lines("strips", this.segments, this.boxes);
+    this.surface.sheets(this.overlay.water.triangles(), this.boxes);
+  }
+
+  // Shows the outlines of bodies, or leaves them out.
+  outline(isShown) {
+    this.outlined = isShown;
+    this.canvas.dataset.outlined = isShown;
+    this.paint();
+  }
+
+  // The centres of the boxes in the plane.
+  centres() {
+    const { low, high, count } = this.boxes;
+    return new Float64Array(2 * count).map((_, k) => 0.5 * (low[3 * (k >> 1) + (k & 1)] + high[3 * (k >> 1) + (k & 1)]));
+  }
+
+  // Contours of a field at levels, which have these colours on the scale, with texts where these are given.
+  contour(values, levels, colours, texts) {
+    const { boxes, bodies: { soil } } = this;
+    if (this.dimension === 3) {
+      const range = levels.length > 1 ? [levels[0], levels[1] - levels[0]] : [levels[0], 1];
+      if (this.surface) this.surface.contour(levels.length > 0 ? cornerValues(boxes, values).map((own) => (own - range[0]) / range[1]) : null, colours);
+      this.canvas.dataset.contourLevels = levels.join(" ");
+    } else if (boxes.pieces) {
+      this.overlay.contours.take(levels.length > 0 ? contoursOf(boxes.pieces, values, this.centres(), levels, soil) : [], colours, texts);
+    }
+    this.paint();
   }
 
   // The faces of boxes: those of the skin, or all where some particles are left out.
@@ -98,12 +134,17 @@ class Scene {
     return this.colours[4 * box + 3] === 0;
   }
 
-  // The face of a slanted cut; an ordinary canvas has none.
+  // The face of the cut: its lines, and of a slanted one its triangles, which an ordinary canvas does not have.
   slice() {
-    if (!this.surface || !this.cut || this.cut.axis >= 0) return;
-    const face = sliceOf(this.boxes, this.cut);
-    this.surface.slice(face, this.boxes.origin);
-    this.canvas.dataset.cutArea = face.area;
+    const { surface, cut, boxes, bodies, canvas } = this;
+    this.seams = this.dimension === 3 && cut ? seamsOf(boxes, bodies.soil, cut) : [];
+    canvas.dataset.seamLength = lengthOf(this.seams);
+    if (!surface) return;
+    surface.lines("seams", this.seams, boxes);
+    if (!cut || cut.axis >= 0) return;
+    const face = sliceOf(boxes, cut);
+    surface.slice(face, boxes.origin);
+    canvas.dataset.cutArea = face.area;
   }
 
   // The faces that are seen, by box and number.
@@ -186,9 +227,9 @@ class Scene {
       pen.rect(room.left, room.top, place.width - room.left - room.right, place.height - room.top - room.bottom);
       pen.clip();
     }
-    if (this.surface) this.surface.paint(place, camera, this.cut, this.dimension, sharp, sharesOf(cssColour("--soft")), this.boxes.origin);
+    if (this.surface) this.surface.paint(place, camera, this, sharp);
     else if (this.boxes.pieces) this.overlay.pieces(pen, place, this.colours);
-    else this.drawn(pen, place);
+    else paintBoxes(pen, place, this);
     this.outlines(pen, place);
     this.overlay.paint(pen, place);
     this.mark(pen, place);
@@ -200,62 +241,6 @@ class Scene {
   corner(name, box) {
     const numbers = this.boxes[name];
     return [numbers[3 * box], numbers[3 * box + 1], numbers[3 * box + 2]];
-  }
-
-  // Boxes without WebGL2: faces from the farthest to the nearest, and those of the cut.
-  drawn(pen, place) {
-    const { faces, lie, count } = this.boxes;
-    const { camera } = this;
-    // A slanted cut asks for WebGL2.
-    const cut = this.cut && this.cut.axis >= 0 ? this.cut : null;
-    const quads = [];
-    const add = (box, face, light, corners) => {
-      const points = corners.map((corner) => projected(place, camera, corner));
-      quads.push({ box, light, points, depth: points.reduce((sum, point) => sum + point[2], 0) });
-    };
-    for (let k = 0; k < faces.box.length; k += 1) {
-      const [box, face] = [faces.box[k], faces.face[k]];
-      const [axis, side] = [Math.floor(face / 2), 2 * (face % 2) - 1];
-      if (side * place.eye[axis] <= 1e-6 || this.isLeftOut(box)) continue;
-      const [low, high] = [this.corner("low", box), this.corner("high", box)];
-      if (cut && !Scene.clipped(low, high, cut)) continue;
-      const about = [0, 1, 2].map((j) => (lie[4 * box + j] - 128) / 127 + (j === axis ? 0.3 * side : 0));
-      const length = Math.hypot(...about) || 1;
-      const light = this.dimension === 2 ? 1 : lightOf(place, about.map((x) => x / length), lie[4 * box + 3] / 255);
-      add(box, face, light, cornersOf(low, high, face));
-    }
-    if (cut && dot(cut.normal, place.eye) > 0) {
-      const { axis } = cut;
-      const at = cut.offset * cut.normal[axis];
-      for (let box = 0; box < count; box += 1) {
-        if (this.isLeftOut(box)) continue;
-        const [low, high] = [this.corner("low", box), this.corner("high", box)];
-        const more = cut.normal[axis] > 0 ? [1e-4, 0.1] : [-0.1, -1e-4];
-        const size = high[axis] - low[axis];
-        if (at < low[axis] + more[0] * size || at > high[axis] + more[1] * size) continue;
-        low[axis] = at;
-        high[axis] = at;
-        add(box, 2 * axis, 0.97, cornersOf(low, high, 2 * axis));
-      }
-    }
-    if (this.dimension === 3) quads.sort((a, b) => a.depth - b.depth);
-    pen.lineWidth = 0.7;
-    for (const { box, light, points } of quads) {
-      const colour = [0, 1, 2].map((k) => Math.min(Math.round(light * this.colours[4 * box + k]), 255));
-      pen.fillStyle = `rgb(${colour})`;
-      pen.strokeStyle = pen.fillStyle;
-      this.trace(pen, points);
-      pen.fill();
-      pen.stroke();
-    }
-  }
-
-  // Takes from a box what the cut takes away; false where that is all of it, or the face that is cut off.
-  static clipped(low, high, { axis, normal, offset }) {
-    const at = offset * normal[axis];
-    if (normal[axis] > 0) high[axis] = Math.min(high[axis], at);
-    else low[axis] = Math.max(low[axis], at);
-    return low[axis] < high[axis];
   }
 
   trace(pen, points) {

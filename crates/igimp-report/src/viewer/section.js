@@ -22,13 +22,19 @@ function meanAround(scene, values, [x, y]) {
   return weights > 0 ? sum / weights : NaN;
 }
 
-// Values along a line at equal distances: means of the particles around, or the particle's where there is one alone; none
-// outside the bodies.
+// Values along a line at equal distances: of the field whose contours are drawn where there are pieces, else means of the
+// particles around, or the particle's where there is one alone; none outside the bodies.
 function alongSection(scene, values, [from, to]) {
+  const { boxes: { pieces }, bodies: { soil } } = scene;
+  const field = pieces ? fieldOver(pieces, values, scene.centres(), soil) : null;
   const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
   return Array.from({ length: PLACES + 1 }, (_, k) => {
     const share = k / PLACES;
     const at = [0, 1].map((axis) => from[axis] + share * (to[axis] - from[axis]));
+    if (field) {
+      const piece = scene.overlay.pieceOver(...at);
+      return [share * length, piece < 0 ? NaN : field(piece, ...at), ...at];
+    }
     const box = scene.holding(at);
     const mean = box < 0 ? NaN : meanAround(scene, values, at);
     return [share * length, box >= 0 && Number.isNaN(mean) ? values[box] : mean, ...at];
@@ -53,7 +59,7 @@ function sectionCurve(svg, rows, labels, divide) {
     svg.append(element);
   };
   add("rect", { class: "axis", x: left, y: top, width: right - left, height: bottom - top });
-  const [xTicks, yTicks] = [ticksOf(...xs, 5), ticksOf(...ys, 4)];
+  const [xTicks, yTicks] = [ticksOf(...xs, 6), ticksOf(...ys, 5)];
   for (const tick of xTicks) add("text", { x: x(tick), y: bottom + 15, "text-anchor": "middle" }, tickText(tick, xTicks));
   for (const tick of yTicks) add("text", { x: left - 5, y: y(tick) + 4, "text-anchor": "end" }, tickText(tick, yTicks));
   add("text", { x: (left + right) / 2, y: height - 8, "text-anchor": "middle" }, labels[0]);

@@ -8,34 +8,16 @@ const LARGE = 200000;
 const STAY = 250;
 // A motion is played so fast at first that it takes no less than this [s].
 const SHORTEST = 4;
-// Colours of a scale.
-const LEVELS = 256;
-
-function mixed(anchors) {
-  return Array.from({ length: LEVELS }, (_, level) => {
-    const place = (level / (LEVELS - 1)) * (anchors.length - 1);
-    const k = Math.min(Math.floor(place), anchors.length - 2);
-    const part = [0, 1, 2].map((c) => Math.round(anchors[k][c] + (place - k) * (anchors[k + 1][c] - anchors[k][c])));
-    return part;
-  });
-}
-
-// The same colours in steps between places on the scale, each in the colour of its middle.
-function banded(colours, shares) {
-  const edges = [0, ...shares.filter((share) => share > 0.001 && share < 0.999), 1];
-  const last = colours.length - 1;
-  return colours.map((_, level) => {
-    const k = Math.min(edges.findLastIndex((edge) => edge <= level / last), edges.length - 2);
-    return colours[Math.round(0.5 * (edges[k] + edges[k + 1]) * last)];
-  });
-}
+// A scale this wide has more ticks [CSS pixel].
+const WIDE = 560;
 
 class Viewer {
   // `wish` may name a frame (from 1), a field, a place to point at (in space a point of the canvas, as shares of
-  // its sides), a view, a cut, the least value shown in hundredths of the scale, arrows and the ends of a section; `changed` hears of every frame shown.
+  // its sides), a view, a cut, the least value shown in hundredths of the scale, arrows, contours, the outlines and the ends of a section; `changed` hears of every frame shown.
   constructor(wish, changed) {
-    this.part = Object.fromEntries(["soil", "field", "map", "state", "state-label", "space", "view", "cut", "cut-row", "cut-at", "cut-told", "cut-side", "slant-row", "slant-turn", "slant-dip", "slant-told", "canvas", "surface", "bar", "ticks", "bar-label", "play", "slider", "pace", "pace-label", "when", "found", "keys", "clamp", "fixed", "bands", "arrows", "least", "least-row", "least-told", "picture", "film", "draw-section", "section", "section-curve", "section-told", "section-table", "section-end"].map((id) => [id, document.getElementById(id)]));
-    this.scene = new Scene(this.part.canvas, this.part.surface);
+    this.part = Object.fromEntries(["soil", "field", "map", "state", "state-label", "space", "view", "cut", "cut-row", "cut-at", "cut-told", "cut-side", "slant-row", "slant-turn", "slant-dip", "slant-told", "canvas", "surface", "bar", "ticks", "bar-label", "play", "slider", "pace", "pace-label", "when", "found", "keys", "clamp", "fixed", "bands", "contours", "outlines", "arrows", "least", "least-row", "least-told", "picture", "film", "draw-section", "section", "section-curve", "section-told", "section-table", "section-end"].map((id) => [id, document.getElementById(id)]));
+    const { part } = this;
+    this.scene = new Scene(part.canvas, part.surface);
     this.wish = wish;
     this.changed = changed;
     this.frames = [];
@@ -45,8 +27,14 @@ class Viewer {
     this.turn = 0;
     this.pointed = -1;
     this.longest = new Map();
+    // The range of a run beside, and who hears of that of this one.
+    this.joint = null;
+    this.ranged = () => {};
+    part.contours.value = wish.contours || "";
+    part.outlines.checked = wish.outlines !== "0";
     this.listen();
     this.section = new SectionTool(this);
+    this.cutting = new Cutting(this);
   }
 
   // Takes up frames: each with a key that names its content, a label and a way to load its text, that of its rigid bodies
@@ -85,7 +73,8 @@ class Viewer {
       part.state.value = "";
       this.show();
     });
-    for (const name of ["field", "state", "map", "clamp", "fixed", "bands", "arrows"]) part[name].addEventListener("change", () => this.show());
+    for (const name of ["field", "state", "map", "clamp", "fixed", "bands", "contours", "arrows"]) part[name].addEventListener("change", () => this.show());
+    part.outlines.addEventListener("change", () => scene.outline(part.outlines.checked));
     part.play.addEventListener("click", () => (this.playing ? this.stop() : this.play()));
     document.getElementById("in").addEventListener("click", () => scene.zoom(1.6));
     document.getElementById("out").addEventListener("click", () => scene.zoom(1 / 1.6));
@@ -98,14 +87,7 @@ class Viewer {
       part.film.disabled = false;
     });
     part.view.addEventListener("change", () => this.look(part.view.value));
-    part.cut.addEventListener("change", () => this.layCut());
-    part["cut-at"].addEventListener("input", () => this.cutThere());
     part.least.addEventListener("input", () => this.from(Number(part.least.value)));
-    for (const name of ["slant-turn", "slant-dip"]) part[name].addEventListener("input", () => this.layCut(this.shareOfCut()));
-    part["cut-side"].addEventListener("click", () => {
-      this.side = -(this.side || 1);
-      this.cutThere();
-    });
     new Pointing(scene, (x, y) => this.pointAt(scene.boxAt(x, y)), (view) => this.look(view));
     window.addEventListener("resize", () => scene.paint());
     window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => scene.paint());
@@ -141,6 +123,10 @@ class Viewer {
   // What depends on the first frame: its dimension and its size.
   furnish(dimension) {
     const { part, wish } = this;
+    const values = part.contours.querySelector("option[value='values']");
+    // Contours in space have no texts.
+    values.disabled = dimension === 3;
+    if (dimension === 3 && part.contours.value === "values") part.contours.value = "lines";
     // A scale for all frames asks for all of them.
     if (this.shown.particles > LARGE) part.fixed.checked = false;
     part.space.hidden = dimension === 2;
@@ -161,11 +147,7 @@ class Viewer {
       wish.least = 0;
     }
     if (dimension === 3 && wish.cut) {
-      const [axis, share, side, turn, dip] = wish.cut;
-      if (turn !== undefined) [part["slant-turn"].value, part["slant-dip"].value] = [turn, dip];
-      part.cut.value = String(axis);
-      this.side = side || 1;
-      this.layCut(share);
+      this.cutting.wish(wish.cut);
       wish.cut = null;
     }
   }
@@ -175,65 +157,6 @@ class Viewer {
     this.part.least.value = hundredths;
     this.scene.from(hundredths / 100);
     this.paint();
-  }
-
-  // Lets the slider of the cut run over the body: anywhere, or from one place to the next where the page has
-  // the particles of some planes alone.
-  layCut(share = 0.5) {
-    const { part, scene } = this;
-    const axis = part.cut.value === "" ? -1 : Number(part.cut.value);
-    part["cut-row"].hidden = axis < 0;
-    part["slant-row"].hidden = axis !== 3;
-    if (axis === 3) {
-      const [low, high] = offsetsOf(this.slant(), scene.extent);
-      const slider = Object.assign(part["cut-at"], { min: low, max: high, step: (high - low) / 500 || 1 });
-      slider.value = low + share * (high - low);
-    } else if (axis >= 0) {
-      const { planes } = this.shown;
-      const slider = part["cut-at"];
-      const { low, high } = scene.extent;
-      const places = planes ? planes[axis] : null;
-      Object.assign(slider, places ? { min: 0, max: places.length - 1, step: 1 } : { min: low[axis], max: high[axis], step: (high[axis] - low[axis]) / 500 || 1 });
-      slider.value = Number(slider.min) + share * (slider.max - slider.min);
-    }
-    this.cutThere();
-  }
-
-  // The normal of a slanted cut.
-  slant() {
-    const { part } = this;
-    return slantOf(Number(part["slant-turn"].value), Number(part["slant-dip"].value));
-  }
-
-  // Where the slider of the cut stands, as a share of its way.
-  shareOfCut() {
-    const { min, max, value } = this.part["cut-at"];
-    return max > min ? (value - min) / (max - min) : 0.5;
-  }
-
-  cutThere() {
-    const { part, scene } = this;
-    if (part.cut.value === "") scene.cut = null;
-    else if (part.cut.value === "3") {
-      const [normal, at] = [this.slant(), Number(part["cut-at"].value)];
-      const side = this.side || 1;
-      scene.cut = { axis: -1, own: this.side, normal: normal.map((x) => side * x), offset: side * at };
-      part["slant-told"].textContent = `${part["slant-turn"].value}° from x, ${part["slant-dip"].value}°`;
-      part["cut-told"].textContent = "";
-      scene.slice();
-    } else {
-      const axis = Number(part.cut.value);
-      const { planes } = this.shown;
-      const at = planes ? planes[axis][Math.min(Number(part["cut-at"].value), planes[axis].length - 1)] : Number(part["cut-at"].value);
-      // What is taken away is the side of the eye, unless the other one is asked for.
-      const side = (this.side || 1) * (scene.layout().eye[axis] < 0 ? -1 : 1);
-      if (!scene.cut || scene.cut.axis !== axis || scene.cut.own !== this.side) this.facing = side;
-      const normal = [0, 0, 0];
-      normal[axis] = this.facing;
-      scene.cut = { axis, own: this.side, normal, offset: at * this.facing };
-      part["cut-told"].textContent = `${"xyz"[axis]} = ${short(at)} m`;
-    }
-    scene.paint();
   }
 
   play() {
@@ -300,6 +223,7 @@ class Viewer {
   }
 
   async show() {
+    const { part } = this;
     this.turn += 1;
     const turn = this.turn;
     const entry = this.entry();
@@ -308,7 +232,9 @@ class Viewer {
       const frame = await this.frame(entry);
       const field = this.choose(frame.shown());
       const [shapes, values] = [await frame.shapes(), await frame.values(field)];
-      const bodies = { lines: [], triangles: [], members: [], water: entry.water || [] };
+      const bodies = { lines: [], triangles: [], members: [], water: entry.water || [], slip: entry.slip || [], soil: null };
+      const soil = frame.arrayOf("material");
+      if (soil) bodies.soil = await frame.numbers(soil);
       if (frame.members && frame.members.count > 0) bodies.members = (await frame.members.shapes()).corners;
       const arrows = await this.arrowsOf(frame);
       if (frame.bodies && frame.bodies.count > 0) bodies[frame.bodies.kind] = (await frame.bodies.shapes()).corners;
@@ -319,16 +245,17 @@ class Viewer {
       if (isOther) {
         const isFirst = this.scene.dimension === 0;
         this.scene.show(frame.dimension, shapes, bodies);
+        this.scene.outline(part.outlines.checked);
         if (isFirst) this.furnish(frame.dimension);
       }
       this.scene.overlay.arrows = arrows;
       this.paint();
       this.section.tell();
       await this.describe();
-      this.changed(entry, field, Number(this.part.slider.value));
-      if (this.part.fixed.checked) await this.gather(field, turn);
+      this.changed(entry, field, Number(part.slider.value));
+      if (part.fixed.checked) await this.gather(field, turn);
     } catch (error) {
-      if (turn === this.turn) this.part.when.textContent = `${entry.label}: cannot be read (${error.message})`;
+      if (turn === this.turn) part.when.textContent = `${entry.label}: cannot be read (${error.message})`;
     }
   }
 
@@ -377,8 +304,18 @@ class Viewer {
     if (missing.length > 0) this.paint();
   }
 
-  // Least and largest value of the scale, in SI units.
+  // Least and largest value of the scale, in SI units: with those of a run beside, where it shows the same field.
   range() {
+    const { part, field, joint } = this;
+    const own = this.ownRange();
+    const isJoint = joint && joint.field === field.key && part.fixed.checked;
+    const scale = isJoint ? [Math.min(own[0], joint.own[0]), Math.max(own[1], joint.own[1])] : own;
+    this.ranged({ field: field.key, own, scale });
+    return scale;
+  }
+
+  // Least and largest value of this run.
+  ownRange() {
     const { part, field } = this;
     const entries = part.fixed.checked && this.frames.includes(this.shownEntry) ? this.frames : [this.shownEntry];
     const kind = part.clamp.checked && !field.whole ? "inner" : "whole";
@@ -395,11 +332,12 @@ class Viewer {
     const map = part.map.value === "auto" ? (isOfBothSigns ? "diverging" : "viridis") : part.map.value;
     if (map === "diverging") [low, high] = [-Math.max(Math.abs(low), Math.abs(high)), Math.max(Math.abs(low), Math.abs(high))];
     this.unit = unitFor(field.unit, Math.max(Math.abs(low), Math.abs(high)));
-    this.barTicks = this.ticksOfBar(low, high);
+    this.barTicks = this.ticksOfBar(low, high, part.bar.clientWidth > WIDE ? 10 : 7);
     let colours = mixed(MAPS[map]);
-    if (part.bands.checked && !field.whole) colours = banded(colours, this.ticksOfBar(low, high, 10).map((tick) => tick.share));
+    if (part.bands.checked && !field.whole) colours = banded(colours, this.barTicks.map((tick) => tick.share));
     this.colours = colours;
     this.scene.colour(this.values, [low, high], colours);
+    this.contour(low, high);
     const least = low + this.scene.least * (high - low);
     part["least-told"].textContent = this.scene.least > 0 ? `${short(field.whole ? least : least / this.unit[0])}${this.unit[1] ? ` ${this.unit[1]}` : ""} on` : "all";
     const every = part.bands.checked ? 1 : 8;
@@ -411,12 +349,22 @@ class Viewer {
       return mark;
     }));
     part["bar-label"].textContent = `${field.title}${this.unit[1] ? ` [${this.unit[1]}]` : ""}${field.rest}`;
-    part.when.textContent = this.shownEntry.label;
+    part.when.textContent = `${this.shownEntry.label}${this.scene.bodies.slip.length > 1 ? "; red: where soil shears most as it fails" : ""}`;
     part.slider.setAttribute("aria-valuetext", this.shownEntry.label);
   }
 
+  // Contours at the ticks of the scale, where they are wanted.
+  contour(low, high) {
+    const { part, scene, field, barTicks } = this;
+    const isWanted = part.contours.value !== "" && !field.whole && high > low;
+    const ticks = isWanted ? barTicks.filter(({ share }) => share > 0.001 && share < 0.999) : [];
+    const levels = ticks.map(({ share }) => low + share * (high - low));
+    const colours = ticks.map(({ share }) => this.colours[Math.round(share * (this.colours.length - 1))]);
+    scene.contour(this.values, levels, colours, part.contours.value === "values" ? ticks.map(({ text }) => text) : null);
+  }
+
   // Ticks of the colour bar at round values, about so many: their place on it, and their text.
-  ticksOfBar(low, high, about = 7) {
+  ticksOfBar(low, high, about) {
     const { field, unit } = this;
     if (!Number.isFinite(low)) return [{ share: 0.5, text: "–" }];
     if (!(high > low)) return [{ share: 0.5, text: short(field.whole ? Math.round(low) : low / unit[0]) }];

@@ -83,27 +83,36 @@ class Water {
     pen.fill();
   }
 
-  // A surface that shines through the soil, with a heavy line where the cut meets it.
+  // The triangles of all surfaces, as far as the plan of the soil goes, by their corners.
+  triangles() {
+    const { bodies, extent } = this.scene;
+    return bodies.water.flatMap((raster) => trianglesOf(thinned(raster, extent, 24)));
+  }
+
+  // A heavy line where the cut meets a surface. Without WebGL2 the surface is drawn here too, over the soil.
   surface(pen, place, raster) {
     const { scene } = this;
     const seen = (points) => points.map((own) => projected(place, scene.camera, own));
-    const extent = scene.extent;
-    const triangles = trianglesOf(thinned(raster, extent, 24));
+    const triangles = trianglesOf(thinned(raster, scene.extent, 24));
     const parts = scene.cut ? triangles.map((own) => parted(own, scene.cut)) : triangles.map((kept) => ({ kept, met: [] }));
+    if (!scene.surface) Water.sheet(pen, parts.map(({ kept }) => seen(kept)));
+    const lines = parts.map(({ met }) => seen(met)).filter((own) => own.length > 1);
+    Water.heavy(pen, lines);
+    const points = lines.flat();
+    if (points.length > 0) Water.sign(pen, ...points.reduce((best, own) => (own[1] < best[1] ? own : best)));
+    scene.canvas.dataset.waterCut = lines.length;
+  }
+
+  static sheet(pen, parts) {
     pen.beginPath();
-    for (const { kept } of parts) {
-      seen(kept).forEach(([x, y], k) => (k === 0 ? pen.moveTo(x, y) : pen.lineTo(x, y)));
-      if (kept.length > 0) pen.closePath();
+    for (const points of parts) {
+      points.forEach(([x, y], k) => (k === 0 ? pen.moveTo(x, y) : pen.lineTo(x, y)));
+      if (points.length > 0) pen.closePath();
     }
     pen.fillStyle = "rgba(0,114,178,0.22)";
     pen.fill();
     pen.strokeStyle = "rgba(0,114,178,0.45)";
     pen.lineWidth = 0.6;
     pen.stroke();
-    const lines = parts.map(({ met }) => seen(met)).filter((own) => own.length > 1);
-    Water.heavy(pen, lines);
-    const points = lines.flat();
-    if (points.length > 0) Water.sign(pen, ...points.reduce((best, own) => (own[1] < best[1] ? own : best)));
-    scene.canvas.dataset.waterCut = lines.length;
   }
 }

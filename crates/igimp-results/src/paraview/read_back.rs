@@ -14,41 +14,49 @@ const XY: usize = 3;
 const YZ: usize = 4;
 const XZ: usize = 5;
 
-/// The particles of a frame in the plane.
+/// The particles of a frame: where they are, how they are deformed, and which they are.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PlaneParticles {
+pub struct FrameParticles<const D: usize> {
     /// Centres of the domains \[m\].
-    pub x: Vec<[f64; 2]>,
+    pub x: Vec<[f64; D]>,
     /// Deformation gradients \[-\].
-    pub def_grad: Vec<[[f64; 2]; 2]>,
+    pub def_grad: Vec<[[f64; D]; D]>,
     /// The numbers that particles keep.
     pub number: Vec<usize>,
 }
 
-impl PlaneParticles {
-    /// The particles of a frame; none of a frame in space, and of one that cannot be read.
+impl<const D: usize> FrameParticles<D> {
+    /// The particles of a frame; none of a frame in another dimension, and of one that cannot be read.
     pub fn of(frame: &Frame<'_>) -> Option<Self> {
         if frame.cells == 0 {
-            let nothing = (Vec::new(), Vec::new(), Vec::new());
-            let (x, def_grad, number) = nothing;
             return Some(Self {
-                x,
-                def_grad,
-                number,
+                x: Vec::new(),
+                def_grad: Vec::new(),
+                number: Vec::new(),
             });
         }
-        if frame.kind()? != CellKind::Quad {
+        // The cell of a particle, with the corner opposite the first.
+        let (kind, opposite) = if D == 2 {
+            (CellKind::Quad, 2)
+        } else {
+            (CellKind::Hexahedron, 6)
+        };
+        if frame.kind()? != kind {
             return None;
         }
-        let corners = frame.corners(4)?;
-        let (quads, _) = corners.as_chunks::<4>();
-        let middle = |quad: &[[f64; 3]; 4]| [0, 1].map(|a| 0.5 * (quad[0][a] + quad[2][a]));
+        let count = kind.corners().len();
+        let corners = frame.corners(count)?;
+        let middle = |own: &[[f64; 3]]| -> [f64; D] {
+            std::array::from_fn(|a| 0.5 * (own[0][a] + own[opposite][a]))
+        };
         let gradients = array(frame, "deformation gradient [-]", 9)?;
-        let gradient = |own: &[f64; 9]| [[own[0], own[1]], [own[3], own[4]]];
+        let gradient = |own: &[f64; 9]| -> [[f64; D]; D] {
+            std::array::from_fn(|i| std::array::from_fn(|j| own[3 * i + j]))
+        };
         let number = |&number: &f64| (number >= 0.0).then_some(number as usize);
         let numbers = array(frame, "particle", 1)?;
         Some(Self {
-            x: quads.iter().map(middle).collect(),
+            x: corners.chunks_exact(count).map(middle).collect(),
             def_grad: gradients.as_chunks::<9>().0.iter().map(gradient).collect(),
             number: numbers.iter().map(number).collect::<Option<_>>()?,
         })
@@ -195,7 +203,7 @@ mod tests {
                 }
             }
         }
-        let read = PlaneParticles::of(&frame).unwrap();
+        let read = FrameParticles::<2>::of(&frame).unwrap();
         assert_eq!(read.number, particles.number);
         assert_eq!(read.def_grad, particles.def_grad);
     }
@@ -210,7 +218,7 @@ mod tests {
         cells.write(&path).unwrap();
         let text = std::fs::read_to_string(path).unwrap();
         let frame = Frame::of(&text).unwrap();
-        assert_eq!(PlaneParticles::of(&frame), None);
+        assert_eq!(FrameParticles::<2>::of(&frame), None);
         assert_eq!(values(&frame, Field::Speed), None);
         assert_eq!(values(&frame, Field::X), Some(vec![0.5, 1.5, 0.5, 1.5]));
     }

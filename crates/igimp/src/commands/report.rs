@@ -1,15 +1,23 @@
 //! `igimp report`.
 
+use igimp_input::CaseFile;
+use igimp_model::AnyCase;
 use igimp_report::report::write_report;
+use igimp_report::viewer::Surroundings;
 
 use crate::arguments::Report;
-use crate::commands::pieces;
 use crate::error::{Exit, ProgramError};
 use crate::output;
 
 pub(crate) fn report(arguments: &Report) -> Result<Exit, ProgramError> {
-    let pieces = pieces(&arguments.folder);
-    let path = write_report(&arguments.folder, pieces.as_ref())?;
+    let folder = &arguments.folder;
+    let file = CaseFile::read(&folder.join("case.completed.toml"), &[]).ok();
+    let around = match file.as_ref().map(CaseFile::any_case) {
+        Some(AnyCase::Plane(case)) => Surroundings::of(case, folder, None),
+        Some(AnyCase::Space(case)) => Surroundings::of(case, folder, None),
+        None => Surroundings::default(),
+    };
+    let path = write_report(folder, &around)?;
     output::print(&path.display().to_string())?;
     Ok(Exit::Done)
 }

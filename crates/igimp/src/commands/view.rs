@@ -8,7 +8,6 @@ mod browser;
 mod http;
 mod results;
 mod server;
-mod water;
 
 use std::sync::mpsc;
 

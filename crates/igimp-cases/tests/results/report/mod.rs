@@ -13,12 +13,13 @@ use igimp_report::patches::Pieces;
 use igimp_report::pictures::{self, Canvas, Seen, Shown};
 use igimp_report::report::write_report;
 use igimp_report::setup;
+use igimp_report::viewer::Surroundings;
 use igimp_results::ResultsError;
 use igimp_results::summary::{FigureNote, SafetySummary, SetupTable, StageOutcome, Summary};
 use igimp_results::tables::table::Table;
 
 fn page(folder: &Path) -> String {
-    let path = write_report(folder, None).unwrap();
+    let path = write_report(folder, &Surroundings::default()).unwrap();
     assert_eq!(path, folder.join("report.html"));
     std::fs::read_to_string(path).unwrap()
 }
@@ -271,13 +272,13 @@ fn a_bare_summary_is_enough() {
 #[test]
 fn a_folder_without_summary_is_refused_by_name() {
     let folder = example::folder("none");
-    let error = write_report(&folder, None).unwrap_err();
+    let error = write_report(&folder, &Surroundings::default()).unwrap_err();
     assert!(
         matches!(&error, ReportError::Results(ResultsError::File { path, .. }) if path.ends_with("summary.json"))
     );
     std::fs::write(folder.join("summary.json"), "{").unwrap();
     assert!(matches!(
-        write_report(&folder, None),
+        write_report(&folder, &Surroundings::default()),
         Err(ReportError::Results(ResultsError::File { .. }))
     ));
 }

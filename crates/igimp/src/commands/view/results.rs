@@ -8,14 +8,12 @@ use std::time::UNIX_EPOCH;
 
 use igimp_input::CaseFile;
 use igimp_model::{AnyCase, Every, StageKind};
-use igimp_report::patches::Pieces;
-use igimp_report::viewer::{self, Keep};
+use igimp_report::viewer::over::{Over, by_stage};
+use igimp_report::viewer::{self, Bodies, Keep};
 use igimp_results::paraview::pvd;
 use igimp_results::summary::Summary;
 use serde_json::{Value, json};
 
-use super::water;
-use crate::commands::pieces;
 use crate::error::ProgramError;
 
 /// Folders whose files are shown, by ending, and how they are called in HTTP.
@@ -37,8 +35,8 @@ const LARGEST_SUMMARY: u64 = 64 << 20;
 #[derive(Debug)]
 pub(super) struct Results {
     root: PathBuf,
-    /// The bodies of the plane in pieces, once a frame is asked for.
-    pieces: OnceLock<Option<Pieces>>,
+    /// The bodies of the case, once a frame is asked for.
+    bodies: OnceLock<Option<Bodies>>,
 }
 
 impl Results {
@@ -52,7 +50,7 @@ impl Results {
         if is_of_a_run(&root) {
             return Ok(Self {
                 root,
-                pieces: OnceLock::new(),
+                bodies: OnceLock::new(),
             });
         }
         let mut inside: Vec<PathBuf> = fs::read_dir(&root)
@@ -88,7 +86,7 @@ impl Results {
     /// every file with a text that changes when the file does.
     pub(super) fn index(&self) -> String {
         let summary = self.summary();
-        let case = CaseFile::read(&self.root.join("case.completed.toml"), &[]).ok();
+        let case = self.case();
         let case = case.as_ref().map(CaseFile::any_case);
         let title = case.map_or("", AnyCase::title);
         let stages: Vec<Value> = std::iter::zip(0.., summary.iter().flat_map(|own| &own.stages))
@@ -137,7 +135,7 @@ impl Results {
             "stage_of_curve": recorded,
             "never": case.is_some_and(|case| case.output().paraview == Every::Never),
             "seconds": self.seconds(),
-            "water": case.map(|case| water::by_stage(case, &|name| self.section(name))),
+            "over": case.map(|case| self.over(case)),
             "files": files,
         })
         .to_string()
@@ -158,10 +156,17 @@ impl Results {
         named.collect()
     }
 
-    /// The path of a table of sections by the name of its file.
-    fn section(&self, name: &str) -> Option<PathBuf> {
-        let mut names = self.names("sections", "csv");
-        names.find_map(|(_, path)| (path.file_name()?.to_str()? == name).then_some(path))
+    /// What stands over the frames of every stage.
+    fn over(&self, case: &AnyCase) -> Vec<Over> {
+        match case {
+            AnyCase::Plane(case) => by_stage(case, &self.root),
+            AnyCase::Space(case) => by_stage(case, &self.root),
+        }
+    }
+
+    /// The case of the folder; none where it cannot be read.
+    fn case(&self) -> Option<CaseFile> {
+        CaseFile::read(&self.root.join("case.completed.toml"), &[]).ok()
     }
 
     /// A file by its name in an address, with its length and kind; nothing for names that are not
@@ -177,9 +182,12 @@ impl Results {
     pub(super) fn packed(&self, encoded: &str) -> Option<String> {
         let (path, _) = self.path(encoded)?;
         let is_frame = path.extension().is_some_and(|ending| ending == "vtu");
-        let pieces = self.pieces.get_or_init(|| pieces(&self.root));
+        let bodies = self.bodies.get_or_init(|| match self.case()?.any_case() {
+            AnyCase::Plane(case) => Bodies::of(case),
+            AnyCase::Space(case) => Bodies::of(case),
+        });
         is_frame
-            .then(|| viewer::frame(&path, Keep::MUCH, pieces.as_ref()))
+            .then(|| viewer::frame(&path, Keep::MUCH, bodies.as_ref()))
             .flatten()
     }
 

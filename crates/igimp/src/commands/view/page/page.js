@@ -29,15 +29,25 @@ function momentsOf(k) {
   return search || rows.length === 0 ? moments : rows[rows.length - 1][1];
 }
 
-// The stage and the step (or trial) at a time, which counts steps and trials of the whole run.
-function momentOf(time) {
-  let before = 0;
+// The stage and the step (or trial) at a time, which counts steps and trials of the whole run. A search that follows a path has
+// none: the stage of its frame is known by its name, at the stage of the frame before or later.
+function momentOf(time, name, last) {
+  let [before, found] = [0, null];
   for (const k of index.stages.keys()) {
     const moments = momentsOf(k);
-    if (time <= before + moments) return { stage: k, step: time - before };
+    if (k >= last && stageName(k) === name) return { stage: k, step: time - before };
+    if (!found && time <= before + moments) found = { stage: k, step: time - before };
     before += moments;
   }
-  return { stage: index.stages.length, step: time - before };
+  return found || { stage: index.stages.length, step: time - before };
+}
+
+// A moment in words.
+function whenOf({ stage, step }) {
+  const own = index.stages[stage];
+  const where = `stage ${stage + 1} “${stageName(stage)}”`;
+  if (own && own.search && step <= 0) return `${where}, as it ends`;
+  return `${where}, ${own && own.search ? "trial" : "step"} ${Math.ceil(step)}`;
 }
 
 function stageName(k) {
@@ -51,9 +61,9 @@ function besideOf(name, what) {
   return index.files[own] ? () => fetched(`packed/${own}`) : null;
 }
 
-// The water tables of a stage.
-function waterOf(stage) {
-  return (index.water && index.water[stage]) || [];
+// What stands over the frames of a stage: water and slip line.
+function overOf(stage) {
+  return (index.over && index.over[stage]) || {};
 }
 
 function entryOf(name, label, more) {
@@ -65,15 +75,15 @@ async function framesOf() {
   if (!index.files[collection]) return [];
   const page = new DOMParser().parseFromString(await fetched(collection), "application/xml");
   const sets = [...page.querySelectorAll("DataSet")].filter((set) => index.files[`paraview/${set.getAttribute("file")}`]);
+  let last = 0;
   return sets.map((set, k) => {
-    const time = Number(set.getAttribute("timestep"));
-    const moment = momentOf(time);
-    const own = index.stages[moment.stage];
+    const moment = momentOf(Number(set.getAttribute("timestep")), set.getAttribute("group"), last);
+    last = moment.stage;
     const name = `paraview/${set.getAttribute("file")}`;
     const seconds = index.seconds[name];
     const when = seconds === undefined ? "" : `t = ${short(seconds)} s, `;
-    const label = `Frame ${k + 1} of ${sets.length}: ${when}stage ${moment.stage + 1} “${stageName(moment.stage)}”, ${own && own.search ? "trial" : "step"} ${Math.ceil(moment.step)}`;
-    return entryOf(name, label, { moment, seconds, water: waterOf(moment.stage) });
+    const label = `Frame ${k + 1} of ${sets.length}: ${when}${whenOf(moment)}`;
+    return entryOf(name, label, { moment, seconds, ...overOf(moment.stage) });
   });
 }
 
@@ -87,7 +97,7 @@ function statesOf() {
     const other = name.replace("last-stable", "first-unstable");
     const isLast = stage === index.planned.length - 1 && stage === index.stages.length - 1;
     const isMechanism = isLast && (other === name || !index.files[other]);
-    return entryOf(name, `${stageName(stage)}: ${what[found[2]]}`, { moment: { stage, step: Infinity }, isMechanism, water: waterOf(stage) });
+    return entryOf(name, `${stageName(stage)}: ${what[found[2]]}`, { moment: { stage, step: Infinity }, isMechanism, ...overOf(stage) });
   }).filter(Boolean).sort((a, b) => b.name.localeCompare(a.name));
 }
 
@@ -165,6 +175,8 @@ const viewer = new Viewer(
     hover: numbersOf("hover"),
     framed: asked.has("frame"),
     arrows: asked.get("arrows"),
+    contours: asked.get("contours"),
+    outlines: asked.get("outlines"),
     section: numbersOf("section"),
     view: asked.get("view"),
     cut: numbersOf("cut"),
@@ -197,8 +209,21 @@ function frameLike({ frame, frames, seconds }) {
   return Math.round(((frame - 1) / Math.max(frames - 1, 1)) * (own.length - 1)) + 1;
 }
 
+// Hands the range of values over when it changes.
+viewer.ranged = (range) => {
+  const text = JSON.stringify(range);
+  if (!isBeside || text === viewer.toldRange || !range.own.every(Number.isFinite)) return;
+  viewer.toldRange = text;
+  window.parent.postMessage({ range }, location.origin);
+};
+
 window.addEventListener("message", (event) => {
   if (!isBeside || event.source !== window.parent || event.origin !== location.origin || viewer.frames.length === 0) return;
+  if (event.data.range) {
+    viewer.joint = event.data.range;
+    if (viewer.shown) viewer.paint();
+    return;
+  }
   const { slider, field, state } = viewer.part;
   const frame = frameLike(event.data);
   const isKnown = [...field.options].some((option) => option.value === event.data.field);

@@ -1,0 +1,64 @@
+//! What a case knows of its frames that the frames do not: where its bodies end, and its water.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use igimp_model::{Case, Stage, in_plane};
+use igimp_results::paraview::pvd;
+use igimp_text::on_a_line;
+
+use super::over::{Over, by_stage};
+use crate::outlines::Outlines;
+use crate::patches::Pieces;
+
+/// The bodies of a case as frames are drawn with them.
+#[derive(Clone, Debug)]
+pub enum Bodies {
+    /// In the plane: pieces and edges.
+    Plane(Arc<Pieces>),
+    /// In space: edges.
+    Space(Outlines),
+}
+
+impl Bodies {
+    /// The bodies of a case; none where they cannot be seeded.
+    pub fn of<const D: usize>(case: &Case<D>) -> Option<Self> {
+        if let Some(case) = in_plane::<Case<D>, Case<2>>(case) {
+            return Pieces::of(case).ok().map(|own| Self::Plane(Arc::new(own)));
+        }
+        let case = in_plane::<Case<D>, Case<3>>(case)?;
+        Outlines::of(case).ok().map(Self::Space)
+    }
+}
+
+/// What the frames of a report are drawn with.
+#[derive(Clone, Debug, Default)]
+pub struct Surroundings {
+    pub(super) bodies: Option<Bodies>,
+    /// Names of the stages as collections of frames have them.
+    stages: Vec<String>,
+    pub(super) over: Vec<Over>,
+}
+
+impl Surroundings {
+    /// Those of the frames of a results folder, with the bodies in pieces where these are known already; nothing where there
+    /// are no frames.
+    pub fn of<const D: usize>(case: &Case<D>, folder: &Path, pieces: Option<Arc<Pieces>>) -> Self {
+        let frames = pvd::frames(&folder.join("paraview"), pvd::PARTICLES);
+        if frames.is_none_or(|own| own.is_empty()) {
+            return Self::default();
+        }
+        let name = |stage: &Stage| on_a_line(&stage.name).into_owned();
+        Self {
+            bodies: pieces.map(Bodies::Plane).or_else(|| Bodies::of(case)),
+            stages: case.stages.iter().map(name).collect(),
+            over: by_stage(case, folder),
+        }
+    }
+
+    /// The number of a stage by its name, at the one before it or later: names may come again.
+    pub(super) fn stage(&self, name: &str, before: usize) -> Option<usize> {
+        let later = (before..self.stages.len()).find(|&k| self.stages[k] == name);
+        later.or_else(|| self.stages.iter().position(|own| own == name))
+    }
+}
