@@ -90,8 +90,14 @@ pub(super) fn residuals(
             [at(row.at), difference / scale]
         });
         let known = points.filter(|point| point[1].is_finite());
-        Series::markers(own.name(), known.collect())
+        let is_alone = compared.data.columns.len() == 1;
+        let name = if is_alone { "" } else { own.name() };
+        Series::markers(name, known.collect())
     });
+    let series: Vec<Series> = series.collect();
+    let sizes = series.iter().flat_map(|own| &own.points);
+    let most = sizes.fold(0.0_f64, |most, point| most.max(point[1].abs()));
+    let end = (1.1 * most).max(3.0);
     let line = |value: f64| ReferenceLine {
         label: String::new(),
         at: ReferenceValue::Y(value),
@@ -103,7 +109,8 @@ pub(super) fn residuals(
             .to_owned(),
         y_label: "residual over its standard deviation [-]".to_owned(),
         lines: [-2.0, 0.0, 2.0].map(line).to_vec(),
-        series: series.collect(),
+        y_range: Some((-end, end)),
+        series,
         ..CurvePlot::default()
     }
 }

@@ -147,21 +147,25 @@ fn differences(fitted: &Fitted) -> Section {
     let words = ["Test", "Quantity", "Data"].map(Column::words);
     let numbers = [
         "Values",
+        "Standard deviation",
         "Root mean square difference",
         "Largest difference",
         "Line",
     ];
-    let tests = fitted.tests.iter().zip(1..);
-    let rows = tests.flat_map(|(tested, at)| {
+    let tests = fitted.tests.iter().zip(&fitted.scales).zip(1..);
+    let rows = tests.flat_map(|((tested, scales), at)| {
         let compared = tested.compared.iter();
-        compared.flat_map(move |own| (0..own.data.columns.len()).map(move |k| off(own, at, k)))
+        compared.flat_map(move |own| {
+            let columns = scales.iter().enumerate();
+            columns.map(move |(k, scale)| off((own, at), k, scale * fitted.deviation))
+        })
     });
     Section {
         title: "Differences".to_owned(),
-        sentences: vec![format!(
-            "Computed less measured. The standard deviation of a residual is {} of the scatter that weighs it.",
-            short(fitted.deviation)
-        )],
+        sentences: vec![
+            "Computed less measured. The standard deviation is that of scatter, as all residuals together have it."
+                .to_owned(),
+        ],
         tables: vec![PageTable {
             name: "Differences".to_owned(),
             columns: words
@@ -174,18 +178,19 @@ fn differences(fitted: &Fitted) -> Section {
     }
 }
 
-/// The row of a quantity of a test.
-fn off(compared: &Compared, at: usize, column: usize) -> Vec<String> {
+/// The row of a quantity of a test, with its standard deviation in SI.
+fn off((compared, at): (&Compared, usize), column: usize, deviation: f64) -> Vec<String> {
     let own = compared.data.columns[column];
     let printed = |value: f64| format!("{} {}", short(own.printed(value)), own.unit());
     let numbers = match compared.off(column) {
         Some(off) => [
             off.values.to_string(),
+            printed(deviation),
             printed(off.mean),
             printed(off.largest.0),
             off.largest.1.to_string(),
         ],
-        None => [(); 4].map(|()| NONE.to_owned()),
+        None => [(); 5].map(|()| NONE.to_owned()),
     };
     let data = &compared.data.name;
     let words = [at.to_string(), own.name().to_owned(), data.clone()];
@@ -194,7 +199,8 @@ fn off(compared: &Compared, at: usize, column: usize) -> Vec<String> {
 
 /// A test with its pictures.
 fn test(tested: &Tested, at: usize, (folder, files): &(String, Vec<String>)) -> Section {
-    let lines = tested.text.lines().map(str::trim);
+    let first = tested.text.lines().next().unwrap_or_default();
+    let what = first.rsplit(", ").next().unwrap_or_default();
     let of_kind = |kind: &'static str| {
         let own = files.iter().filter_map(move |file| file.strip_suffix(kind));
         own.map(|stem| format!("{folder}/{stem}"))
@@ -204,8 +210,8 @@ fn test(tested: &Tested, at: usize, (folder, files): &(String, Vec<String>)) -> 
         file,
     });
     Section {
-        title: format!("Test {at}"),
-        sentences: lines.map(|line| format!("{line}.")).collect(),
+        title: format!("Test {at}: {what}"),
+        text: tested.text.clone(),
         pictures: pictures.collect(),
         files: of_kind(".csv").map(|file| format!("{file}.csv")).collect(),
         ..Section::default()

@@ -86,7 +86,7 @@ fn the_report_tells_all_of_a_fit() {
     for part in [
         "<h1>soil: Mohr–Coulomb, parameters from data</h1>",
         "3 parameters from 3 tests, 21 values.",
-        "<h2>Test 3</h2>",
+        "<h2>Test 3: triaxial drained</h2>",
         "data.csv\">",
         "[materials.soil]\ncohesion",
     ] {
