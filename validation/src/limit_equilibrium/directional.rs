@@ -96,13 +96,13 @@ mod tests {
     }
 
     /// GOAL: one strength in all directions has the stability numbers γH/c_u of circles. ORACLE: Taylor (1937), c/(γH) = 0.261 at 90°,
-    /// 0.219 at 75° and 0.191 at 60° by circles through the toe, 0.181 at 45° above a base far below. BAND: his three digits.
+    /// 0.219 at 75° and 0.191 at 60° by circles through the toe, where the section ends; 0.181 at 45° above a base far below. BAND: his three digits.
     #[test]
     fn one_strength_has_taylors_numbers() {
         for (angle, depth, taylor) in [
-            (90.0, 1.5, 0.261),
-            (75.0, 1.5, 0.219),
-            (60.0, 1.5, 0.191),
+            (90.0, 1.0, 0.261),
+            (75.0, 1.0, 0.219),
+            (60.0, 1.0, 0.191),
             (45.0, 6.0, 0.181),
         ] {
             let own = number(angle, depth, Shares::ALIKE).recip();
