@@ -17,6 +17,7 @@ from ._body import Body
 from ._case import Case, Estimate, new, templates
 from ._element import ElementTest, element
 from ._errors import CaseWarning, Error, FileError, InputError, Interrupted, NotConverged, ReferenceMissed
+from ._fit import Fit, Parameter, fit
 from ._igimp import __version__
 from ._law import Elasticity, Law
 from ._march import March, Step
@@ -33,6 +34,7 @@ __all__ = [
     "Estimate",
     "Figure",
     "FileError",
+    "Fit",
     "InputError",
     "Interrupted",
     "Law",
@@ -40,12 +42,14 @@ __all__ = [
     "MeshResult",
     "MeshStudy",
     "NotConverged",
+    "Parameter",
     "ReferenceMissed",
     "Results",
     "Stage",
     "Step",
     "__version__",
     "element",
+    "fit",
     "new",
     "open",
     "templates",

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use igimp_input::MaterialsFile;
+use igimp_model::Material;
 use igimp_schema::quantity::{Dimension, Quantity};
 use igimp_study::element::{
-    Drive, Kinematics, Request, StandardTest, Tested, chosen, name_of, of_name, read_data,
-    read_path, test,
+    Data, Drive, Kinematics, Request, StandardTest, TestError, Tested, chosen, name_of, of_name,
+    parse_data, read_data, read_path, test,
 };
 use pyo3::prelude::*;
 
@@ -17,7 +18,7 @@ use crate::raised::Raised;
 /// A test of a law, as it was made.
 #[pyclass(frozen, module = "igimp._igimp")]
 #[derive(Debug)]
-pub(crate) struct ElementTest(Tested);
+pub(crate) struct ElementTest(pub(crate) Tested);
 
 #[pymethods]
 impl ElementTest {
@@ -36,6 +37,11 @@ impl ElementTest {
     /// Its table: name, header, array with a row a step.
     fn table<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
         arrays::tables(py, vec![self.0.table.clone()])
+    }
+
+    /// What was measured beside what is computed: name, header, array with a row a measurement; empty without data.
+    fn data<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        arrays::tables(py, self.0.data_table().into_iter().collect())
     }
 
     /// Writes table and pictures into a folder, which is made; their names.
@@ -67,79 +73,133 @@ impl Given {
     }
 }
 
+/// Measurements: a CSV file, or its text.
+#[derive(Debug, FromPyObject)]
+pub(crate) enum Measured {
+    /// A file.
+    File(PathBuf),
+    /// A name and a text.
+    Text(String, String),
+}
+
 /// What is driven, and how.
 #[derive(Debug, FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Asked {
-    material: Option<String>,
     test: String,
     path: Option<PathBuf>,
     stress: Given,
     side_stress: Option<Given>,
-    strain: f64,
+    /// Natural strain at the end; none goes as far as the data.
+    strain: Option<f64>,
     steps: usize,
     duration: Given,
     small_strain: bool,
-    data: Option<PathBuf>,
+    data: Option<Measured>,
 }
 
-/// Drives a material of a file of this name and text, changed by settings; `law` is one in Python.
+/// A file of materials: its name, its text, settings, and the material that is meant.
+pub(crate) type Source = (PathBuf, String, Vec<String>, Option<String>);
+
+/// The file of a source, and the material that is meant.
+pub(crate) fn material_of(
+    py: Python<'_>,
+    (name, text, settings, material): &Source,
+) -> PyResult<(MaterialsFile, Material)> {
+    let file = MaterialsFile::parse(&name.display().to_string(), text, settings)
+        .map_err(|error| Raised::from(error).exception(py))?;
+    let own = chosen(&file.materials, material.as_deref())
+        .map_err(|error| refused(py, &error.problem, &error.names))?
+        .clone();
+    Ok((file, own))
+}
+
+/// Drives a material; `law` is one in Python.
 #[pyfunction]
 pub(crate) fn element(
     py: Python<'_>,
-    file: (PathBuf, String, Vec<String>),
+    source: Source,
     asked: Asked,
     law: Option<Py<PyAny>>,
 ) -> PyResult<ElementTest> {
-    let (name, text, settings) = file;
-    let file = MaterialsFile::parse(&name.display().to_string(), &text, &settings)
-        .map_err(|error| Raised::from(error).exception(py))?;
-    let mut material = chosen(&file.materials, asked.material.as_deref())
-        .map_err(|error| refused(py, &error.problem, &error.names))?
-        .clone();
+    let (_, mut material) = material_of(py, &source)?;
     let trouble = Trouble::default();
     if let Some(law) = law {
         give_to(py, &mut material, law, &trouble)?;
     }
-    let drive = drive(py, &asked, &name)?;
-    let data = match &asked.data {
-        None => None,
-        Some(path) => {
-            let made = material.law();
-            let law = made.map_err(|error| refused(py, &error.to_string(), ""))?;
-            let variables = law.internal_variables().iter().map(|own| own.name);
-            let read = read_data(&beside(&name, path), &drive, &variables.collect::<Vec<_>>());
-            Some(read.map_err(|error| refused(py, &error.to_string(), error.help()))?)
-        }
-    };
-    let stress = asked.stress.read(py, "stress", Dimension::Stress)?;
-    let side = asked.side_stress.as_ref();
-    let side = side.map(|own| own.read(py, "side_stress", Dimension::Stress));
-    let request = Request {
-        drive,
-        stress: [stress, side.transpose()?.unwrap_or(stress)],
-        steps: asked.steps,
-        kinematics: if asked.small_strain {
-            Kinematics::Small
-        } else {
-            Kinematics::Finite
-        },
-        duration: asked.duration.read(py, "duration", Dimension::Time)?,
-        data,
-    };
+    let request = asked.request(py, &material, &source.0)?;
     let tested = py.detach(|| test(&material, &request));
     if let Some(raised) = trouble.take() {
         return Err(raised);
     }
-    let tested = tested.map_err(|error| {
-        let help = "another initial stress, compression positive, or other steps";
-        refused(
-            py,
-            igimp_cases::chain(&error).trim_start_matches("error: "),
-            help,
-        )
-    })?;
+    let tested = tested.map_err(|error| unmade(py, &error))?;
     Ok(ElementTest(tested))
+}
+
+/// A test that cannot begin.
+pub(crate) fn unmade(py: Python<'_>, error: &TestError) -> PyErr {
+    let help = "another initial stress, compression positive, or other steps";
+    refused(
+        py,
+        igimp_cases::chain(error).trim_start_matches("error: "),
+        help,
+    )
+}
+
+impl Asked {
+    /// The test of a material whose file has a name.
+    pub(crate) fn request(
+        &self,
+        py: Python<'_>,
+        material: &Material,
+        name: &Path,
+    ) -> PyResult<Request> {
+        let mut drive = drive(py, self, name)?;
+        let data = match &self.data {
+            None => None,
+            Some(measured) => Some(measured.read(py, material, &drive, name)?),
+        };
+        if let (None, Some(data)) = (self.strain, &data) {
+            drive = drive.up_to(data).ok_or_else(|| {
+                let problem = format!("{}: nothing was measured at any strain", data.name);
+                refused(py, &problem, "a test needs a row beyond its start")
+            })?;
+        }
+        let stress = self.stress.read(py, "stress", Dimension::Stress)?;
+        let side = self.side_stress.as_ref();
+        let side = side.map(|own| own.read(py, "side_stress", Dimension::Stress));
+        Ok(Request {
+            drive,
+            stress: [stress, side.transpose()?.unwrap_or(stress)],
+            steps: self.steps,
+            kinematics: if self.small_strain {
+                Kinematics::Small
+            } else {
+                Kinematics::Finite
+            },
+            duration: self.duration.read(py, "duration", Dimension::Time)?,
+            data,
+        })
+    }
+}
+
+impl Measured {
+    fn read(
+        &self,
+        py: Python<'_>,
+        material: &Material,
+        drive: &Drive,
+        name: &Path,
+    ) -> PyResult<Data> {
+        let law = (material.law()).map_err(|error| refused(py, &error.to_string(), ""))?;
+        let variables = law.internal_variables().iter().map(|own| own.name);
+        let variables: Vec<_> = variables.collect();
+        let read = match self {
+            Self::File(path) => read_data(&beside(name, path), drive, &variables),
+            Self::Text(name, text) => parse_data(name, text, drive, &variables),
+        };
+        read.map_err(|error| refused(py, &error.to_string(), error.help()))
+    }
 }
 
 /// The path of a file, or a test of the laboratory.
@@ -158,7 +218,7 @@ fn drive(py: Python<'_>, asked: &Asked, name: &Path) -> PyResult<Drive> {
             &format!("tests: {names}"),
         )
     })?;
-    Ok(Drive::Standard(standard, asked.strain))
+    Ok(Drive::Standard(standard, asked.strain.unwrap_or(1.0)))
 }
 
 /// A file that lies beside another, unless its path is whole.
@@ -167,7 +227,7 @@ fn beside(name: &Path, path: &Path) -> PathBuf {
 }
 
 /// Input that makes no sense, with what helps.
-fn refused(py: Python<'_>, problem: &str, help: &str) -> PyErr {
+pub(crate) fn refused(py: Python<'_>, problem: &str, help: &str) -> PyErr {
     let help = if help.is_empty() {
         String::new()
     } else {

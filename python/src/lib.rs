@@ -7,6 +7,7 @@
 mod arrays;
 mod case;
 mod element;
+mod fit;
 mod law;
 mod march;
 mod raised;
@@ -25,6 +26,8 @@ mod _igimp {
     use super::case::{CaseFile, shipped, template};
     #[pymodule_export]
     use super::element::{ElementTest, element};
+    #[pymodule_export]
+    use super::fit::{Fit, fit};
     #[pymodule_export]
     use super::march::March;
     #[pymodule_export]

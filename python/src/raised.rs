@@ -13,6 +13,8 @@ use serde_json::json;
 
 /// Exit code of the program for input that makes no sense.
 const BAD_INPUT: u8 = 2;
+/// Exit code of the program for what did not converge.
+const NOT_CONVERGED: u8 = 3;
 /// Exit code of the program for files, memory and folders that the system does not give.
 const INPUT_OUTPUT: u8 = 4;
 
@@ -22,7 +24,7 @@ pub(crate) fn code(ending: Ending) -> u8 {
         Ending::Done => 0,
         Ending::Missed => 1,
         Ending::Failed => BAD_INPUT,
-        Ending::NotConverged | Ending::Interrupted | Ending::Running => 3,
+        Ending::NotConverged | Ending::Interrupted | Ending::Running => NOT_CONVERGED,
     }
 }
 
@@ -37,17 +39,22 @@ pub(crate) struct Raised {
 impl Raised {
     /// Input that makes no sense.
     pub(crate) fn bad_input(text: impl Into<String>) -> Self {
-        Self {
-            code: BAD_INPUT,
-            text: text.into(),
-            diagnostics: "[]".into(),
-        }
+        Self::with(BAD_INPUT, text)
+    }
+
+    /// A search that did not converge.
+    pub(crate) fn not_converged(text: impl Into<String>) -> Self {
+        Self::with(NOT_CONVERGED, text)
     }
 
     /// Something that the engine should never say.
     pub(crate) fn internal(text: impl Into<String>) -> Self {
+        Self::with(0, text)
+    }
+
+    fn with(code: u8, text: impl Into<String>) -> Self {
         Self {
-            code: 0,
+            code,
             text: text.into(),
             diagnostics: "[]".into(),
         }

@@ -28,7 +28,7 @@ def test_the_quick_start_runs(capsys):
 def test_blocks_of_the_page_run():
     text = (GUIDE / "python.md").read_text()
     blocks = re.findall(r"<!-- tried by: test_blocks_of_the_page_run -->\n```python\n(.*?)```", text, re.DOTALL)
-    assert len(blocks) == 4
+    assert len(blocks) == 5
     known = {}
     exec("import igimp", known)
     for block in blocks:

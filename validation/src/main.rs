@@ -2,6 +2,7 @@
 //! against outside values, and compares curves and effort with snapshots. `cargo xtask validate`
 //! calls this program.
 
+mod anisotropic_slope;
 mod column;
 mod comparisons;
 mod contact;
@@ -107,6 +108,7 @@ enum Case {
     Layers,
     StrengthProfile,
     SlopeProfile,
+    AnisotropicSlope,
     ReinforcementBar,
     ReinforcementSeam,
     ReinforcementCut,
@@ -178,6 +180,7 @@ impl Case {
             Self::Layers => layers::study(out),
             Self::StrengthProfile => strength_profile::study(level, out),
             Self::SlopeProfile => slope_profile::study(level, out),
+            Self::AnisotropicSlope => anisotropic_slope::study(level, out),
             Self::ReinforcementBar => reinforcement::bar::study(out),
             Self::ReinforcementSeam => reinforcement::seam::study(level, out),
             Self::ReinforcementCut => reinforcement::cut::study(level, out),

@@ -3,15 +3,15 @@
 mod files;
 mod meshes;
 mod numbers;
+pub mod page;
 mod rows;
+mod template;
 mod verdict;
 
 use std::path::{Path, PathBuf};
 
 use igimp_results::ResultsError;
 use igimp_results::summary::{SetupTable, Summary};
-use minijinja::value::Serde;
-use minijinja::{Environment, Value};
 use serde::Serialize;
 
 use super::viewer::{Held, Surroundings, held};
@@ -115,11 +115,7 @@ fn render(
         convergence,
         held,
     };
-    let mut environment = Environment::new();
-    environment.add_template("report.html", TEMPLATE)?;
-    environment
-        .get_template("report.html")?
-        .render(Value::from(Serde(page)))
+    template::filled("report.html", TEMPLATE, page)
 }
 
 /// The values that the template fills in.

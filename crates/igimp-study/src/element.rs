@@ -12,6 +12,7 @@ mod table;
 use std::fmt::Write as _;
 use std::path::Path;
 
+use igimp_figures::CurvePlot;
 use igimp_material::{ConstitutiveModel, MaterialError};
 use igimp_model::{Drainage, Material};
 use igimp_report::ReportError;
@@ -21,7 +22,7 @@ use igimp_text::short;
 use thiserror::Error;
 
 pub use compared::{Compared, Off};
-pub use data::{Data, DataError, Row, read_data};
+pub use data::{Data, DataError, Row, parse_data, read_data};
 pub use igimp_solver::element::{Kinematics, StandardTest};
 pub use measure::Measure;
 pub use path_file::{PathFileError, read_path};
@@ -191,7 +192,36 @@ pub(crate) fn driven(law: &dyn ConstitutiveModel, request: &Request) -> Result<D
     })
 }
 
+impl Drive {
+    /// The same as far as data go, where that is stated by the strain; none where they do not leave the start.
+    pub fn up_to(self, data: &Data) -> Option<Self> {
+        match self {
+            Self::Standard(test, _) => {
+                let strain = data.furthest();
+                (strain != 0.0).then_some(Self::Standard(test, strain))
+            }
+            path @ Self::Path(_) => Some(path),
+        }
+    }
+}
+
 impl Tested {
+    /// What was measured, what is computed there, and the difference: a table named `data`, if there are data.
+    pub fn data_table(&self) -> Option<Table> {
+        Some(self.compared.as_ref()?.table(&self.drive))
+    }
+
+    /// The picture of computed less measured over scales of the columns, in SI; none without data.
+    pub fn residuals(&self, scales: &[f64]) -> Option<CurvePlot> {
+        let compared = self.compared.as_ref()?;
+        Some(pictures::residuals(
+            compared,
+            &self.drive,
+            &self.title,
+            scales,
+        ))
+    }
+
     /// Writes `element.csv`, `data.csv` where there are data, and the pictures into a folder that exists; their names.
     ///
     /// # Errors
@@ -199,8 +229,8 @@ impl Tested {
     pub fn write(&self, folder: &Path) -> Result<Vec<String>, ReportError> {
         self.table.write_csv(folder)?;
         let mut names = vec!["element.csv".to_owned()];
-        if let Some(compared) = &self.compared {
-            compared.table(&self.drive).write_csv(folder)?;
+        if let Some(table) = self.data_table() {
+            table.write_csv(folder)?;
             names.push("data.csv".to_owned());
         }
         let compared = self.compared.as_ref();

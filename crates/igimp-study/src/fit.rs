@@ -1,5 +1,8 @@
 //! Parameters of a law from data of the laboratory, by nonlinear least squares, and how well each is known (theory, eqs. 116 to 119).
 
+mod page;
+#[cfg(test)]
+mod page_tests;
 mod parameter;
 mod problem;
 mod said;
@@ -22,6 +25,9 @@ pub use parameter::{ParameterError, Vary};
 use problem::{Lost, Problem, Solved};
 pub use statistics::Known;
 use statistics::{Statistics, statistics};
+
+/// Correlations above are told.
+const CORRELATED: f64 = 0.9;
 
 /// Where a material comes from: what is asked again at every trial.
 pub trait Source {
@@ -90,12 +96,23 @@ pub struct Found {
 /// Parameters that were found.
 #[derive(Debug)]
 pub struct Fitted {
+    /// The material and its law, such as `sand: Mohr–Coulomb`.
+    pub title: String,
     /// The parameters, in the order of the request.
     pub parameters: Vec<Found>,
-    /// Pairs, by their places, whose correlation is above 0.9 by its size, and the correlation.
-    pub correlated: Vec<(usize, usize, f64)>,
+    /// Correlation of each pair by their places \[-\]; not a number where one of the two has no error.
+    pub correlation: Vec<Vec<f64>>,
     /// Standard deviation of a residual, with one degree of freedom less for each parameter \[-\].
     pub deviation: f64,
+    /// Standard deviations that residuals are divided by, in SI: of each column of the data of each test. Those that were not stated are
+    /// the largest values, of which only the ratios count.
+    pub scales: Vec<Vec<f64>>,
+    /// Values that were measured.
+    pub values: usize,
+    /// Iterations and evaluations of the search.
+    pub effort: [usize; 2],
+    /// Whether a measurement stands where soil begins to yield, so that errors are rough.
+    pub has_kink: bool,
     /// Each test with the values that were found.
     pub tests: Vec<Tested>,
     /// Lines ready to print.
@@ -195,7 +212,7 @@ pub fn fit(source: &dyn Source, request: &FitRequest) -> Result<Fitted, FitError
     };
     let Statistics {
         known,
-        correlated,
+        correlation,
         deviation,
         step,
     } = statistics(&parameters, &at, &residuals, &jacobian);
@@ -216,14 +233,19 @@ pub fn fit(source: &dyn Source, request: &FitRequest) -> Result<Fitted, FitError
         .map(|request| test(&material, request))
         .collect::<Result<Vec<_>, _>>()?;
     let mut fitted = Fitted {
+        title: format!("{}: {}", material.name, material.strength.name()),
         block: said::block(&material.name, &found),
         parameters: found,
-        correlated,
+        correlation,
         deviation,
+        scales: problem.scales().to_vec(),
+        values: problem.values(),
+        effort,
+        has_kink,
         tests,
         text: String::new(),
     };
-    fitted.text = said::said(&material, &fitted, problem.values(), effort, has_kink);
+    fitted.text = said::said(&fitted);
     Ok(fitted)
 }
 
@@ -241,7 +263,19 @@ fn parameters(vary: &[Vary], source: &dyn Source) -> Result<Vec<Parameter>, Para
 }
 
 impl Fitted {
-    /// Writes `fit.csv` and `fit.toml`, and the table and pictures of every test into a folder of its own; their names.
+    /// Pairs, by their places, whose correlation is above 0.9 by its size, and the correlation.
+    pub fn correlated(&self) -> Vec<(usize, usize, f64)> {
+        let mut pairs = Vec::new();
+        for (one, row) in self.correlation.iter().enumerate() {
+            let others = row.iter().enumerate().skip(one + 1);
+            let told = others.filter(|(_, own)| own.abs() > CORRELATED);
+            pairs.extend(told.map(|(other, own)| (one, other, *own)));
+        }
+        pairs
+    }
+
+    /// Writes `fit.csv`, `correlation.csv` and `fit.toml`, the table and pictures of every test with its residuals into a folder of
+    /// its own, and all of it as `report.html`; their names.
     ///
     /// # Errors
     /// [`ReportError`] of what cannot be written.
@@ -261,22 +295,43 @@ impl Fitted {
         for own in &self.parameters {
             rows.push_text(&said::row(own))?;
         }
+        let keys = self.parameters.iter().map(|own| own.key.clone());
+        let header: Vec<String> = ["parameter".to_owned()].into_iter().chain(keys).collect();
+        let mut rows = RowWriter::create(&folder.join("correlation.csv"), &header)?;
+        for (own, correlations) in self.parameters.iter().zip(&self.correlation) {
+            let cells = correlations.iter().map(|own| said::correlation(*own, 9));
+            rows.push_text(
+                &[own.key.clone()]
+                    .into_iter()
+                    .chain(cells)
+                    .collect::<Vec<_>>(),
+            )?;
+        }
         let block = folder.join("fit.toml");
         std::fs::write(&block, &self.block).map_err(|source| ResultsError::File {
             path: block,
             source,
         })?;
-        let mut names = vec!["fit.csv".to_owned(), "fit.toml".to_owned()];
-        for (tested, at) in self.tests.iter().zip(1..) {
+        let mut written = Vec::new();
+        for ((tested, scales), at) in self.tests.iter().zip(&self.scales).zip(1..) {
             let name = format!("test-{at}");
             let own = folder.join(&name);
             std::fs::create_dir_all(&own).map_err(|source| ResultsError::File {
                 path: own.clone(),
                 source,
             })?;
-            tested.write(&own)?;
-            names.push(format!("{name}/"));
+            let mut files = tested.write(&own)?;
+            let scales: Vec<f64> = scales.iter().map(|own| own * self.deviation).collect();
+            let plot = tested.residuals(&scales).filter(|_| self.deviation > 0.0);
+            if let Some(plot) = plot {
+                plot.write(&own.join("residuals"))?;
+                files.extend(["svg", "png"].map(|kind| format!("residuals.{kind}")));
+            }
+            written.push((name, files));
         }
-        Ok(names)
+        page::page(self, &written).write(folder)?;
+        let names = ["report.html", "fit.csv", "correlation.csv", "fit.toml"].map(str::to_owned);
+        let folders = written.iter().map(|(name, _)| format!("{name}/"));
+        Ok(names.into_iter().chain(folders).collect())
     }
 }

@@ -84,8 +84,8 @@ impl Spiral {
         moment
     }
 
-    /// ∫ c r² dθ \[kN m/m\].
-    fn dissipation(&self, section: &Section) -> f64 {
+    /// ∫ c r² dθ \[kN m/m\], with c times what `work` makes of the angle by which the slip line falls \[rad\].
+    fn dissipation(&self, section: &Section, work: impl Fn(f64) -> f64) -> f64 {
         let uniform = section.layers.len() == 1;
         let parts = self.points.windows(2).map(|pair| {
             let middle = [0, 1].map(|axis| 0.5 * (pair[0][axis] + pair[1][axis]));
@@ -96,7 +96,8 @@ impl Spiral {
             };
             let square =
                 (middle[0] - self.centre[0]).powi(2) + (middle[1] - self.centre[1]).powi(2);
-            layer.cohesion * square * self.step
+            let fall = (pair[0][1] - pair[1][1]).atan2(pair[1][0] - pair[0][0]);
+            layer.cohesion * work(fall) * square * self.step
         });
         parts.sum()
     }
@@ -121,27 +122,47 @@ pub(crate) fn upper_bound(section: &Section) -> f64 {
     least(value, [left, left, 0.05], [right, right, PI]).0
 }
 
-/// The factor at which a block from x to x is in equilibrium; infinite where there is none.
-fn factor(section: &Section, tan: f64, [from, to]: [f64; 2], angle: f64) -> f64 {
+/// The least factor over all circles through undrained soil whose slip lines dissipate c times what `work` makes of the angle by
+/// which they fall \[rad\].
+pub(super) fn least_circle(section: &Section, work: &dyn Fn(f64) -> f64) -> f64 {
+    let [left, right] = section.sides();
+    let value = |[from, to, angle]: [f64; 3]| {
+        ends(section, [from, to]).map_or(f64::INFINITY, |ends| circular(section, ends, angle, work))
+    };
+    least(value, [left, left, 0.05], [right, right, PI]).0
+}
+
+/// Where a slip line meets the surface; none where it is hardly a line, or does not fall.
+fn ends(section: &Section, [from, to]: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     let ends = [from, to].map(|x| [x, section.level(x)]);
-    if to - from < 0.02 * section.height || ends[0][1] - ends[1][1] < 0.02 * section.height {
-        return f64::INFINITY;
+    let small = 0.02 * section.height;
+    (to - from >= small && ends[0][1] - ends[1][1] >= small).then_some(ends)
+}
+
+/// The factor of one circle, which does not change with it: what resists is in proportion to 1/F. Infinite where it is not driven.
+fn circular(section: &Section, ends: [[f64; 2]; 2], angle: f64, work: impl Fn(f64) -> f64) -> f64 {
+    let circle = Spiral::new(ends, angle, 0.0);
+    let drive = -section.unit_weight * circle.area_moment(section);
+    if drive <= 0.0 || !circle.is_within(section) {
+        f64::INFINITY
+    } else {
+        circle.dissipation(section, work) / drive
     }
+}
+
+/// The factor at which a block from x to x is in equilibrium; infinite where there is none.
+fn factor(section: &Section, tan: f64, from_to: [f64; 2], angle: f64) -> f64 {
+    let Some(ends) = ends(section, from_to) else {
+        return f64::INFINITY;
+    };
+    let same = |_fall: f64| 1.0;
     let surplus = |f: f64| {
         let spiral = Spiral::new(ends, angle, tan / f);
-        spiral.dissipation(section) / f + section.unit_weight * spiral.area_moment(section)
+        spiral.dissipation(section, same) / f + section.unit_weight * spiral.area_moment(section)
     };
     let [mut low, mut high] = FACTORS;
     if tan == 0.0 {
-        // The circle does not change with the factor, and what resists is in proportion to 1/F.
-        let spiral = Spiral::new(ends, angle, 0.0);
-        let drive = -section.unit_weight * spiral.area_moment(section);
-        let stands = drive <= 0.0 || !spiral.is_within(section);
-        return if stands {
-            f64::INFINITY
-        } else {
-            spiral.dissipation(section) / drive
-        };
+        return circular(section, ends, angle, same);
     }
     if surplus(high) > 0.0 {
         return f64::INFINITY;

@@ -24,7 +24,7 @@ pub(super) struct Group {
 
 /// A picture in the page.
 #[derive(Serialize)]
-struct Picture {
+pub(super) struct Picture {
     file: String,
     caption: String,
     /// A data URI; empty if the picture is missing.
@@ -34,9 +34,17 @@ struct Picture {
 
 /// A relative link.
 #[derive(Serialize)]
-struct Link {
+pub(super) struct Link {
     name: String,
     href: String,
+}
+
+/// A link to a file of the folder.
+pub(super) fn link(name: &str, file: &str) -> Link {
+    Link {
+        name: name.to_owned(),
+        href: href(file),
+    }
 }
 
 /// The headings, with the beginnings of the names of the pictures below them.
@@ -85,7 +93,8 @@ pub(super) fn pictures(folder: &Path, summary: &Summary) -> Vec<Group> {
         .collect()
 }
 
-fn picture(folder: &Path, note: &FigureNote) -> Picture {
+/// A picture of a folder in a page.
+pub(super) fn picture(folder: &Path, note: &FigureNote) -> Picture {
     let inside = Path::new(&note.file)
         .components()
         .all(|part| matches!(part, Component::Normal(_)));
@@ -96,10 +105,7 @@ fn picture(folder: &Path, note: &FigureNote) -> Picture {
     let (svg, png) = (read("svg"), read("png"));
     let available = [("SVG", "svg", svg.is_some()), ("PNG", "png", png.is_some())];
     let links = available.into_iter().filter(|link| link.2);
-    let links = links.map(|(name, extension, _)| Link {
-        name: name.to_owned(),
-        href: href(&format!("{}.{extension}", note.file)),
-    });
+    let links = links.map(|(name, extension, _)| link(name, &format!("{}.{extension}", note.file)));
     let (svg, png) = (
         svg.map(|bytes| ("svg+xml", bytes)),
         png.map(|bytes| ("png", bytes)),

@@ -109,10 +109,19 @@ pub fn read_data(path: &Path, drive: &Drive, variables: &[&str]) -> Result<Data,
         name: name.clone(),
         source,
     })?;
-    parsed(&name, &text, drive, variables)
+    parse_data(&name, &text, drive, variables)
 }
 
-fn parsed(name: &str, text: &str, drive: &Drive, variables: &[&str]) -> Result<Data, DataError> {
+/// Parses the data of a test from a text of a name, as [`read_data`] does.
+///
+/// # Errors
+/// [`DataError::At`], with name, line and column.
+pub fn parse_data(
+    name: &str,
+    text: &str,
+    drive: &Drive,
+    variables: &[&str],
+) -> Result<Data, DataError> {
     let mut data = Data {
         name: name.to_owned(),
         columns: Vec::new(),
@@ -344,7 +353,7 @@ mod tests {
     const TRIAXIAL: Drive = Drive::Standard(StandardTest::TriaxialDrained, 0.2);
 
     fn refused(text: &str) -> String {
-        let error = parsed("a.csv", text, &TRIAXIAL, &[]).unwrap_err();
+        let error = parse_data("a.csv", text, &TRIAXIAL, &[]).unwrap_err();
         error.to_string()
     }
 
@@ -358,14 +367,14 @@ mod tests {
         );
         let text = "# specimen 3\nq (MPa),\"strain_yy, compression positive [-]\",\
                     \"p effective, compression positive [kPa]\",regime\n0.1,0.02,,0\n\n0.2,0.04,150,2\n";
-        let data = parsed("a.csv", text, &TRIAXIAL, &[]).unwrap();
+        let data = parse_data("a.csv", text, &TRIAXIAL, &[]).unwrap();
         assert_eq!(data.columns, [Measure::Q, Measure::P]);
         assert_eq!((data.rows[0].line, data.rows[1].line), (3, 5));
         assert!(data.rows[0].values[1].is_nan() && (data.rows[0].at - 0.02).abs() < 1e-15);
         assert_eq!(data.rows[1].values, [200e3, 150e3]);
         let variables = ["softening strain"];
         let text = "strain_yy [%],q [kPa],softening strain [-]\n1,2,x\n";
-        assert!(parsed("a.csv", text, &TRIAXIAL, &variables).is_ok());
+        assert!(parse_data("a.csv", text, &TRIAXIAL, &variables).is_ok());
     }
 
     /// GOAL: what is no data is refused at its line and column.
@@ -412,7 +421,7 @@ mod tests {
             assert_eq!(refused(text), words);
         }
         let far = "strain_yy [%],q [kPa]\n25,2\n";
-        let far = parsed("a.csv", far, &TRIAXIAL, &[]).unwrap();
+        let far = parse_data("a.csv", far, &TRIAXIAL, &[]).unwrap();
         assert_eq!(
             far.ways(&TRIAXIAL).unwrap_err().to_string(),
             "a.csv, line 2, column `strain_yy [%]`: the test goes from 0 to 20 %, and this is 25 %"

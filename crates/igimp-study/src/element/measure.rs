@@ -124,7 +124,7 @@ impl Measure {
     }
 
     /// A value as it is printed: in percent or kPa.
-    pub(super) fn printed(self, value: f64) -> f64 {
+    pub(crate) fn printed(self, value: f64) -> f64 {
         if self.is_stress() {
             value / 1e3
         } else {
@@ -133,7 +133,7 @@ impl Measure {
     }
 
     /// The unit of what is printed.
-    pub(super) fn unit(self) -> &'static str {
+    pub(crate) fn unit(self) -> &'static str {
         if self.is_stress() { "kPa" } else { "%" }
     }
 

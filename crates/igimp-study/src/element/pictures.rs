@@ -1,6 +1,6 @@
 //! The pictures of a test, with what was measured over what is computed.
 
-use igimp_figures::{CurvePlot, Series};
+use igimp_figures::{CurvePlot, ReferenceLine, ReferenceValue, Series};
 use igimp_solver::element::ElementState;
 
 use super::Drive;
@@ -72,6 +72,47 @@ pub(super) fn plots(
         plots.push((name, drawn.measured(*own)));
     }
     plots
+}
+
+/// Computed less measured over the scale of each column, by the place on the way.
+pub(super) fn residuals(
+    compared: &Compared,
+    drive: &Drive,
+    title: &str,
+    scales: &[f64],
+) -> CurvePlot {
+    let at = |at: f64| driven(drive).map_or(at, |strain| strain.printed(at));
+    let columns = compared.data.columns.iter().enumerate().zip(scales);
+    let series = columns.map(|((column, own), scale)| {
+        let rows = compared.data.rows.iter().zip(&compared.computed);
+        let points = rows.map(|(row, computed)| {
+            let difference = computed[column] - row.values[column];
+            [at(row.at), difference / scale]
+        });
+        let known = points.filter(|point| point[1].is_finite());
+        let is_alone = compared.data.columns.len() == 1;
+        let name = if is_alone { "" } else { own.name() };
+        Series::markers(name, known.collect())
+    });
+    let series: Vec<Series> = series.collect();
+    let sizes = series.iter().flat_map(|own| &own.points);
+    let most = sizes.fold(0.0_f64, |most, point| most.max(point[1].abs()));
+    let end = (1.1 * most).max(3.0);
+    let line = |value: f64| ReferenceLine {
+        label: String::new(),
+        at: ReferenceValue::Y(value),
+    };
+    CurvePlot {
+        title: title.to_owned(),
+        x_label: driven(drive)
+            .map_or("legs of the path [-]", Measure::header)
+            .to_owned(),
+        y_label: "residual over its standard deviation [-]".to_owned(),
+        lines: [-2.0, 0.0, 2.0].map(line).to_vec(),
+        y_range: Some((-end, end)),
+        series,
+        ..CurvePlot::default()
+    }
 }
 
 impl Drawn<'_> {

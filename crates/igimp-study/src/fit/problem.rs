@@ -77,6 +77,11 @@ impl<'a> Problem<'a> {
         }
     }
 
+    /// What a residual is divided by: of each column of each test, in SI.
+    pub(super) fn scales(&self) -> &[Vec<f64>] {
+        &self.scales
+    }
+
     /// How many values were measured.
     pub(super) fn values(&self) -> usize {
         self.values

@@ -2,39 +2,27 @@
 
 use std::fmt::Write as _;
 
-use igimp_model::Material;
 use igimp_text::short;
 
 use super::parameter::written;
 use super::{Fitted, Found, Known};
 
-/// The lines of a fit: iterations and evaluations are its effort.
-pub(super) fn said(
-    material: &Material,
-    fitted: &Fitted,
-    values: usize,
-    [iterations, evaluations]: [usize; 2],
-    has_kink: bool,
-) -> String {
+/// The lines of a fit.
+pub(super) fn said(fitted: &Fitted) -> String {
+    let [iterations, evaluations] = fitted.effort;
     let mut text = format!(
-        "{}: {}, {} from {}, {values} values\n  converged after {iterations} iterations, {evaluations} evaluations\n",
-        material.name,
-        material.strength.name(),
-        counted(fitted.parameters.len(), "parameter"),
-        counted(fitted.tests.len(), "test"),
+        "{}, {}\n  converged after {iterations} iterations, {evaluations} evaluations\n",
+        fitted.title,
+        from(fitted),
     );
-    if has_kink {
-        text.push_str("  the least sum of squares is at a kink, as where soil begins to yield at a measurement: errors are rough\n");
+    if fitted.has_kink {
+        let _ = writeln!(text, "  {KINK}");
     }
     for own in &fitted.parameters {
         let _ = writeln!(text, "  {}", line(own, &fitted.parameters));
     }
-    for &(one, other, correlation) in &fitted.correlated {
-        let _ = writeln!(
-            text,
-            "  {} and {} are not told apart by these data: correlation {correlation:.4}",
-            fitted.parameters[one].key, fitted.parameters[other].key,
-        );
+    for pair in pairs(fitted) {
+        let _ = writeln!(text, "  {pair}");
     }
     for (tested, at) in fitted.tests.iter().zip(1..) {
         let what = tested.text.lines().next().unwrap_or_default();
@@ -47,6 +35,42 @@ pub(super) fn said(
     text
 }
 
+/// What is said where the best values have a measurement at the beginning of yield.
+pub(super) const KINK: &str = "the least sum of squares is at a kink, as where soil begins to yield at a measurement: errors are rough";
+
+/// How many parameters come from how many data.
+pub(super) fn from(fitted: &Fitted) -> String {
+    format!(
+        "{} from {}, {} values",
+        counted(fitted.parameters.len(), "parameter"),
+        counted(fitted.tests.len(), "test"),
+        fitted.values,
+    )
+}
+
+/// Pairs that are not told apart.
+pub(super) fn pairs(fitted: &Fitted) -> Vec<String> {
+    let key = |place: usize| &fitted.parameters[place].key;
+    (fitted.correlated().into_iter())
+        .map(|(one, other, correlation)| {
+            format!(
+                "{} and {} are not told apart by these data: correlation {correlation:.4}",
+                key(one),
+                key(other),
+            )
+        })
+        .collect()
+}
+
+/// A correlation with so many places; empty where there is none.
+pub(super) fn correlation(own: f64, places: usize) -> String {
+    if own.is_finite() {
+        format!("{own:.places$}")
+    } else {
+        String::new()
+    }
+}
+
 fn lines(text: &str) -> Vec<String> {
     text.lines().map(str::to_owned).collect()
 }
@@ -57,7 +81,7 @@ fn counted(count: usize, what: &str) -> String {
 }
 
 /// A line for a parameter.
-fn line(own: &Found, all: &[Found]) -> String {
+pub(super) fn line(own: &Found, all: &[Found]) -> String {
     let Found {
         key, unit, value, ..
     } = own;
@@ -92,7 +116,7 @@ fn line(own: &Found, all: &[Found]) -> String {
 }
 
 /// A value with the digits that its error leaves, and one more.
-fn digits(value: f64, error: f64) -> String {
+pub(super) fn digits(value: f64, error: f64) -> String {
     let size = value.abs().max(f64::MIN_POSITIVE).log10().floor();
     let places = (1.0
         - error

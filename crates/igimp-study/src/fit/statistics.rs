@@ -14,9 +14,6 @@ const UNTOUCHED: f64 = 1e-7;
 /// A parameter with more than this share in a combination belongs to it \[-\].
 const SHARE: f64 = 0.01;
 
-/// Correlations above are told.
-const CORRELATED: f64 = 0.9;
-
 /// A place in the search as near to a bound is at it.
 const AT_BOUND: f64 = 1e-9;
 
@@ -45,8 +42,8 @@ pub enum Known {
 /// What is known at the end of a search.
 pub(super) struct Statistics {
     pub(super) known: Vec<Known>,
-    /// Pairs by their places, and their correlation.
-    pub(super) correlated: Vec<(usize, usize, f64)>,
+    /// Correlation of each pair by their places; not a number where one of the two has no error.
+    pub(super) correlation: Vec<Vec<f64>>,
     /// Standard deviation of a residual \[-\].
     pub(super) deviation: f64,
     /// The correction that is left, in the search.
@@ -65,7 +62,7 @@ pub(super) fn statistics(
     let (known, free) = held(parameters, at, &norms, rows);
     let mut statistics = Statistics {
         known,
-        correlated: Vec::new(),
+        correlation: vec![vec![f64::NAN; at.len()]; at.len()],
         deviation: norm(residuals) / (rows as f64).sqrt(),
         step: vec![0.0; at.len()],
     };
@@ -121,7 +118,7 @@ pub(super) fn statistics(
             interval: [value - factor * share, value + factor * share],
         };
     }
-    statistics.correlated = correlated(&statistics.known, &free, &covariance);
+    correlate(&mut statistics, &free, &covariance);
     statistics
 }
 
@@ -144,24 +141,20 @@ fn held(
     (known, free)
 }
 
-/// Pairs of parameters that are known, and not apart.
-fn correlated(
-    known: &[Known],
-    free: &[usize],
-    covariance: &DMatrix<f64>,
-) -> Vec<(usize, usize, f64)> {
-    let is_known = |k: usize| matches!(known[free[k]], Known::Well { .. });
-    let mut pairs = Vec::new();
-    for i in 0..free.len() {
-        for j in i + 1..free.len() {
+/// Correlations of the parameters that are known.
+fn correlate(statistics: &mut Statistics, free: &[usize], covariance: &DMatrix<f64>) {
+    let is_known = |k: &usize| matches!(statistics.known[free[*k]], Known::Well { .. });
+    let known: Vec<usize> = (0..free.len()).filter(is_known).collect();
+    for &i in &known {
+        for &j in &known {
             let size = (covariance[(i, i)] * covariance[(j, j)]).sqrt();
-            let own = covariance[(i, j)] / size;
-            if is_known(i) && is_known(j) && own.abs() > CORRELATED {
-                pairs.push((free[i], free[j], own));
-            }
+            statistics.correlation[free[i]][free[j]] = if i == j {
+                1.0
+            } else {
+                covariance[(i, j)] / size
+            };
         }
     }
-    pairs
 }
 
 /// Whether a place is at its upper or its lower bound, if at one.

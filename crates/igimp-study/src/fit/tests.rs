@@ -26,10 +26,10 @@ impl Random {
 
 const ELASTIC: &str = "model = \"elastic\"\nyoung = \"15 MPa\"\npoisson = 0.3\n";
 const ROUND: &str = "model = \"von-mises\"\nyoung = \"15 MPa\"\npoisson = 0.3\ncu = \"20 kPa\"\n";
-const SAND: &str = "model = \"mohr-coulomb\"\nyoung = \"20 MPa\"\npoisson = 0.3\ncohesion = \"2 kPa\"\nfriction = \"30 deg\"\n";
+pub(super) const SAND: &str = "model = \"mohr-coulomb\"\nyoung = \"20 MPa\"\npoisson = 0.3\ncohesion = \"2 kPa\"\nfriction = \"30 deg\"\n";
 const CLAY: &str = "model = \"modified-cam-clay\"\nlambda = 0.13\nkappa = 0.03\ncritical_ratio = 0.8\npoisson = 0.2\n";
 
-fn soil(keys: &str) -> FileSource {
+pub(super) fn soil(keys: &str) -> FileSource {
     let text = format!("igimp = 1\n[materials.soil]\nunit_weight = \"18 kN/m3\"\n{keys}");
     FileSource {
         file: MaterialsFile::parse("soil.toml", &text, &[]).unwrap(),
@@ -64,7 +64,7 @@ fn standard(of: StandardTest, stress: f64, data: Data) -> Request {
     }
 }
 
-fn request(vary: &[&str], tests: Vec<Request>) -> FitRequest {
+pub(super) fn request(vary: &[&str], tests: Vec<Request>) -> FitRequest {
     FitRequest {
         vary: vary.iter().map(|text| text.parse().unwrap()).collect(),
         tests,
@@ -94,15 +94,15 @@ fn triaxial(young: f64, strength: f64, strains: &[f64]) -> Data {
     data(&[Measure::Q], &rows)
 }
 
-const STRAINS: [f64; 7] = [0.001, 0.002, 0.004, 0.01, 0.02, 0.04, 0.06];
+pub(super) const STRAINS: [f64; 7] = [0.001, 0.002, 0.004, 0.01, 0.02, 0.04, 0.06];
 
 /// The strength of frictional soil in triaxial compression, c = 5 kPa and φ = 34°.
-fn frictional(side: f64) -> f64 {
+pub(super) fn frictional(side: f64) -> f64 {
     let passive = (1.0 + 34_f64.to_radians().sin()) / (1.0 - 34_f64.to_radians().sin());
     side * (passive - 1.0) + 2.0 * 5e3 * passive.sqrt()
 }
 
-fn sheared(side: f64) -> Request {
+pub(super) fn sheared(side: f64) -> Request {
     let data = triaxial(30e6, frictional(side), &STRAINS);
     standard(StandardTest::TriaxialDrained, side, data)
 }
@@ -211,8 +211,8 @@ fn scattered_data_hold_what_they_were_made_of() {
         }
     }
     let fitted = fit(&soil(SAND), &near).unwrap();
-    assert_eq!(fitted.correlated.len(), 1);
-    let (one, other, correlation) = fitted.correlated[0];
+    assert_eq!(fitted.correlated().len(), 1);
+    let (one, other, correlation) = fitted.correlated()[0];
     assert!((one, other) == (0, 1) && correlation < -0.99);
     // A stated scatter of one kPa leaves a standard deviation of one.
     let stated = FitRequest {

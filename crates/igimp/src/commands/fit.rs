@@ -63,17 +63,14 @@ fn tests(arguments: &FitArguments, material: &Material) -> Result<Vec<Request>, 
     };
     let mut requests = Vec::new();
     for (place, path) in arguments.data.iter().enumerate() {
-        let mut drive = drive(&tests[place])?;
+        let drive = drive(&tests[place])?;
         let data = data(material, &drive, path)?;
-        if let Drive::Standard(_, strain) = &mut drive {
-            *strain = data.furthest();
-            if *strain == 0.0 {
-                return Err(ProgramError::usage(
-                    format!("{}: nothing was measured at any strain", data.name),
-                    "a test needs a row beyond its start",
-                ));
-            }
-        }
+        let drive = drive.up_to(&data).ok_or_else(|| {
+            ProgramError::usage(
+                format!("{}: nothing was measured at any strain", data.name),
+                "a test needs a row beyond its start",
+            )
+        })?;
         requests.push(Request {
             drive,
             stress: [axial[place], side[place]],

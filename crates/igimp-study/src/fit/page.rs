@@ -1,0 +1,232 @@
+//! The report of a fit: parameters, correlations, differences, and every test with its data.
+
+use igimp_report::report::page::{Column, Page, PageTable, Section};
+use igimp_results::summary::FigureNote;
+use igimp_text::short;
+
+use super::said;
+use super::{Fitted, Found, Known};
+use crate::element::{Compared, Tested};
+
+/// Stands for what has no number.
+const NONE: &str = "–";
+
+/// The page; `written` has the folder of every test, and its files.
+pub(super) fn page(fitted: &Fitted, written: &[(String, Vec<String>)]) -> Page {
+    let [iterations, evaluations] = fitted.effort;
+    let mut sentences = vec![format!(
+        "{}. The search converged after {iterations} iterations and {evaluations} evaluations.",
+        said::from(fitted)
+    )];
+    let reservations = reservations(fitted);
+    let is_doubtful = !reservations.is_empty();
+    sentences.extend(reservations);
+    let mut sections = vec![parameters(fitted)];
+    sections.extend((fitted.parameters.len() > 1).then(|| correlations(fitted)));
+    sections.push(differences(fitted));
+    let tests = fitted.tests.iter().zip(written).zip(1..);
+    sections.extend(tests.map(|((tested, files), at)| test(tested, at, files)));
+    sections.push(Section {
+        title: "For the case file".to_owned(),
+        sentences: vec![
+            "These lines take the place of those of the material; they stand in fit.toml too."
+                .to_owned(),
+        ],
+        text: fitted.block.clone(),
+        ..Section::default()
+    });
+    Page {
+        title: format!("{}, parameters from data", fitted.title),
+        is_doubtful,
+        word: if is_doubtful {
+            "Found, with reservations"
+        } else {
+            "Found"
+        }
+        .to_owned(),
+        sentences,
+        sections,
+    }
+}
+
+/// What a reader has to know before a value is used.
+fn reservations(fitted: &Fitted) -> Vec<String> {
+    let sentence = |text: &str| {
+        let mut letters = text.chars();
+        let first = letters.next().map(|own| own.to_uppercase().to_string());
+        format!("{}{}.", first.unwrap_or_default(), letters.as_str())
+    };
+    let unknown = (fitted.parameters.iter())
+        .filter(|own| !matches!(own.known, Known::Well { .. }))
+        .map(|own| format!("{}.", said::line(own, &fitted.parameters)));
+    let kink = fitted.has_kink.then(|| sentence(said::KINK));
+    let pairs = said::pairs(fitted).into_iter().map(|own| format!("{own}."));
+    kink.into_iter().chain(unknown).chain(pairs).collect()
+}
+
+fn parameters(fitted: &Fitted) -> Section {
+    let names = ["Start", "Value", "Standard error", "95 % from", "to"];
+    let columns = ["Parameter", "Unit"].into_iter().map(Column::words);
+    let columns = columns.chain(names.into_iter().map(Column::numbers));
+    Section {
+        title: "Parameters".to_owned(),
+        sentences: vec![
+            "Errors are those of linear theory about the least sum of squares. They count the scatter of the data, and not what the law cannot follow."
+                .to_owned(),
+        ],
+        tables: vec![PageTable {
+            name: "Parameters".to_owned(),
+            columns: columns.chain([Column::words("Known by")]).collect(),
+            rows: fitted.parameters.iter().map(row).collect(),
+        }],
+        files: vec!["fit.csv".to_owned()],
+        ..Section::default()
+    }
+}
+
+/// The row of a parameter.
+fn row(own: &Found) -> Vec<String> {
+    let none = || NONE.to_owned();
+    let (numbers, by) = match &own.known {
+        Known::Well {
+            error,
+            interval: [low, high],
+        } => {
+            let digits = |value: f64| said::digits(value, *error);
+            let ends = [digits(*low), digits(*high)];
+            let [low, high] = ends;
+            ([digits(own.value), short(*error), low, high], "these data")
+        }
+        Known::AtBound { upper } => {
+            let by = if *upper {
+                "its upper bound"
+            } else {
+                "its lower bound"
+            };
+            ([short(own.value), none(), none(), none()], by)
+        }
+        Known::NotDetermined { .. } => ([(); 4].map(|()| none()), "nothing: not determined"),
+    };
+    let head = [own.key.clone(), own.unit.clone(), short(own.start)];
+    (head.into_iter().chain(numbers))
+        .chain([by.to_owned()])
+        .collect()
+}
+
+fn correlations(fitted: &Fitted) -> Section {
+    let keys = || fitted.parameters.iter().map(|own| own.key.clone());
+    let cell = |own: &f64| match said::correlation(*own, 3) {
+        none if none.is_empty() => NONE.to_owned(),
+        some => some,
+    };
+    let rows = keys().zip(&fitted.correlation).map(|(key, row)| {
+        let cells = row.iter().map(cell);
+        [key].into_iter().chain(cells).collect()
+    });
+    Section {
+        title: "Correlations".to_owned(),
+        sentences: vec![
+            "Near 1 and −1 two parameters are known less well than both together; other data tell them apart."
+                .to_owned(),
+        ],
+        tables: vec![PageTable {
+            name: "Correlations".to_owned(),
+            columns: [Column::words("")]
+                .into_iter()
+                .chain(keys().map(Column::numbers))
+                .collect(),
+            rows: rows.collect(),
+        }],
+        files: vec!["correlation.csv".to_owned()],
+        ..Section::default()
+    }
+}
+
+/// How far off the tests are, by quantity.
+fn differences(fitted: &Fitted) -> Section {
+    let words = ["Test", "Quantity", "Data"].map(Column::words);
+    let numbers = [
+        "Values",
+        "Standard deviation",
+        "Root mean square difference",
+        "Largest difference",
+        "Line",
+    ];
+    let tests = fitted.tests.iter().zip(&fitted.scales).zip(1..);
+    let rows = tests.flat_map(|((tested, scales), at)| {
+        let compared = tested.compared.iter();
+        compared.flat_map(move |own| {
+            let columns = scales.iter().enumerate();
+            columns.map(move |(k, scale)| off((own, at), k, scale * fitted.deviation))
+        })
+    });
+    Section {
+        title: "Differences".to_owned(),
+        sentences: vec![
+            "Computed less measured. The standard deviation is that of scatter, as all residuals together have it."
+                .to_owned(),
+        ],
+        tables: vec![PageTable {
+            name: "Differences".to_owned(),
+            columns: words
+                .into_iter()
+                .chain(numbers.map(Column::numbers))
+                .collect(),
+            rows: rows.collect(),
+        }],
+        ..Section::default()
+    }
+}
+
+/// The row of a quantity of a test, with its standard deviation in SI.
+fn off((compared, at): (&Compared, usize), column: usize, deviation: f64) -> Vec<String> {
+    let own = compared.data.columns[column];
+    let printed = |value: f64| format!("{} {}", short(own.printed(value)), own.unit());
+    let numbers = match compared.off(column) {
+        Some(off) => [
+            off.values.to_string(),
+            printed(deviation),
+            printed(off.mean),
+            printed(off.largest.0),
+            off.largest.1.to_string(),
+        ],
+        None => [(); 5].map(|()| NONE.to_owned()),
+    };
+    let data = &compared.data.name;
+    let words = [at.to_string(), own.name().to_owned(), data.clone()];
+    words.into_iter().chain(numbers).collect()
+}
+
+/// A test with its pictures.
+fn test(tested: &Tested, at: usize, (folder, files): &(String, Vec<String>)) -> Section {
+    let first = tested.text.lines().next().unwrap_or_default();
+    let what = first.rsplit(", ").next().unwrap_or_default();
+    let of_kind = |kind: &'static str| {
+        let own = files.iter().filter_map(move |file| file.strip_suffix(kind));
+        own.map(|stem| format!("{folder}/{stem}"))
+    };
+    let pictures = of_kind(".svg").map(|file| FigureNote {
+        caption: caption(file.rsplit('/').next().unwrap_or_default()),
+        file,
+    });
+    Section {
+        title: format!("Test {at}: {what}"),
+        text: tested.text.clone(),
+        pictures: pictures.collect(),
+        files: of_kind(".csv").map(|file| format!("{file}.csv")).collect(),
+        ..Section::default()
+    }
+}
+
+/// What a picture of a test shows.
+fn caption(name: &str) -> String {
+    match name {
+        "stress-strain" => "Stress over strain: the law with the parameters found, and the data",
+        "stress-path" => "The path of stress",
+        "volume" => "Volumetric strain over strain",
+        "pore-pressure" => "Pore pressure over strain",
+        "residuals" => "Residuals over their standard deviation; of scatter alone 95 % lie within the lines at 2",
+        other => return other.replace('-', " "),
+    }
+    .to_owned()
+}
