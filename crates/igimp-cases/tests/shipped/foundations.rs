@@ -2,9 +2,9 @@
 
 use crate::resuming::{assert_done, assert_equal, everything, folder, run_into};
 use crate::{between, file, ran};
+use igimp_cases::run::Start;
 use igimp_input::CaseFile;
 use igimp_input::shipped::find;
-use igimp_model::Strength;
 use igimp_results::summary::StageOutcome::Stopped;
 
 #[test]

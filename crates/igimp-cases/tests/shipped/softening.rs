@@ -2,6 +2,7 @@
 
 use crate::resuming::{assert_equal, everything, folder, run_into};
 use crate::{between, file, ran, ran_case};
+use igimp_cases::run::Start;
 use igimp_results::summary::StageOutcome::Completed;
 
 /// The shipped slope on coarse cells, whose cohesion, friction and dilation soften.

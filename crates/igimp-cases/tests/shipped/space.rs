@@ -1,6 +1,6 @@
 //! Cases in space.
 
-use crate::{between, ran, ran_in_space};
+use crate::{between, ran_in_space};
 use igimp_results::summary::StageOutcome::{Completed, Stopped};
 
 #[test]

@@ -2,6 +2,7 @@
 
 use crate::resuming::{assert_done, assert_equal, everything, folder, run_into};
 use crate::{between, file, ran};
+use igimp_cases::run::Start;
 use igimp_results::summary::StageOutcome::Completed;
 
 #[test]
