@@ -504,14 +504,18 @@ fn a_rigid_body_with_mass_moves_freely() {
 }
 
 /// GOAL: a motion for which the grid finds none that comes closest goes on, by means around its nodes, and says so.
-/// ORACLE: a bar that flies freely keeps its velocity, whatever the weights of a mean are. Of its tip, ten thousand times as dense and a
-/// tenth of a cell beyond the full ones, a hundredth is lumped to the node behind with a share below zero, which leaves no
-/// closest motion; with a light tip there is one.
+/// ORACLE: means lie between the velocities that they are of. Of the tip of a bar, ten thousand times as dense and a tenth of a cell
+/// beyond the full ones, a share of 0.045 is lumped to the node behind with a weight of −0.05, and the mass is not positive definite;
+/// with a light tip there is a closest motion.
 #[test]
 fn a_motion_without_a_closest_one_goes_on_by_means() {
     let mut method = Method::igimp();
     method.small_cuts.below = 0.2;
     method.small_cuts.remedy = Remedy::Extrapolate;
+    let time = TimeStep {
+        lumped: 0.045,
+        ..over(1e-4, TimeScheme::GeneralisedAlpha)
+    };
     for (density, is_by_means) in [(1.0, false), (1e4, true)] {
         let grid = Grid::new([Axis::uniform(0.0, 1.0, 8).unwrap()]);
         let part = |x: f64, half: f64, density: f64| ParticleSeed {
@@ -530,21 +534,15 @@ fn a_motion_without_a_closest_one_goes_on_by_means() {
         let loads = StepLoads::gravity([0.0]);
         let conditions = StepConditions::new(grid, constraints, loads, vec![elastic()]).unwrap();
         let particles = Particles::new(&seeds).unwrap();
-        let velocities = vec![[0.3]; particles.len()];
+        let velocities: Vec<[f64; 1]> = (particles.x.iter())
+            .map(|x| [0.3 + 0.02 * (3.0 * x[0]).sin()])
+            .collect();
         let mut body = Body::new(particles.with_velocities(velocities).unwrap());
-        let time = TimeStep {
-            lumped: 0.01,
-            ..over(0.01, TimeScheme::GeneralisedAlpha)
-        };
-        let reports = run(&mut body, &method, &conditions, time, 3);
-        assert!(
-            reports
-                .iter()
-                .all(|report| report.moves_by_means == is_by_means),
-            "{density}"
-        );
-        for velocity in &body.particles.velocity {
-            assert!((velocity[0] - 0.3).abs() < 1e-9, "{velocity:?}");
-        }
+        let report = &run(&mut body, &method, &conditions, time, 1)[0];
+        assert_eq!(report.moves_by_means, is_by_means, "density {density}");
+        // The tip is carried by weights of −0.05 and 1.05.
+        let mut velocities = body.particles.velocity.iter();
+        let lie_between = velocities.all(|own| (0.278..=0.322).contains(&own[0]));
+        assert!(lie_between || !is_by_means, "{velocities:?}");
     }
 }
