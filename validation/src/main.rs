@@ -200,7 +200,7 @@ impl Case {
             Self::ContactAnchor => contact::anchor::study(level, out),
             Self::ContactWall => contact::wall::study(level, out),
             Self::ContactPlaces => contact::places::study(level, out),
-            Self::ContactBar => contact::bar::study(level, out),
+            Self::ContactBar => contact::buried::bar::study(level, out),
             Self::SpaceColumn => space::column::study(out),
             Self::SpaceSlice => space::slice::study(out),
             Self::SpaceSafety => space::safety::study(level, out),

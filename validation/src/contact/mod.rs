@@ -1,7 +1,6 @@
 //! Contact with rigid bodies, below the case files: problems with exact answers and with bounds.
 
 pub(crate) mod anchor;
-pub(crate) mod bar;
 pub(crate) mod buried;
 pub(crate) mod column;
 pub(crate) mod embedded;
