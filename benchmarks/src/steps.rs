@@ -261,6 +261,18 @@ mod tests {
     }
 
     #[test]
+    fn a_step_in_motion_has_inertia() {
+        let setting = Setting::mohr_coulomb_slope("Mohr-Coulomb", 1.0);
+        let prepared = setting.prepare().unwrap().in_motion(0.05).unwrap();
+        let mut body = prepared.body.clone();
+        let report = prepared
+            .take(&mut body, &mut PreparedStep::workspace())
+            .unwrap();
+        assert!(report.iterations >= 2, "{report:?}");
+        assert!(report.energy.unwrap().kinetic > 0.0, "{report:?}");
+    }
+
+    #[test]
     fn the_footing_starts_where_its_grid_has_followed_it() {
         let setting = Setting {
             step: Step::Of(2, 75),
