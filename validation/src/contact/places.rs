@@ -169,7 +169,7 @@ fn pipes() -> [Question; 8] {
             pipe(0.5, smooth),
             [4.231, 4.334],
             Claim::Both,
-            Level::Default,
+            Level::Full,
         ),
         question(
             "smooth pipe, w/D = 1",
