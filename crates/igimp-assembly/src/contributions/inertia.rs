@@ -60,24 +60,19 @@ impl<const D: usize> Inertia<D> {
     ) -> Result<Self, AssemblyError> {
         let nodes = unknowns.nodes_of_grid();
         let mass = NodalMass::of(step.lumped, mass_of, stencils, nodes);
-        let share = weighted(&vec![[1.0; D]; particles.len()], mass_of, stencils, nodes);
+        let by_share = |particle: usize, share: f64| mass_of(particle) * share;
+        let by_size = |particle: usize, share: f64| mass_of(particle) * share.abs();
+        let ones = vec![[1.0; D]; particles.len()];
+        let share = weighted(&ones, &by_share, stencils, nodes);
         let on_grid = |values: &[[f64; D]]| {
-            let sums = weighted(values, mass_of, stencils, nodes);
-            let mean: Vec<[f64; D]> = std::iter::zip(&sums, &share)
-                .map(|(sum, share)| {
-                    std::array::from_fn(|a| {
-                        if share[a] > 0.0 {
-                            sum[a] / share[a]
-                        } else {
-                            0.0
-                        }
-                    })
-                })
-                .collect();
+            let sums = weighted(values, &by_share, stencils, nodes);
+            let mean = over(&sums, &share);
             match mass.solve(&sums, mean.clone(), unknowns) {
                 Ok(found) => Ok((found, mean, false)),
-                Err(AssemblyError::MotionNotFound { .. }) => {
-                    let mut found = means(values, mass_of, stencils, nodes);
+                // Shares below zero count by their size, so that means lie between the values of the particles.
+                Err(AssemblyError::MotionNotFound { left }) if left.is_finite() => {
+                    let sums = weighted(values, &by_size, stencils, nodes);
+                    let mut found = over(&sums, &weighted(&ones, &by_size, stencils, nodes));
                     mask(&mut found, unknowns);
                     Ok((found, mean, true))
                 }
@@ -411,50 +406,30 @@ impl<const D: usize> Motion<D> {
     }
 }
 
-/// The mean of values by particle around each node, weighted by mass and by how much the node counts for the particle, zero
-/// where there is none: between the values of the particles, whatever shares are below zero.
-fn means<const D: usize>(
+/// Values of particles by node, each times the weight of a particle and its share S_ip at the node \[mass\]: Σ_p w(p, S_ip) a_p.
+fn weighted<const D: usize>(
     values: &[[f64; D]],
-    mass_of: &(dyn Fn(usize) -> f64 + Sync),
+    weight: &dyn Fn(usize, f64) -> f64,
     stencils: &Stencils<D>,
     nodes: usize,
 ) -> Vec<[f64; D]> {
     let mut sums = vec![[0.0; D]; nodes];
-    let mut shares = vec![0.0; nodes];
     for &particle in stencils.order() {
         let particle = particle as usize;
         for support in stencils.of(particle) {
-            let share = mass_of(particle) * support.value.abs();
-            shares[support.node] += share;
-            for (sum, value) in sums[support.node].iter_mut().zip(values[particle]) {
-                *sum += share * value;
+            let weight = weight(particle, support.value);
+            for a in 0..D {
+                sums[support.node][a] += weight * values[particle][a];
             }
-        }
-    }
-    for (sum, share) in sums.iter_mut().zip(shares) {
-        if share > 0.0 {
-            *sum = sum.map(|sum| sum / share);
         }
     }
     sums
 }
 
-/// Values of particles weighted by mass, by node: Σ_p m_p S_ip a_p.
-fn weighted<const D: usize>(
-    values: &[[f64; D]],
-    mass_of: &(dyn Fn(usize) -> f64 + Sync),
-    stencils: &Stencils<D>,
-    nodes: usize,
-) -> Vec<[f64; D]> {
-    let mut sums = vec![[0.0; D]; nodes];
-    for &particle in stencils.order() {
-        let particle = particle as usize;
-        let m = mass_of(particle);
-        for support in stencils.of(particle) {
-            for a in 0..D {
-                sums[support.node][a] += m * support.value * values[particle][a];
-            }
-        }
-    }
-    sums
+/// Sums over their weights by node, zero where there is no weight.
+fn over<const D: usize>(sums: &[[f64; D]], weights: &[[f64; D]]) -> Vec<[f64; D]> {
+    let mean = |sum: f64, weight: f64| if weight > 0.0 { sum / weight } else { 0.0 };
+    std::iter::zip(sums, weights)
+        .map(|(sum, weight)| std::array::from_fn(|a| mean(sum[a], weight[a])))
+        .collect()
 }
