@@ -83,6 +83,48 @@ impl Elasticity {
 
     /// D, the derivative of principal stress by principal strain \[stress\], 3×3 and symmetric.
     pub fn tangent(&self) -> [[f64; 3]; 3] {
+        self.moduli().tangent()
+    }
+
+    /// Principal stress τ \[stress\] of the principal elastic strain `eps_e`.
+    #[inline]
+    pub fn stress(&self, eps_e: &Principal) -> Principal {
+        self.moduli().stress(eps_e)
+    }
+
+    /// Principal elastic strain C⁻¹ τ of the principal stress `tau`.
+    #[inline]
+    pub fn strain(&self, tau: &Principal) -> Principal {
+        self.moduli().strain(tau)
+    }
+
+    /// K and G.
+    #[inline]
+    pub(crate) fn moduli(&self) -> Moduli {
+        Moduli {
+            bulk: self.bulk,
+            shear: self.shear,
+        }
+    }
+}
+
+/// The two moduli of a linear elasticity \[stress\].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moduli {
+    /// K.
+    pub(crate) bulk: f64,
+    /// G.
+    pub(crate) shear: f64,
+}
+
+impl Moduli {
+    /// Lamé's first constant K − 2G/3: the stress aside of a unit strain \[stress\].
+    #[inline]
+    pub(crate) fn aside(&self) -> f64 {
+        self.bulk - 2.0 / 3.0 * self.shear
+    }
+
+    pub(crate) fn tangent(&self) -> [[f64; 3]; 3] {
         let mut tangent = [[self.aside(); 3]; 3];
         for a in 0..3 {
             tangent[a][a] += 2.0 * self.shear;
@@ -90,23 +132,15 @@ impl Elasticity {
         tangent
     }
 
-    /// Principal stress τ \[stress\] of the principal elastic strain `eps_e`.
     #[inline]
-    pub fn stress(&self, eps_e: &Principal) -> Principal {
-        let common = self.aside() * (eps_e[0] + eps_e[1] + eps_e[2]);
-        eps_e.map(|component| common + 2.0 * self.shear * component)
+    pub(crate) fn stress(&self, strain: &Principal) -> Principal {
+        let common = self.aside() * (strain[0] + strain[1] + strain[2]);
+        strain.map(|component| common + 2.0 * self.shear * component)
     }
 
-    /// Principal elastic strain C⁻¹ τ of the principal stress `tau`.
     #[inline]
-    pub fn strain(&self, tau: &Principal) -> Principal {
-        let mean_strain = mean(tau) / (3.0 * self.bulk);
-        deviator(tau).map(|component| mean_strain + component / (2.0 * self.shear))
-    }
-
-    /// Lamé's first constant K − 2G/3: the stress aside of a unit strain \[stress\].
-    #[inline]
-    fn aside(&self) -> f64 {
-        self.bulk - 2.0 / 3.0 * self.shear
+    pub(crate) fn strain(&self, stress: &Principal) -> Principal {
+        let mean_strain = mean(stress) / (3.0 * self.bulk);
+        deviator(stress).map(|component| mean_strain + component / (2.0 * self.shear))
     }
 }

@@ -6,10 +6,9 @@
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
+use crate::circle::{Circle, Flow, Planes, mirrored, turned};
 use crate::error::{positive, required};
 use crate::law::{ON_SURFACE, mobilised, trial_stress};
-use crate::pyramid::PlaneStrength;
-use crate::softening::rates::Changing;
 use crate::spectral::principal::{Principal, descending, largest, mean, sorted, unsorted};
 use crate::{
     ConstitutiveModel, Elasticity, History, MaterialError, NonlocalRates, PointContext, Regime,
@@ -18,6 +17,9 @@ use crate::{
 
 /// Most corrections of a touching point.
 const MOST_CORRECTIONS: usize = 200;
+
+/// Share of the base below which a correction is the last but one \[-\].
+const CLOSE: f64 = 1e-9;
 
 /// Least share of s at which a pyramid touches, of the base of the power, $`m_b\sigma_3/\sigma_{ci} + s`$ \[-\]: between it and the apex
 /// all is the apex.
@@ -103,12 +105,46 @@ pub struct HoekBrown {
     srf: f64,
 }
 
-/// Where a pyramid touches the surface: a point, its principal stresses and the pyramid, each with its derivative by the point.
+/// Where a pyramid touches the surface, each value with its derivative by the base.
 #[derive(Clone, Copy, Debug)]
 struct Touching {
-    /// Major and minor principal stress, compression positive \[stress\], and derivatives.
+    /// Major and minor principal stress, compression positive \[stress\].
     stress: [[f64; 2]; 2],
-    changing: Changing,
+    /// sin φ of the pyramid \[-\].
+    sin_friction: f64,
+    /// sin ψ of its flow \[-\].
+    dilatancy: [f64; 2],
+}
+
+/// A return to some planes at a base.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    circle: Circle,
+    touching: Touching,
+    /// Λ \[-\], and its derivative by the base.
+    multiplier: [f64; 2],
+    /// What is left of the circle beyond the strength \[stress\], and its derivative.
+    excess: [f64; 2],
+}
+
+impl Found {
+    /// What the tangent goes by.
+    fn flow(&self) -> Flow {
+        let [y, y_rate] = self.touching.dilatancy;
+        let [g_u, g_w] = self.circle.paces(y);
+        let ([multiplier, multiplier_rate], slope) = (self.multiplier, self.excess[1]);
+        // The excess stays zero: dU + g_U/g_W dW and the slope times the change of the base.
+        let unknown_by = [-1.0 / slope, -g_u / (g_w * slope)];
+        Flow {
+            multiplier,
+            multiplier_by: [
+                multiplier_rate * unknown_by[0],
+                multiplier_rate * unknown_by[1] - 1.0 / g_w,
+            ],
+            dilatancy: [y, y_rate],
+            unknown_by,
+        }
+    }
 }
 
 impl HoekBrown {
@@ -179,96 +215,139 @@ impl HoekBrown {
         let centre_rate = normal_rate + shear_rate * tangent + shear * tangent_rate;
         let radius = shear * secant;
         let radius_rate = shear_rate * secant + shear * secant_rate;
-        let (sin, sin_rate) = (tangent / secant, tangent_rate / secant.powi(3));
+        let sin = tangent / secant;
         let dilation = self.parameters.dilation_angle.sin();
-        let is_capped = dilation > sin;
-        // 2 c cos φ = 2 (R − p sin φ), of compression positive p.
-        let strength = PlaneStrength {
-            sin_friction: sin,
-            sin_dilation: if is_capped { sin } else { dilation },
-            shear: 2.0 * (shear - normal * tangent) / secant,
-            apex: shear / tangent - normal,
-            tension_cutoff: None,
-        };
-        let offset = shear - normal * tangent;
-        let rate = PlaneStrength {
-            sin_friction: sin_rate,
-            sin_dilation: if is_capped { sin_rate } else { 0.0 },
-            shear: -2.0 * (normal * tangent_rate + offset * secant_rate / secant) / secant,
-            apex: -shear * tangent_rate / (tangent * tangent),
-            tension_cutoff: None,
-        };
         Touching {
             stress: [
                 [centre + radius, centre_rate + radius_rate],
                 [centre - radius, centre_rate - radius_rate],
             ],
-            changing: Changing { strength, rate },
+            sin_friction: sin,
+            dilatancy: if dilation > sin {
+                [sin, tangent_rate / secant.powi(3)]
+            } else {
+                [dilation, 0.0]
+            },
         }
     }
 
-    /// The base whose pyramid touches at a minor stress of the strength as it is reduced, compression positive; none beyond the apex.
-    fn base_at(&self, minor: f64) -> Option<f64> {
+    /// The pyramid that touches at a minor stress of the strength as it is reduced, compression positive; none beyond the apex.
+    fn touching_at(&self, minor: f64) -> Option<Touching> {
         let [ratio, share, _] = self.powers;
         let given = share + ratio * minor / self.parameters.intact_strength;
         if given <= self.least_base() {
             return None;
         }
         if self.srf.to_bits() == 1.0_f64.to_bits() {
-            return Some(given);
+            return Some(self.touching(given));
         }
-        let mut search = Search::new(self.least_base(), given);
-        for _ in 0..MOST_CORRECTIONS {
-            let base = search.base;
-            let [_, [found, rate]] = self.touching(base).stress;
-            let gap = minor - found;
-            let next = search.next(gap, base + gap / rate);
-            if (next - base).abs() <= f64::EPSILON * base {
-                break;
-            }
-            search.base = next;
-        }
-        Some(search.base)
+        let gap = |base: f64| {
+            let touching = self.touching(base);
+            let [_, [found, rate]] = touching.stress;
+            (touching, [minor - found, -rate])
+        };
+        root(self.least_base(), given, gap)
     }
 
     /// Difference of major and minor stress that strength admits at a minor one, compression positive, and sin φ there.
     fn admitted(&self, minor: f64) -> Option<[f64; 2]> {
-        let touching = self.touching(self.base_at(minor)?);
+        let touching = self.touching_at(minor)?;
         let [[major, _], [minor, _]] = touching.stress;
-        Some([major - minor, touching.changing.strength.sin_friction])
+        Some([major - minor, touching.sin_friction])
     }
 
-    /// The base at which the pyramid touches that a trial strain returns to, with the return to it; none where that is the apex.
+    /// The return of a trial stress, positive in compression and in descending order, to some planes, by the base at which their pyramid
+    /// touches (theory, eq. 115); none where all bases are beyond the apex.
     ///
     /// # Errors
     /// [`MaterialError::NotConverged`].
-    fn settled(
+    fn on(&self, pressure: &Principal, planes: Planes) -> Result<Option<Found>, MaterialError> {
+        let circle = Circle::new(&self.elasticity.moduli(), pressure, planes);
+        let least = self.excess(&circle, self.least_base());
+        if least.excess[0] <= 0.0 {
+            return Ok(None);
+        }
+        let excess = |base: f64| {
+            let own = self.excess(&circle, base);
+            (own, own.excess)
+        };
+        root(self.least_base(), self.first_base(&circle), excess)
+            .map(Some)
+            .ok_or(MaterialError::NotConverged { law: self.name() })
+    }
+
+    /// By how much the circle is larger that flow leaves of a trial stress whose lower end becomes that of the pyramid of a base.
+    fn excess(&self, circle: &Circle, base: f64) -> Found {
+        let touching = self.touching(base);
+        let [[major, major_rate], [minor, minor_rate]] = touching.stress;
+        let ([up, low], [l_u, l_w]) = (circle.ends, circle.dilating);
+        let [y, y_rate] = touching.dilatancy;
+        let [g_u, g_w] = circle.paces(y);
+        let multiplier = (minor - low) / g_w;
+        let turned = multiplier * y_rate;
+        let multiplier_rate = (minor_rate - turned * l_w) / g_w;
+        Found {
+            circle: *circle,
+            multiplier: [multiplier, multiplier_rate],
+            touching,
+            excess: [
+                up - multiplier * g_u - major,
+                turned * l_u - multiplier_rate * g_u - major_rate,
+            ],
+        }
+    }
+
+    /// The base of a trial stress whose strength goes with the root, as it nearly does.
+    fn first_base(&self, circle: &Circle) -> f64 {
+        let [ratio, share, _] = self.powers;
+        let intact = self.parameters.intact_strength;
+        let [up, low] = circle.ends;
+        let [g_u, g_w] = circle.paces(0.0);
+        let pace = g_u / g_w;
+        let straight = intact / ratio * (1.0 + pace);
+        let far = up + pace * low + share * straight;
+        let curved = intact / self.srf;
+        let root = 2.0 * far / (curved + (curved * curved + 4.0 * straight * far.max(0.0)).sqrt());
+        (root * root).max(2.0 * self.least_base())
+    }
+
+    /// The return of a trial strain outside the surface, with stresses in descending order.
+    ///
+    /// # Errors
+    /// [`MaterialError::NotConverged`].
+    fn returned(
         &self,
         strain: &Principal,
         trial: &Principal,
         history: &History,
-    ) -> Result<Option<(Touching, ReturnMap, Principal)>, MaterialError> {
-        let first = self.base_at(-trial[0]);
-        let mut search = Search::new(self.least_base(), first.unwrap_or(2.0 * self.least_base()));
-        for _ in 0..MOST_CORRECTIONS {
-            let base = search.base;
-            let touching = self.touching(base);
-            let pyramid = &touching.changing.strength;
-            let map = pyramid.return_map(&self.elasticity, strain, *history)?;
-            let (changing, regime) = (touching.changing, map.regime);
-            let moves = changing.stress_rate(&self.elasticity, regime, trial, &map.tau);
-            let [_, [minor, minor_rate]] = touching.stress;
-            let gap = -map.tau[0] - minor;
-            let slope = minor_rate + moves[0];
-            let next = search.next(gap, base + gap / slope.max(0.01 * minor_rate));
-            // Where a pyramid touches, an error of the point is one of its square on the surface.
-            if (next - base).abs() <= 4.0 * f64::EPSILON * base {
-                return Ok((base > 1.5 * self.least_base() && regime != Regime::Apex)
-                    .then_some((touching, map, moves)));
+    ) -> Result<ReturnMap, MaterialError> {
+        let pressure = mirrored(trial);
+        let mut is_beyond = true;
+        for planes in Planes::ALL {
+            let Some(found) = self.on(&pressure, planes)? else {
+                continue;
+            };
+            let ([multiplier, _], [y, _]) = (found.multiplier, found.touching.dilatancy);
+            let ends = found.touching.stress.map(|[end, _]| end);
+            let stress = found.circle.stress(ends, multiplier, y);
+            is_beyond &= planes == Planes::Main || multiplier < 0.0;
+            if multiplier >= 0.0 && found.circle.holds(&stress, multiplier, y) {
+                let delta_eps_p = mirrored(&found.circle.plastic_strain(multiplier, y));
+                return Ok(ReturnMap {
+                    tau: mirrored(&stress),
+                    tangent: turned(&found.circle.tangent(&found.flow())),
+                    delta_eps_p,
+                    history: history.after(&delta_eps_p),
+                    regime: planes.regime(),
+                    nonlocal: NonlocalRates::NONE,
+                });
             }
-            search.base = next;
         }
-        Err(MaterialError::NotConverged { law: self.name() })
+        if is_beyond {
+            Ok(self.at_apex(strain, history))
+        } else {
+            Err(MaterialError::NotConverged { law: self.name() })
+        }
     }
 
     /// The trial strain goes to the apex. Where the tip below the least base is cut off, a trial stress of less mean stress keeps that:
@@ -294,45 +373,40 @@ impl HoekBrown {
     }
 }
 
-/// Newton's method for a base, between bounds.
-struct Search {
-    low: f64,
-    high: f64,
-    base: f64,
-    /// The last correction.
-    step: f64,
-}
-
-impl Search {
-    fn new(least: f64, base: f64) -> Self {
-        Self {
-            low: least,
-            high: f64::INFINITY,
-            base,
-            step: f64::INFINITY,
+/// What stands at the base where `of` has a root, of which it says the value, positive below the root, and the slope: by Newton's method
+/// for the root of the base, along which it is nearly straight at the tip too, while its corrections at least halve, else between bounds.
+fn root<T>(least: f64, first: f64, of: impl Fn(f64) -> (T, [f64; 2])) -> Option<T> {
+    let (mut low, mut high) = (least, f64::INFINITY);
+    let (mut base, mut step) = (first, f64::INFINITY);
+    let mut is_last = false;
+    for _ in 0..MOST_CORRECTIONS {
+        let (own, [gap, slope]) = of(base);
+        if is_last {
+            return Some(own);
         }
-    }
-
-    /// The next base where `gap` is left, which is positive below the one that is sought: that of Newton's method while its corrections
-    /// at least halve, else the middle of the bounds in their logarithm.
-    fn next(&mut self, gap: f64, newton: f64) -> f64 {
         if gap > 0.0 {
-            self.low = self.base;
+            low = base;
         } else {
-            self.high = self.base;
+            high = base;
         }
-        let is_inside = newton > self.low && newton < self.high;
-        let halves = 2.0 * (newton - self.base).abs() <= self.step.abs();
-        let next = if is_inside && (halves || self.high.is_infinite()) {
+        let side = base.sqrt();
+        let newton = (side - gap / (2.0 * side * slope)).powi(2);
+        let halves = 2.0 * (newton - base).abs() <= step;
+        let is_newton = newton > low && newton < high && (halves || high.is_infinite());
+        let next = if is_newton {
             newton
-        } else if self.high.is_infinite() {
-            4.0 * self.low
+        } else if high.is_infinite() {
+            4.0 * low
         } else {
-            (self.low * self.high).sqrt()
+            (low * high).sqrt()
         };
-        self.step = next - self.base;
-        next
+        step = (next - base).abs();
+        // An error of the base is one of its square on the next.
+        let close = if is_newton { CLOSE } else { 2.0 * f64::EPSILON };
+        is_last = step <= close * base;
+        base = next;
     }
+    None
 }
 
 impl ConstitutiveModel for HoekBrown {
@@ -358,19 +432,7 @@ impl ConstitutiveModel for HoekBrown {
             let tau = unsorted(&trial, &order);
             return Ok(ReturnMap::elastic(&self.elasticity, tau, *history));
         }
-        let map =
-            if let Some((touching, mut map, moves)) = self.settled(&strain, &trial, history)? {
-                let [_, [_, minor_rate]] = touching.stress;
-                let (first, slope) = (map.tangent[0], minor_rate + moves[0]);
-                for (row, moves) in map.tangent.iter_mut().zip(moves) {
-                    for (entry, first) in row.iter_mut().zip(first) {
-                        *entry -= moves * first / slope;
-                    }
-                }
-                map
-            } else {
-                self.at_apex(&strain, history)
-            };
+        let map = self.returned(&strain, &trial, history)?;
         let mut tangent = [[0.0; 3]; 3];
         for a in 0..3 {
             tangent[order[a]] = unsorted(&map.tangent[a], &order);
@@ -390,7 +452,7 @@ impl ConstitutiveModel for HoekBrown {
     /// ψ over the friction angle at no confinement; none without dilation.
     fn dilatancy(&self) -> f64 {
         let [_, share, _] = self.powers;
-        let sine = self.touching(share).changing.strength.sin_friction;
+        let sine = self.touching(share).sin_friction;
         (self.parameters.dilation_angle / sine.asin()).min(1.0)
     }
 }

@@ -56,6 +56,7 @@
 //!   elastic-plastic materials with a singular yield surface*, Q. Appl. Math. 11, 350–354.
 
 mod cam_clay;
+mod circle;
 mod drucker_prager;
 mod elasticity;
 mod error;

@@ -5,6 +5,8 @@
 //! (i, j) = (1,3), (1,2), (2,3), with the flow of the same form in the dilation angle ψ; the
 //! tension planes are $`\sigma_i \le \sigma_t`$ with associated flow.
 
+use crate::circle::{Circle, Flow, Planes, mirrored, turned};
+use crate::elasticity::Moduli;
 use crate::koiter::Plane;
 use crate::law::{ON_SURFACE, mobilised, trial_stress};
 use crate::spectral::principal::{Principal, descending, sorted, unsorted};
@@ -100,13 +102,84 @@ impl PlaneStrength {
         eps_e_trial: &Principal,
         history: History,
     ) -> Result<ReturnMap, MaterialError> {
-        self.outlined(|outline| {
-            let bounds =
-                |tau: &Principal| [excess(outline.planes, tau), scale(outline.planes, tau)];
-            let project = |strain: &_, trial: &_| outline.project(elasticity, strain, trial);
-            return_to(elasticity, (bounds, project), eps_e_trial, history)
+        let bounds = |tau: &Principal| self.bounds(tau);
+        let project = |strain: &_, trial: &_| {
+            self.by_circle(&elasticity.moduli(), trial)
+                .unwrap_or_else(|| {
+                    self.outlined(|outline| outline.project(elasticity, strain, trial))
+                })
+        };
+        return_to(elasticity, (bounds, project), eps_e_trial, history)
+    }
+
+    /// Excess and scale \[stress\] of a stress in descending order.
+    fn bounds(&self, tau: &Principal) -> [f64; 2] {
+        let planes = self.shear_planes();
+        let cutoff = self.tension_cutoff.unwrap_or(f64::INFINITY);
+        let excess = planes[SHEAR_13].excess(tau).max(tau[0] - cutoff);
+        [excess, scale(&planes, tau)]
+    }
+
+    /// Whether a stress in descending order needs no return.
+    pub(crate) fn holds(&self, tau: &Principal) -> bool {
+        let [excess, scale] = self.bounds(tau);
+        excess <= ON_SURFACE * scale
+    }
+
+    /// The return to the main plane of shear or to an edge beside it, of a trial stress in descending order; none where it does not go there.
+    pub(crate) fn circle(&self, moduli: &Moduli, trial: &Principal) -> Option<OnCircle> {
+        let pressure = mirrored(trial);
+        let (sine, y) = (self.sin_friction, self.sin_dilation);
+        let [upper, lower] = [1.0 - sine, 1.0 + sine];
+        let cutoff = self.tension_cutoff.unwrap_or(f64::INFINITY);
+        Planes::ALL.into_iter().find_map(|planes| {
+            let circle = Circle::new(moduli, &pressure, planes);
+            let ([up, low], [g_u, g_w]) = (circle.ends, circle.paces(y));
+            let hardness = upper * g_u + lower * g_w;
+            let multiplier = (upper * up - lower * low - self.shear) / hardness;
+            let low = low + multiplier * g_w;
+            // By the strength, and not by the way from a trial stress that may be far larger.
+            let up = (lower * low + self.shear) / upper;
+            let stress = circle.stress([up, low], multiplier, y);
+            let is_there = circle.holds(&stress, multiplier, y) && -low <= cutoff;
+            is_there.then_some(OnCircle {
+                circle,
+                ends: [up, low],
+                stress,
+                multiplier,
+                multiplier_by: [upper / hardness, -lower / hardness],
+            })
         })
     }
+
+    /// The same, with the tangent.
+    fn by_circle(&self, moduli: &Moduli, trial: &Principal) -> Option<Returned> {
+        let own = self.circle(moduli, trial)?;
+        let y = self.sin_dilation;
+        let tangent = own.circle.tangent(&Flow {
+            multiplier: own.multiplier,
+            multiplier_by: own.multiplier_by,
+            dilatancy: [y, 0.0],
+            unknown_by: [0.0; 2],
+        });
+        Some(Returned {
+            tau: mirrored(&own.stress),
+            delta_eps_p: mirrored(&own.circle.plastic_strain(own.multiplier, y)),
+            tangent: turned(&tangent),
+            regime: own.circle.planes.regime(),
+        })
+    }
+}
+
+/// A return to the main plane of shear or to an edge beside it; stresses are positive in compression.
+pub(crate) struct OnCircle {
+    pub(crate) circle: Circle,
+    /// The ends of the circle \[stress\].
+    pub(crate) ends: [f64; 2],
+    stress: Principal,
+    /// Λ \[-\], and its derivatives by the ends of the circle of the trial stress.
+    pub(crate) multiplier: f64,
+    pub(crate) multiplier_by: [f64; 2],
 }
 
 /// Returns a trial strain to a surface that says excess and scale of a stress, and projects.

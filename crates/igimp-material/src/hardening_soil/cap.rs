@@ -3,14 +3,15 @@
 //! Pressures and volumes are positive in compression here.
 
 use super::hyperbola::Hyperbola;
-use super::shear::Moduli;
+use crate::elasticity::Moduli;
 use crate::spectral::principal::{Principal, deviator, dot, mean};
 
 /// The shape of the cap, and how it hardens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cap {
-    /// M \[-\].
+    /// M, and $`1/M^2`$ \[-\].
     pub(super) steepness: f64,
+    flatness: f64,
     /// H at the reference pressure \[stress\].
     pub(super) hardening: f64,
     /// The reference pressure plus c cot φ \[stress\].
@@ -30,6 +31,34 @@ pub(super) struct Oedometer {
     pub(super) pressure: f64,
     /// Young's modulus and Poisson's ratio of unloading there.
     pub(super) elastic: [f64; 2],
+}
+
+/// How a cap hardens over a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hardening {
+    attraction: f64,
+    /// Preconsolidation plus c cot φ at its start, and the modulus there \[stress\].
+    base: f64,
+    modulus: f64,
+    /// 1 − m \[-\].
+    open: f64,
+}
+
+impl Hardening {
+    /// The preconsolidation after plastic volume of the cap (eq. 128a), and its derivative by the volume \[stress\].
+    pub(super) fn grown(&self, volume: f64) -> [f64; 2] {
+        let growth = self.modulus * volume / self.base;
+        let (ratio, rest) = if self.open.abs() < 1e-9 {
+            (growth.exp(), 1.0)
+        } else {
+            let rest = self.open * growth;
+            ((rest.ln_1p() / self.open).exp(), 1.0 + rest)
+        };
+        [
+            self.base * ratio - self.attraction,
+            self.modulus * ratio / rest,
+        ]
+    }
 }
 
 impl Cap {
@@ -68,6 +97,7 @@ impl Cap {
         let reference = own.pressure + attraction;
         Some(Self {
             steepness: square.sqrt(),
+            flatness: square.recip(),
             hardening: tip_rate / volume / ((tip + attraction) / reference).powf(power),
             reference,
             attraction,
@@ -79,23 +109,19 @@ impl Cap {
     pub(super) fn equivalent(&self, stress: &Principal) -> f64 {
         let s = deviator(stress);
         let p = mean(stress).max(0.0);
-        (1.5 * dot(&s, &s) / (self.steepness * self.steepness) + p * p).sqrt()
+        (1.5 * self.flatness * dot(&s, &s) + p * p).sqrt()
     }
 
-    /// The preconsolidation after plastic volume of the cap (eq. 128a), and its derivative by the volume \[stress\].
-    pub(super) fn grown(&self, preconsolidation: f64, volume: f64) -> [f64; 2] {
+    /// How the cap hardens from a preconsolidation \[stress\] on.
+    pub(super) fn hardening(&self, preconsolidation: f64) -> Hardening {
         let base = preconsolidation + self.attraction;
-        let open = 1.0 - self.power;
         let modulus = self.hardening * (base / self.reference).powf(self.power);
-        let growth = modulus * volume / base;
-        let ratio = if open.abs() < 1e-9 {
-            growth.exp()
-        } else {
-            ((open * growth).ln_1p() / open).exp()
-        };
-        let grown = base * ratio;
-        let slope = self.hardening * (grown / self.reference).powf(self.power);
-        [grown - self.attraction, slope]
+        Hardening {
+            attraction: self.attraction,
+            base,
+            modulus,
+            open: 1.0 - self.power,
+        }
     }
 
     /// Elasticity and trial stress after flow of the cap by $`\mu = 2 K \lambda_c`$ \[-\] (eq. 128): both stay linear.
@@ -107,22 +133,23 @@ impl Cap {
     ) -> (Moduli, Principal) {
         let p = mean(trial);
         let volume = if p > 0.0 { 1.0 / (1.0 + mu) } else { 1.0 };
-        let square = self.steepness * self.steepness;
-        let shear = 1.0 / (1.0 + 3.0 * moduli.shear / moduli.bulk * mu / square);
+        let shear = 1.0 / (1.0 + self.shear_share(moduli) * mu);
         let softened = Moduli {
             bulk: volume * moduli.bulk,
             shear: shear * moduli.shear,
         };
-        (
-            softened,
-            deviator(trial).map(|own| volume * p + shear * own),
-        )
+        let stress = deviator(trial).map(|own| volume * p + shear * own);
+        (softened, stress)
+    }
+
+    /// $`3 G/(K M^2)`$: by how much more of shear than of pressure flow takes \[-\].
+    pub(super) fn shear_share(&self, moduli: &Moduli) -> f64 {
+        3.0 * moduli.shear / moduli.bulk * self.flatness
     }
 
     /// ∂f/∂σ of $`f = q^2/M^2 + p^2`$, without p where the trial stress has none \[stress\].
     pub(super) fn normal(&self, stress: &Principal, is_pressed: bool) -> Principal {
         let p = if is_pressed { mean(stress) } else { 0.0 };
-        let square = self.steepness * self.steepness;
-        deviator(stress).map(|own| 3.0 * own / square + 2.0 / 3.0 * p)
+        deviator(stress).map(|own| 3.0 * self.flatness * own + 2.0 / 3.0 * p)
     }
 }

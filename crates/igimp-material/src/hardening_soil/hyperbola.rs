@@ -50,12 +50,12 @@ impl Hyperbola {
             };
         }
         let scale = (s / self.reference).powf(1.0 - self.power);
-        let open = 1.0 - share;
-        let way = self.initial * share / open - self.unloading * share;
+        let open = (1.0 - share).recip();
+        let way = self.initial * share * open - self.unloading * share;
         ShearStrain {
             value: scale * way,
             by_s: (1.0 - self.power) * scale * way / s,
-            by_share: scale * (self.initial / (open * open) - self.unloading),
+            by_share: scale * (self.initial * open * open - self.unloading),
         }
     }
 
@@ -85,15 +85,16 @@ impl Hyperbola {
     /// sin ψ mobilised by a share (eq. 126d), and its derivative by the share \[-\].
     pub(super) fn dilatancy(&self, share: f64) -> [f64; 2] {
         let ratio = self.asymptote * share;
-        let sin_mobilised = ratio / (ratio + 2.0);
+        let whole = (ratio + 2.0).recip();
+        let sin_mobilised = ratio * whole;
         if sin_mobilised <= self.sin_critical {
             return [0.0; 2];
         }
-        let open = 1.0 - sin_mobilised * self.sin_critical;
-        let by_sin = (1.0 - self.sin_critical * self.sin_critical) / (open * open);
-        let by_share = 2.0 * self.asymptote / (ratio + 2.0).powi(2);
+        let open = (1.0 - sin_mobilised * self.sin_critical).recip();
+        let by_sin = (1.0 - self.sin_critical * self.sin_critical) * open * open;
+        let by_share = 2.0 * self.asymptote * whole * whole;
         [
-            (sin_mobilised - self.sin_critical) / open,
+            (sin_mobilised - self.sin_critical) * open,
             by_sin * by_share,
         ]
     }

@@ -1,6 +1,7 @@
 //! Hardening Soil: shear that hardens along a hyperbola up to Mohr–Coulomb's strength, a cap that hardens in compression, and
 //! stiffness that grows with stress (Schanz, Vermeer & Bonnier 1999; theory, eqs. 126 to 128c).
 
+mod both;
 mod cap;
 mod hyperbola;
 mod parameters;
@@ -9,9 +10,10 @@ mod shear;
 
 use std::sync::Arc;
 
+use crate::elasticity::Moduli;
 use crate::error::positive;
 use crate::law::mobilised;
-use crate::spectral::principal::{descending, largest, mean, sorted, unsorted};
+use crate::spectral::principal::{descending, largest, sorted, unsorted};
 use crate::{
     ConstitutiveModel, ElasticStiffness, Elasticity, History, InternalVariable, MaterialError,
     NonlocalRates, PointContext, Principal, Regime, ReturnMap, Scaling, ShearStrength, Strength,
@@ -20,7 +22,7 @@ use cap::Cap;
 use hyperbola::Hyperbola;
 pub use parameters::HardeningSoilParameters;
 use returned::{Returned, Start};
-use shear::{Moduli, Planes};
+use shear::Shear;
 
 /// What the law remembers.
 const VARIABLES: [InternalVariable; 3] = [
@@ -166,7 +168,7 @@ impl HardeningSoil {
         if self.is_perfect {
             return after;
         }
-        let sheared = if own.planes == Some(Planes::Apex) {
+        let sheared = if own.shear == Shear::Apex {
             let [a, b, c] = *delta_eps_p;
             a.max(b).max(c) - a.min(b).min(c)
         } else {
@@ -182,27 +184,12 @@ impl HardeningSoil {
 
 /// Which part of the surface a stress is on.
 fn regime(own: &Returned) -> Regime {
-    match (own.planes, own.is_capped) {
-        (None, false) => Regime::Elastic,
-        (None, true) => Regime::Cap,
-        (Some(Planes::Apex), _) => Regime::Apex,
-        (Some(_), true) => Regime::CapShear,
-        (Some(Planes::Main), false) => Regime::Smooth,
-        (Some(Planes::Compression), false) => Regime::RightEdge,
-        (Some(Planes::Extension), false) => Regime::LeftEdge,
-    }
-}
-
-/// Stress of a strain, and strain of a stress.
-impl Moduli {
-    fn stress(&self, strain: &Principal) -> Principal {
-        let volume = mean(strain);
-        strain.map(|own| 3.0 * self.bulk * volume + 2.0 * self.shear * (own - volume))
-    }
-
-    fn strain(&self, tau: &Principal) -> Principal {
-        let mean = mean(tau);
-        tau.map(|own| mean / (3.0 * self.bulk) + (own - mean) / (2.0 * self.shear))
+    match (own.shear, own.is_capped) {
+        (Shear::Inside, false) => Regime::Elastic,
+        (Shear::Inside, true) => Regime::Cap,
+        (Shear::Apex, _) => Regime::Apex,
+        (Shear::On(_), true) => Regime::CapShear,
+        (Shear::On(planes), false) => planes.regime(),
     }
 }
 

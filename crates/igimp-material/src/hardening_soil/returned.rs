@@ -1,8 +1,9 @@
 //! The return where shear, the cap or both yield: the flow of the cap is sought about the return to shear (theory, eq. 128c).
 
-use super::cap::Cap;
+use super::cap::{Cap, Hardening};
 use super::hyperbola::Hyperbola;
-use super::shear::{Moduli, Planes, sheared};
+use super::shear::{Shear, Sheared, sheared};
+use crate::elasticity::Moduli;
 use crate::law::ON_SURFACE;
 use crate::spectral::principal::{Principal, apply, dot, largest, mean};
 
@@ -29,8 +30,7 @@ pub(super) struct Returned {
     /// Growth of the plastic shear strain \[-\]; zero at the apex.
     pub(super) delta_gamma: f64,
     pub(super) preconsolidation: f64,
-    /// The planes of shear that yield.
-    pub(super) planes: Option<Planes>,
+    pub(super) shear: Shear,
     /// Whether the cap yields.
     pub(super) is_capped: bool,
 }
@@ -46,10 +46,10 @@ impl Returned {
 }
 
 /// The cap at some flow.
-struct Flow {
-    answer: Returned,
+pub(super) struct Capped {
+    pub(super) answer: Returned,
     /// By how much the stress is outside \[stress\], and its derivative by μ.
-    excess: [f64; 2],
+    pub(super) excess: [f64; 2],
     /// ∂σ/∂μ and ∂(excess)/∂ε.
     columns: [Principal; 2],
 }
@@ -57,10 +57,13 @@ struct Flow {
 impl Start<'_> {
     /// The stress that a trial stress is returned to; none where it was not found.
     pub(super) fn returned(&self, trial: &Principal) -> Option<Returned> {
-        let first = self.without_cap(&self.moduli, trial)?;
         let Some(cap) = self.cap else {
-            return Some(first);
+            return self.without_cap(&self.moduli, trial);
         };
+        if let Some(both) = self.both(cap, trial) {
+            return Some(both);
+        }
+        let first = self.without_cap(&self.moduli, trial)?;
         let outside = cap.equivalent(&first.stress) - self.preconsolidation;
         if outside <= ON_SURFACE * self.preconsolidation {
             return Some(first);
@@ -72,42 +75,53 @@ impl Start<'_> {
     fn without_cap(&self, moduli: &Moduli, trial: &Principal) -> Option<Returned> {
         let excess = self.hyperbola.excess(trial[0], trial[2], self.gamma_p);
         let round_off = ON_SURFACE * (largest(trial) + self.hyperbola.attraction);
-        let elastic = Returned {
-            stress: *trial,
-            tangent: moduli.tangent(),
-            delta_gamma: 0.0,
-            preconsolidation: self.preconsolidation,
-            planes: None,
-            is_capped: false,
+        let own = if excess <= round_off {
+            Sheared {
+                stress: *trial,
+                tangent: moduli.tangent(),
+                delta_gamma: 0.0,
+                shear: Shear::Inside,
+            }
+        } else {
+            sheared(self.hyperbola, moduli, trial, self.gamma_p)?
         };
-        if excess <= round_off {
-            return Some(elastic);
-        }
-        let own = sheared(self.hyperbola, moduli, trial, self.gamma_p)?;
-        Some(Returned {
+        Some(self.sheared(&own))
+    }
+
+    /// The answer of shear alone.
+    pub(super) fn sheared(&self, own: &Sheared) -> Returned {
+        Returned {
             stress: own.stress,
             tangent: own.tangent,
             delta_gamma: own.delta_gamma,
-            planes: Some(own.planes),
-            ..elastic
-        })
+            preconsolidation: self.preconsolidation,
+            shear: own.shear,
+            is_capped: false,
+        }
     }
 
     /// The state after flow of the cap by μ.
-    fn at(&self, cap: &Cap, trial: &Principal, mu: f64) -> Option<Flow> {
+    fn at(&self, cap: &Cap, hardening: &Hardening, trial: &Principal, mu: f64) -> Option<Capped> {
         let (moduli, softened) = cap.softened(&self.moduli, trial, mu);
-        let mut answer = self.without_cap(&moduli, &softened)?;
-        let is_pressed = mean(trial) > 0.0;
-        let p = if is_pressed {
-            mean(&answer.stress)
-        } else {
-            0.0
-        };
-        let [tip, slope] = cap.grown(self.preconsolidation, mu * p / self.moduli.bulk);
+        let answer = self.without_cap(&moduli, &softened)?;
+        Some(self.capped(cap, hardening, answer, (mean(trial) > 0.0, mu)))
+    }
+
+    /// The answer of shear after flow of the cap by μ, where that has a pressure or not, with what the cap says of it.
+    pub(super) fn capped(
+        &self,
+        cap: &Cap,
+        hardening: &Hardening,
+        mut answer: Returned,
+        (is_pressed, mu): (bool, f64),
+    ) -> Capped {
+        let pressure = mean(&answer.stress);
+        let p = if is_pressed { pressure } else { 0.0 };
+        let [tip, slope] = hardening.grown(mu * p / self.moduli.bulk);
         let equivalent = cap.equivalent(&answer.stress);
         let normal = cap.normal(&answer.stress, is_pressed);
         let per_volume = slope / self.moduli.bulk;
-        let own = cap.normal(&answer.stress, mean(&answer.stress) > 0.0);
+        let own = cap.normal(&answer.stress, pressure > 0.0);
         let third = if is_pressed {
             per_volume * mu / 3.0
         } else {
@@ -119,19 +133,20 @@ impl Start<'_> {
             std::array::from_fn(|b| (0..3).map(|a| row[a] * answer.tangent[a][b]).sum());
         answer.preconsolidation = tip;
         answer.is_capped = true;
-        Some(Flow {
+        Capped {
             answer,
             excess: [equivalent - tip, -dot(&row, &column) - per_volume * p],
             columns: [column, across],
-        })
+        }
     }
 
     /// The return with flow of the cap: of bracketed corrections, whose first ones double it until the stress is inside.
     fn with_cap(&self, cap: &Cap, trial: &Principal) -> Option<Returned> {
+        let hardening = cap.hardening(self.preconsolidation);
         let (mut low, mut high) = (0.0, f64::INFINITY);
         let mut mu = 0.0;
         for _ in 0..MOST_CORRECTIONS {
-            let own = self.at(cap, trial, mu)?;
+            let own = self.at(cap, &hardening, trial, mu)?;
             let [excess, slope] = own.excess;
             let next = mu - excess / slope;
             let is_found = excess.abs() <= 8.0 * f64::EPSILON * own.answer.preconsolidation
@@ -158,7 +173,7 @@ impl Start<'_> {
 }
 
 /// The answer with the tangent along which the stress stays on the cap.
-fn closed(own: &Flow) -> Returned {
+pub(super) fn closed(own: &Capped) -> Returned {
     let [column, across] = own.columns;
     let hardness = -own.excess[1];
     let mut answer = own.answer;

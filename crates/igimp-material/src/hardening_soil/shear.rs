@@ -4,46 +4,19 @@
 //! Principal stresses are positive in compression here, in descending order.
 
 use super::hyperbola::Hyperbola;
+use crate::circle::{Circle, Flow, Planes};
+use crate::elasticity::Moduli;
 use crate::spectral::principal::Principal;
 
 /// Most corrections of the share; a bisection to the last bit takes no more.
 const MOST_CORRECTIONS: usize = 80;
 
-/// Share of a strain between two planes by which an edge may be missed in round-off \[-\].
-const ROUND_OFF: f64 = 1e-10;
-
-/// A linear elasticity \[stress\].
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Moduli {
-    pub(super) bulk: f64,
-    pub(super) shear: f64,
-}
-
-impl Moduli {
-    /// Lamé's first constant.
-    fn aside(&self) -> f64 {
-        self.bulk - 2.0 / 3.0 * self.shear
-    }
-
-    pub(super) fn tangent(&self) -> [[f64; 3]; 3] {
-        let mut tangent = [[self.aside(); 3]; 3];
-        for a in 0..3 {
-            tangent[a][a] += 2.0 * self.shear;
-        }
-        tangent
-    }
-}
-
-/// The planes that yield.
+/// Where on the surface of shear a stress is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Planes {
-    /// That of the largest and the least stress.
-    Main,
-    /// Those of an edge on which the two lesser compressions are equal, as in triaxial compression.
-    Compression,
-    /// Those of an edge on which the two larger compressions are equal, as in triaxial extension.
-    Extension,
-    /// All: no stress but the attraction is left.
+pub(super) enum Shear {
+    Inside,
+    On(Planes),
+    /// No stress but the attraction is left.
     Apex,
 }
 
@@ -55,72 +28,47 @@ pub(super) struct Sheared {
     pub(super) tangent: [[f64; 3]; 3],
     /// Growth of the plastic shear strain \[-\]; zero at the apex, where strain says it.
     pub(super) delta_gamma: f64,
-    pub(super) planes: Planes,
+    pub(super) shear: Shear,
 }
 
-/// A return to one of the planes or to an edge: stress of the upper and the lower end of the circle,
-/// $`U = U^{tr} - \Lambda (g_U - l_U y)`$ and $`W = W^{tr} + \Lambda (g_W + l_W y)`$ with y = sin ψ, of the flow of eq. 126c.
-struct Path<'a> {
-    hyperbola: &'a Hyperbola,
-    trial: [f64; 2],
-    constant: [f64; 2],
-    dilating: [f64; 2],
-    gamma_p: f64,
+/// A return to one of the planes or to an edge, of the flow of eq. 126c.
+pub(super) struct Path<'a> {
+    pub(super) hyperbola: &'a Hyperbola,
+    pub(super) circle: Circle,
+    pub(super) gamma_p: f64,
 }
 
 /// What a share of the asymptote gives.
-struct Along {
+pub(super) struct Along {
     /// Λ and its derivative by the share \[-\].
-    multiplier: [f64; 2],
+    pub(super) multiplier: [f64; 2],
     /// sin ψ and its derivative.
-    dilatancy: [f64; 2],
+    pub(super) dilatancy: [f64; 2],
     /// Strain of the hyperbola less that of the flow \[-\], and its derivative.
-    residual: [f64; 2],
-    /// s \[stress\].
-    confinement: f64,
+    pub(super) residual: [f64; 2],
+    /// Λ over the stress that it takes from U less the strength of W \[1/stress\].
+    pub(super) compliance: f64,
+    /// s \[stress\], and its derivative by the share.
+    pub(super) confinement: [f64; 2],
+    /// The derivatives of the strain of the hyperbola by s and by the share.
+    pub(super) strain_by: [f64; 2],
 }
 
 impl Path<'_> {
-    fn new<'a>(
-        hyperbola: &'a Hyperbola,
-        moduli: &Moduli,
-        trial: &Principal,
-        gamma_p: f64,
-        planes: Planes,
-    ) -> Path<'a> {
-        let (shear, aside) = (moduli.shear, moduli.aside());
-        let single = [shear, shear + aside];
-        let shared = [0.5 * shear, 0.5 * shear + aside];
-        let [largest, middle, least] = *trial;
-        let (trial, upper, lower) = match planes {
-            Planes::Compression => ([largest, 0.5 * (middle + least)], single, shared),
-            Planes::Extension => ([0.5 * (largest + middle), least], shared, single),
-            Planes::Main | Planes::Apex => ([largest, least], single, single),
-        };
-        Path {
-            hyperbola,
-            trial,
-            constant: [upper[0], lower[0]],
-            dilating: [upper[1], lower[1]],
-            gamma_p,
-        }
-    }
-
     /// The state whose circle mobilises this share (eq. 127a).
-    fn at(&self, share: f64) -> Along {
+    pub(super) fn at(&self, share: f64) -> Along {
         let k = self.hyperbola.asymptote;
         let dilatancy @ [y, y_by] = self.hyperbola.dilatancy(share);
-        let [g_u, g_w] = self.paces(y);
-        let [up, low] = self.trial;
+        let [g_u, g_w] = self.circle.paces(y);
+        let ([up, low], dilating) = (self.circle.ends, self.circle.dilating);
         let from = self.hyperbola.confinement(low);
         let numerator = up - low - k * share * from;
-        let denominator = g_u + g_w + k * share * g_w;
-        let multiplier = numerator / denominator;
-        let denominator_by =
-            (self.dilating[1] * (1.0 + k * share) - self.dilating[0]) * y_by + k * g_w;
-        let multiplier_by = -(k * from + multiplier * denominator_by) / denominator;
+        let compliance = (g_u + g_w + k * share * g_w).recip();
+        let multiplier = numerator * compliance;
+        let denominator_by = (dilating[1] * (1.0 + k * share) - dilating[0]) * y_by + k * g_w;
+        let multiplier_by = -(k * from + multiplier * denominator_by) * compliance;
         let confinement = from + multiplier * g_w;
-        let confinement_by = multiplier_by * g_w + multiplier * self.dilating[1] * y_by;
+        let confinement_by = multiplier_by * g_w + multiplier * dilating[1] * y_by;
         let strain = self.hyperbola.strain(confinement, share);
         Along {
             multiplier: [multiplier, multiplier_by],
@@ -129,16 +77,10 @@ impl Path<'_> {
                 strain.value - self.gamma_p - multiplier,
                 strain.by_s * confinement_by + strain.by_share - multiplier_by,
             ],
-            confinement,
+            compliance,
+            confinement: [confinement, confinement_by],
+            strain_by: [strain.by_s, strain.by_share],
         }
-    }
-
-    /// Decrease of U and increase of W over Λ \[stress\].
-    fn paces(&self, y: f64) -> [f64; 2] {
-        [
-            self.constant[0] - self.dilating[0] * y,
-            self.constant[1] + self.dilating[1] * y,
-        ]
     }
 
     /// The share at which hyperbola and flow have the same strain; that at failure where flow goes on.
@@ -148,9 +90,10 @@ impl Path<'_> {
             return Some(failure);
         }
         let (mut low, mut high) = (0.0, failure);
-        let mut share = self
-            .hyperbola
-            .share(self.hyperbola.confinement(self.trial[1]), self.gamma_p);
+        let mut share = self.hyperbola.share(
+            self.hyperbola.confinement(self.circle.ends[1]),
+            self.gamma_p,
+        );
         for _ in 0..MOST_CORRECTIONS {
             let own = self.at(share);
             let [residual, slope] = own.residual;
@@ -179,25 +122,24 @@ impl Path<'_> {
     /// ∂(Λ, x)/∂(U, W) of the trial stress, with x held at failure.
     fn derivatives(&self, share: f64, own: &Along) -> [[f64; 2]; 2] {
         let k = self.hyperbola.asymptote;
-        let [y, y_by] = own.dilatancy;
-        let [g_u, g_w] = self.paces(y);
+        let ([y, y_by], dilating) = (own.dilatancy, self.circle.dilating);
+        let [g_u, g_w] = self.circle.paces(y);
         let denominator = g_u + g_w + k * share * g_w;
         let circle = [1.0, -(1.0 + k * share)];
         if share >= self.hyperbola.failure_ratio {
             return [circle.map(|by| by / denominator), [0.0; 2]];
         }
         let multiplier = own.multiplier[0];
-        let strain = self.hyperbola.strain(own.confinement, share);
         // -denominator dΛ + a dx = -(dU - (1 + k x) dW) and b dΛ + c dx = -s' dW.
-        let denominator_by =
-            (self.dilating[1] * (1.0 + k * share) - self.dilating[0]) * y_by + k * g_w;
-        let from = self.hyperbola.confinement(self.trial[1]);
+        let denominator_by = (dilating[1] * (1.0 + k * share) - dilating[0]) * y_by + k * g_w;
+        let from = self.hyperbola.confinement(self.circle.ends[1]);
         let a = -k * from - multiplier * denominator_by;
-        let b = strain.by_s * g_w - 1.0;
-        let c = strain.by_s * multiplier * self.dilating[1] * y_by + strain.by_share;
+        let by_s = own.strain_by[0];
+        let b = by_s * g_w - 1.0;
+        let c = by_s * multiplier * dilating[1] * y_by + own.strain_by[1];
         let determinant = -denominator * c - a * b;
         let by = |index: usize| {
-            let pressed = if index == 1 { strain.by_s } else { 0.0 };
+            let pressed = if index == 1 { by_s } else { 0.0 };
             [
                 (-circle[index] * c + a * pressed) / determinant,
                 (denominator * pressed + b * circle[index]) / determinant,
@@ -207,35 +149,37 @@ impl Path<'_> {
         [[up[0], low[0]], [up[1], low[1]]]
     }
 
-    /// The derivative of the stress by the trial strain \[stress\].
-    fn tangent(&self, moduli: &Moduli, share: f64, own: &Along, planes: Planes) -> [[f64; 3]; 3] {
-        let ([multiplier, _], [y, y_by]) = (own.multiplier, own.dilatancy);
-        let [g_u, g_w] = self.paces(y);
-        let elastic = moduli.tangent();
-        let mean = |a: usize, b: usize| -> Principal {
-            std::array::from_fn(|c| 0.5 * (elastic[a][c] + elastic[b][c]))
+    /// The stress of a share, and whether it is within the part of the surface of its planes with multipliers that are not negative.
+    pub(super) fn sheared(&self, share: f64, own: &Along) -> (Sheared, bool) {
+        let ([multiplier, _], [y, _]) = (own.multiplier, own.dilatancy);
+        let [_, g_w] = self.circle.paces(y);
+        let low = self.circle.ends[1] + multiplier * g_w;
+        // By the circle, and not by the way from a trial stress that may be far larger: the stress is on the surface to the last bit.
+        let up = low + self.hyperbola.asymptote * share * self.hyperbola.confinement(low);
+        let stress = self.circle.stress([up, low], multiplier, y);
+        let is_positive = own.confinement[0] > 0.0 && multiplier >= 0.0;
+        let valid = is_positive && self.circle.holds(&stress, multiplier, y);
+        let sheared = Sheared {
+            stress,
+            tangent: if valid {
+                self.circle.tangent(&self.flow(share, own))
+            } else {
+                [[0.0; 3]; 3]
+            },
+            delta_gamma: multiplier,
+            shear: Shear::On(self.circle.planes),
         };
-        let rows: [Principal; 2] = match planes {
-            Planes::Main | Planes::Apex => [elastic[0], elastic[2]],
-            Planes::Compression => [elastic[0], mean(1, 2)],
-            Planes::Extension => [mean(0, 1), elastic[2]],
-        };
-        let [multiplier_by, share_by] = self.derivatives(share, own);
-        let by = |[up, low]: [f64; 2]| -> Principal {
-            std::array::from_fn(|c| up * rows[0][c] + low * rows[1][c])
-        };
-        let (flow, turn) = (by(multiplier_by), by(share_by));
-        let moved = |row: &Principal, pace: f64, dilating: f64| -> Principal {
-            let turned = multiplier * dilating * y_by;
-            std::array::from_fn(|c| row[c] + pace * flow[c] + turned * turn[c])
-        };
-        let upper = moved(&rows[0], -g_u, self.dilating[0]);
-        let lower = moved(&rows[1], g_w, self.dilating[1]);
-        let aside = moduli.aside();
-        match planes {
-            Planes::Main | Planes::Apex => [upper, moved(&elastic[1], aside * y, aside), lower],
-            Planes::Compression => [upper, lower, lower],
-            Planes::Extension => [upper, upper, lower],
+        (sheared, valid)
+    }
+
+    /// What the tangent goes by.
+    fn flow(&self, share: f64, own: &Along) -> Flow {
+        let [multiplier_by, unknown_by] = self.derivatives(share, own);
+        Flow {
+            multiplier: own.multiplier[0],
+            multiplier_by,
+            dilatancy: own.dilatancy,
+            unknown_by,
         }
     }
 }
@@ -247,24 +191,20 @@ pub(super) fn sheared(
     trial: &Principal,
     gamma_p: f64,
 ) -> Option<Sheared> {
-    let to = |planes| on(hyperbola, moduli, trial, gamma_p, planes);
-    let (main, valid) = to(Planes::Main)?;
-    if valid {
-        return Some(main);
-    }
     let mut beyond = true;
-    for planes in [Planes::Compression, Planes::Extension] {
-        let (edge, valid) = to(planes)?;
+    for planes in Planes::ALL {
+        let (own, valid) = on(hyperbola, moduli, trial, gamma_p, planes)?;
         if valid {
-            return Some(edge);
+            return Some(own);
         }
-        beyond &= hyperbola.confinement(edge.stress[2]) <= 0.0 || edge.delta_gamma < 0.0;
+        let is_beyond = hyperbola.confinement(own.stress[2]) <= 0.0 || own.delta_gamma < 0.0;
+        beyond &= is_beyond || planes == Planes::Main;
     }
     beyond.then_some(Sheared {
         stress: [-hyperbola.attraction; 3],
         tangent: [[0.0; 3]; 3],
         delta_gamma: 0.0,
-        planes: Planes::Apex,
+        shear: Shear::Apex,
     })
 }
 
@@ -276,46 +216,11 @@ fn on(
     gamma_p: f64,
     planes: Planes,
 ) -> Option<(Sheared, bool)> {
-    let path = Path::new(hyperbola, moduli, trial, gamma_p, planes);
+    let path = Path {
+        hyperbola,
+        circle: Circle::new(moduli, trial, planes),
+        gamma_p,
+    };
     let share = path.share()?;
-    let own = path.at(share);
-    let ([multiplier, _], [y, _]) = (own.multiplier, own.dilatancy);
-    let [_, g_w] = path.paces(y);
-    let low = path.trial[1] + multiplier * g_w;
-    // By the circle, and not by the way from a trial stress that may be far larger: the stress is on the surface to the last bit.
-    let up = low + hyperbola.asymptote * share * hyperbola.confinement(low);
-    let middle = trial[1] + multiplier * moduli.aside() * y;
-    let inside = own.confinement > 0.0 && multiplier >= 0.0;
-    let slack = 1e-14 * (trial[0].abs() + trial[2].abs());
-    let (stress, valid) = match planes {
-        Planes::Main | Planes::Apex => (
-            [up, middle, low],
-            inside && middle <= up + slack && middle >= low - slack,
-        ),
-        Planes::Compression => {
-            let apart = (trial[1] - trial[2]) / (moduli.shear * (1.0 + y));
-            (
-                [up, low, low],
-                inside && multiplier >= (1.0 - ROUND_OFF) * apart,
-            )
-        }
-        Planes::Extension => {
-            let apart = (trial[0] - trial[1]) / (moduli.shear * (1.0 - y));
-            (
-                [up, up, low],
-                inside && multiplier >= (1.0 - ROUND_OFF) * apart,
-            )
-        }
-    };
-    let sheared = Sheared {
-        stress,
-        tangent: if valid {
-            path.tangent(moduli, share, &own, planes)
-        } else {
-            [[0.0; 3]; 3]
-        },
-        delta_gamma: multiplier,
-        planes,
-    };
-    Some((sheared, valid))
+    Some(path.sheared(share, &path.at(share)))
 }

@@ -46,7 +46,46 @@ pub(super) struct Answer {
     pub(super) by_kappa: f64,
 }
 
+/// Plastic strain of a return at a held strength.
+pub(super) struct Strained {
+    /// Plastic strain of the step \[-\].
+    pub(super) strain: f64,
+    /// Its derivative by κ.
+    pub(super) by_kappa: f64,
+    pub(super) is_plastic: bool,
+}
+
 impl Held {
+    /// The plastic strain alone, of a trial strain whose stress is `stress`, in descending order.
+    pub(super) fn strained(
+        &self,
+        elasticity: &Elasticity,
+        (trial, stress): (&Principal, &Principal),
+    ) -> Result<Strained, MaterialError> {
+        if let Self::Pyramid(changing) = self {
+            if changing.strength.holds(stress) {
+                return Ok(Strained {
+                    strain: 0.0,
+                    by_kappa: 0.0,
+                    is_plastic: false,
+                });
+            }
+            if let Some([strain, by_kappa]) = changing.strain(&elasticity.moduli(), stress) {
+                return Ok(Strained {
+                    strain,
+                    by_kappa,
+                    is_plastic: true,
+                });
+            }
+        }
+        let own = self.answer(elasticity, trial, &History::default())?;
+        Ok(Strained {
+            strain: own.strain,
+            by_kappa: own.by_kappa,
+            is_plastic: own.map.regime.is_plastic(),
+        })
+    }
+
     pub(super) fn return_map(
         &self,
         elasticity: &Elasticity,

@@ -21,7 +21,7 @@ use crate::{
 };
 
 pub use curve::{Curve, Decay};
-use held::{Answer, Held, Kind};
+use held::{Answer, Held, Kind, Strained};
 pub use undrained::{Directions, RateEffect};
 use undrained::{Moment, NO_DIRECTION, angle_of_compression};
 
@@ -284,7 +284,7 @@ impl Softening {
         let held = self.kind.held(self.elasticity, 0.0, &moment)?;
         for path in [[1.0, 0.0, -1.0], [1.0, 1.0, -2.0], [2.0, -1.0, -1.0]] {
             let answer = self.at_first_yield(&held, path)?;
-            if self.own_share() * answer.by_kappa < 1.0 - LEAST_MARGIN {
+            if self.margin(answer.by_kappa) > LEAST_MARGIN {
                 continue;
             }
             return Err(MaterialError::InvalidParameter {
@@ -339,14 +339,14 @@ impl Softening {
         self.kind.held(self.elasticity, measure, &moment)
     }
 
-    /// The plastic strain at the end of a step, with the answer there: the zero of
+    /// The plastic strain at the end of a step, with the strength there: the zero of
     /// $`g(\kappa) = \kappa_n + \Delta\kappa(\kappa) - \kappa`$ (theory, eq. 106), by Newton's method between bounds.
     fn settled(
         &self,
-        trial: &Principal,
+        trial: (&Principal, &Principal),
         (history, mut moment): (&History, Moment),
-        first: Answer,
-    ) -> Result<(f64, Answer), MaterialError> {
+        (mut held, mut strained): (Held, Strained),
+    ) -> Result<(f64, Held), MaterialError> {
         let before = self.plastic_strain(history);
         // A rate goes with the step alone, which may be small beside what was before.
         let origin = if moment.rate.is_some() { before } else { 0.0 };
@@ -354,29 +354,28 @@ impl Softening {
         // It is a difference of strains, whose round-off is in it.
         let (noise, patience, threshold) = match &moment.rate {
             Some((own, duration)) => {
-                let noise = 4.0 * f64::EPSILON * largest(trial);
+                let noise = 4.0 * f64::EPSILON * largest(trial.0);
                 (noise, 16, own.threshold(*duration))
             }
             None => (0.0, 4, f64::INFINITY),
         };
         let (mut low, mut high) = (begin, f64::INFINITY);
-        let (mut kappa, mut answer) = (begin, first);
+        let mut kappa = begin;
         let mut is_last = false;
         for correction in 1..=MOST_CORRECTIONS {
-            let gap = begin + answer.strain - kappa;
-            let margin = self.margin(&answer);
+            let gap = begin + strained.strain - kappa;
+            let margin = self.margin(strained.by_kappa);
             let mut next = kappa + gap / margin.max(LEAST_MARGIN);
             if correction == 1 && next > threshold {
                 // From there, where strength begins to grow, Newton's method comes nearer and never past.
                 next = threshold;
             }
-            let is_plastic = answer.map.regime.is_plastic();
-            let is_closed = gap.abs() <= 4.0 * f64::EPSILON * (begin + answer.strain) + noise;
-            if is_plastic && (is_closed || is_last || next.to_bits() == kappa.to_bits()) {
+            let is_closed = gap.abs() <= 4.0 * f64::EPSILON * (begin + strained.strain) + noise;
+            if strained.is_plastic && (is_closed || is_last || next.to_bits() == kappa.to_bits()) {
                 return if margin < LEAST_MARGIN {
                     Err(MaterialError::SnapBack { law: self.name() })
                 } else {
-                    Ok((origin + kappa, answer))
+                    Ok((origin + kappa, held))
                 };
             }
             if gap > 0.0 {
@@ -397,8 +396,8 @@ impl Softening {
             kappa = next;
             moment.step = kappa - begin;
             let measure = self.measure(origin + kappa, history);
-            let held = (self.kind).held(self.elasticity, measure, &moment)?;
-            answer = held.answer(&self.elasticity, trial, history)?;
+            held = (self.kind).held(self.elasticity, measure, &moment)?;
+            strained = held.strained(&self.elasticity, trial)?;
         }
         Err(MaterialError::NotConverged { law: self.name() })
     }

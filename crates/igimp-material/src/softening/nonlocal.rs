@@ -1,9 +1,9 @@
 //! Strength by the over-nonlocal measure of plastic strain: what a point is to the ground around it (theory, eqs. 110a to 110c).
 
 use super::Softening;
-use super::held::Answer;
 use crate::error::{positive, required};
 use crate::law::trial_stress;
+use crate::spectral::principal::{descending, sorted};
 use crate::{History, MaterialError, Nonlocal, NonlocalRates, Principal, ReturnMap};
 
 impl Nonlocal {
@@ -53,8 +53,8 @@ impl Softening {
     }
 
     /// What is left of elastic stiffness beside softening by a point's own plastic strain \[-\]; above 1 it hardens.
-    pub(super) fn margin(&self, answer: &Answer) -> f64 {
-        1.0 - self.own_share() * answer.by_kappa
+    pub(super) fn margin(&self, by_kappa: f64) -> f64 {
+        1.0 - self.own_share() * by_kappa
     }
 
     /// The return in a step of a duration \[time\], with what plastic and nonlocal strain are to each other. The tangent is that at
@@ -66,7 +66,7 @@ impl Softening {
         history: &History,
         duration: f64,
     ) -> Result<ReturnMap, MaterialError> {
-        trial_stress(&self.elasticity, eps_e_trial)?;
+        let stress = trial_stress(&self.elasticity, eps_e_trial)?;
         let moment = self.moment(history, duration);
         let before = self.plastic_strain(history);
         let measure = self.measure(before, history);
@@ -74,12 +74,15 @@ impl Softening {
         if self.is_perfect() {
             return held.return_map(&self.elasticity, eps_e_trial, history);
         }
-        let first = held.answer(&self.elasticity, eps_e_trial, history)?;
-        if !first.map.regime.is_plastic() {
-            return Ok(first.map);
+        let stress = sorted(&stress, &descending(&stress));
+        let first = held.strained(&self.elasticity, (eps_e_trial, &stress))?;
+        if !first.is_plastic {
+            return held.return_map(&self.elasticity, eps_e_trial, history);
         }
-        let (kappa, answer) = self.settled(eps_e_trial, (history, moment), first)?;
-        let (margin, own) = (self.margin(&answer), self.own_share());
+        let trial = (eps_e_trial, &stress);
+        let (kappa, held) = self.settled(trial, (history, moment), (held, first))?;
+        let answer = held.answer(&self.elasticity, eps_e_trial, history)?;
+        let (margin, own) = (self.margin(answer.by_kappa), self.own_share());
         let mut map = answer.map;
         for (row, rate) in map.tangent.iter_mut().zip(answer.stress_rate) {
             for (entry, along) in row.iter_mut().zip(answer.by_trial) {

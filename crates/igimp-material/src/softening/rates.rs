@@ -1,5 +1,6 @@
 //! How the stress on a pyramid moves with its strength, the trial strain being kept (theory, eq. 107).
 
+use crate::elasticity::Moduli;
 use crate::pyramid::PlaneStrength;
 use crate::spectral::principal::{Principal, dot};
 use crate::{Elasticity, Regime};
@@ -53,6 +54,26 @@ impl Changing {
             strength: self.strength.tension_cutoff.unwrap_or(f64::INFINITY),
             strength_rate: self.rate.tension_cutoff.unwrap_or(0.0),
         }
+    }
+
+    /// Plastic strain of a return, and its derivative by κ \[-\], where the trial stress, in descending order, goes to the main plane of
+    /// shear or to an edge beside it; else none.
+    pub(crate) fn strain(&self, moduli: &Moduli, trial: &Principal) -> Option<[f64; 2]> {
+        let Self { strength, rate } = self;
+        let own = strength.circle(moduli, trial)?;
+        let (sine, y, y_rate) = (
+            strength.sin_friction,
+            strength.sin_dilation,
+            rate.sin_dilation,
+        );
+        let ([up, low], [l_u, l_w]) = (own.ends, own.circle.dilating);
+        let [g_u, g_w] = own.circle.paces(y);
+        let [upper, lower] = [1.0 - sine, 1.0 + sine];
+        let turned = own.multiplier * y_rate * (upper * l_u - lower * l_w);
+        let multiplier_rate =
+            (turned - rate.sin_friction * (up + low) - rate.shear) / (upper * g_u + lower * g_w);
+        let [kappa, by_multiplier, by_y] = own.circle.equivalent(own.multiplier, y);
+        Some([kappa, by_multiplier * multiplier_rate + by_y * y_rate])
     }
 
     /// ∂τ/∂κ at a stress that a trial stress was returned to, both in descending order \[stress\].
