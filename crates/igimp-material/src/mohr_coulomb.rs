@@ -131,7 +131,7 @@ impl MohrCoulomb {
             tension_cutoff: None,
             is_davis: false,
         };
-        Self::build(elasticity, given)
+        Self::build(elasticity, given, Pyramid::new)
     }
 
     /// The law with the largest principal stress bounded by $`\sigma_t`$ = `tension_cutoff`
@@ -142,11 +142,11 @@ impl MohrCoulomb {
     /// # Errors
     /// [`MaterialError::InvalidParameter`] if `tension_cutoff` is negative or not finite.
     pub fn with_tension_cutoff(self, tension_cutoff: f64) -> Result<Self, MaterialError> {
-        self.at_strength(
-            self.given.cohesion,
-            self.given.friction_angle,
-            Some(tension_cutoff),
-        )
+        let given = Parameters {
+            tension_cutoff: Some(tension_cutoff),
+            ..self.given
+        };
+        self.at_strength(given, Pyramid::new)
     }
 
     /// The law with associated flow on the strengths of Davis (1968, eq. 21a), which soil of this ψ mobilises along lines of no
@@ -159,7 +159,7 @@ impl MohrCoulomb {
             is_davis: true,
             ..self.given
         };
-        Self::build(*self.stiffness_bound(), given)
+        Self::build(*self.stiffness_bound(), given, Pyramid::new)
     }
 
     /// Cohesion c as given \[stress\].
@@ -182,7 +182,11 @@ impl MohrCoulomb {
         self.given.tension_cutoff
     }
 
-    fn build(elasticity: Elasticity, given: Parameters) -> Result<Self, MaterialError> {
+    fn build(
+        elasticity: Elasticity,
+        given: Parameters,
+        pyramid: impl FnOnce(Elasticity, &PlaneStrength) -> Pyramid,
+    ) -> Result<Self, MaterialError> {
         let Parameters {
             cohesion,
             friction_angle,
@@ -222,7 +226,7 @@ impl MohrCoulomb {
             apex,
             tension_cutoff: tension_cutoff.filter(|&cutoff| cutoff < apex),
         };
-        let pyramid = Pyramid::new(elasticity, &surface);
+        let pyramid = pyramid(elasticity, &surface);
         Ok(Self {
             given,
             dilatancy: if friction_angle > 0.0 && !is_davis {
@@ -235,21 +239,17 @@ impl MohrCoulomb {
         })
     }
 
-    /// The law at another strength: ψ stays but never exceeds φ, and ψ/φ as given is kept.
+    /// The law at another strength: ψ never exceeds φ, and ψ/φ as given is kept.
     fn at_strength(
         &self,
-        cohesion: f64,
-        friction_angle: f64,
-        tension_cutoff: Option<f64>,
+        given: Parameters,
+        pyramid: impl FnOnce(Elasticity, &PlaneStrength) -> Pyramid,
     ) -> Result<Self, MaterialError> {
         let given = Parameters {
-            cohesion,
-            friction_angle,
-            dilation_angle: self.given.dilation_angle.min(friction_angle),
-            tension_cutoff,
-            is_davis: self.given.is_davis,
+            dilation_angle: given.dilation_angle.min(given.friction_angle),
+            ..given
         };
-        let law = Self::build(*self.stiffness_bound(), given)?;
+        let law = Self::build(*self.stiffness_bound(), given, pyramid)?;
         Ok(Self {
             dilatancy: self.dilatancy,
             ..law
@@ -328,21 +328,23 @@ impl Strength for MohrCoulomb {
             ratio >= 0.0,
             "finite and not negative",
         )?;
-        let friction_angle = (self.given.friction_angle.tan() * ratio).atan();
-        let law = self.at_strength(
-            self.given.cohesion,
-            friction_angle,
-            self.given.tension_cutoff,
-        )?;
-        Ok(Some(Arc::new(law)))
+        let given = Parameters {
+            friction_angle: (self.given.friction_angle.tan() * ratio).atan(),
+            ..self.given
+        };
+        // A point has its own, which is asked once.
+        Ok(Some(Arc::new(self.at_strength(given, Pyramid::once)?)))
     }
 
     /// Divides c, tan φ and the cut-off by `srf`; ψ stays but never exceeds the reduced φ.
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
         positive("srf", srf)?;
-        let friction_angle = (self.given.friction_angle.tan() / srf).atan();
-        let cutoff = self.given.tension_cutoff.map(|cutoff| cutoff / srf);
-        let law = self.at_strength(self.given.cohesion / srf, friction_angle, cutoff)?;
-        Ok(Arc::new(law))
+        let given = Parameters {
+            cohesion: self.given.cohesion / srf,
+            friction_angle: (self.given.friction_angle.tan() / srf).atan(),
+            tension_cutoff: self.given.tension_cutoff.map(|cutoff| cutoff / srf),
+            ..self.given
+        };
+        Ok(Arc::new(self.at_strength(given, Pyramid::new)?))
     }
 }

@@ -222,15 +222,26 @@ fn return_to(
 pub(crate) struct Pyramid {
     elasticity: Elasticity,
     strength: PlaneStrength,
-    surface: PlanarSurface,
+    /// Its parts, of a body that is asked often.
+    surface: Option<PlanarSurface>,
 }
 
 impl Pyramid {
+    /// For many returns.
     pub(crate) fn new(elasticity: Elasticity, strength: &PlaneStrength) -> Self {
+        let surface = strength.outlined(|outline| PlanarSurface::new(&elasticity, outline));
+        Self {
+            surface: Some(surface),
+            ..Self::once(elasticity, strength)
+        }
+    }
+
+    /// For one return or few.
+    pub(crate) fn once(elasticity: Elasticity, strength: &PlaneStrength) -> Self {
         Self {
             elasticity,
             strength: *strength,
-            surface: strength.outlined(|outline| PlanarSurface::new(&elasticity, outline)),
+            surface: None,
         }
     }
 
@@ -239,11 +250,11 @@ impl Pyramid {
     }
 
     pub(crate) fn yield_function(&self, tau: &Principal) -> f64 {
-        self.surface.yield_function(&sorted(tau, &descending(tau)))
+        self.strength.yield_function(tau)
     }
 
     pub(crate) fn stress_scale(&self, tau: &Principal) -> f64 {
-        self.surface.stress_scale(tau)
+        scale(&self.strength.shear_planes(), tau)
     }
 
     /// Share of the shear strength that is mobilised \[-\].
@@ -256,7 +267,9 @@ impl Pyramid {
         eps_e_trial: &Principal,
         history: History,
     ) -> Result<ReturnMap, MaterialError> {
-        let surface = &self.surface;
+        let Some(surface) = &self.surface else {
+            return (self.strength).return_map(&self.elasticity, eps_e_trial, history);
+        };
         let bounds = |tau: &Principal| [surface.yield_function(tau), surface.stress_scale(tau)];
         let project = |strain: &_, trial: &_| surface.project(strain, trial);
         return_to(&self.elasticity, (bounds, project), eps_e_trial, history)
@@ -363,7 +376,8 @@ mod tests {
         for poisson in [-0.5, 0.0, 0.3, 0.4999] {
             let elasticity = Elasticity::new(100.0, poisson).unwrap();
             for strength in strengths() {
-                let surface = Pyramid::new(elasticity, &strength).surface;
+                let pyramid = Pyramid::new(elasticity, &strength);
+                let surface = pyramid.surface.unwrap();
                 let mut seen = std::collections::BTreeSet::new();
                 for _ in 0..5_000 {
                     let size = 10_f64.powf(2.5 * symmetric(&mut state));
