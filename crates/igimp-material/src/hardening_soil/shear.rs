@@ -11,6 +11,9 @@ use crate::spectral::principal::Principal;
 /// Most corrections of the share; a bisection to the last bit takes no more.
 const MOST_CORRECTIONS: usize = 80;
 
+/// Share of the share below which a correction of Newton's method is the last \[-\].
+const CLOSE: f64 = 1e-9;
+
 /// Where on the surface of shear a stress is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shear {
@@ -86,10 +89,11 @@ impl Path<'_> {
     /// The share at which hyperbola and flow have the same strain; that at failure where flow goes on.
     fn share(&self) -> Option<f64> {
         let failure = self.hyperbola.failure_ratio;
-        if self.gamma_p.is_infinite() || self.at(failure).residual[0] <= 0.0 {
+        if self.gamma_p.is_infinite() {
             return Some(failure);
         }
         let (mut low, mut high) = (0.0, failure);
+        let mut is_bounded = false;
         let mut share = self.hyperbola.share(
             self.hyperbola.confinement(self.circle.ends[1]),
             self.gamma_p,
@@ -98,20 +102,27 @@ impl Path<'_> {
             let own = self.at(share);
             let [residual, slope] = own.residual;
             if residual > 0.0 {
-                high = share;
+                (high, is_bounded) = (share, true);
+            } else if share >= failure {
+                return Some(failure);
             } else {
                 low = share;
             }
             if residual.abs() <= 4.0 * f64::EPSILON * (self.gamma_p + own.multiplier[0].abs()) {
                 return Some(share);
             }
-            let next = share - residual / slope;
-            let next = if next > low && next < high {
-                next
-            } else {
+            let newton = share - residual / slope;
+            let is_newton = newton > low && newton < high;
+            let next = if is_newton {
+                newton
+            } else if is_bounded {
                 0.5 * (low + high)
+            } else {
+                failure
             };
-            if (next - share).abs() <= f64::EPSILON * share {
+            // An error of the share is one of its square on the next.
+            let close = if is_newton { CLOSE } else { f64::EPSILON };
+            if (next - share).abs() <= close * share {
                 return Some(next);
             }
             share = next;
