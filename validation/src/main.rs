@@ -23,6 +23,7 @@ mod reinforcement;
 mod runs;
 mod slope_profile;
 mod slopes;
+mod softening_footing;
 mod space;
 mod stages;
 mod strength_profile;
@@ -109,6 +110,7 @@ enum Case {
     StrengthProfile,
     SlopeProfile,
     AnisotropicSlope,
+    SofteningFooting,
     ReinforcementBar,
     ReinforcementSeam,
     ReinforcementCut,
@@ -181,6 +183,7 @@ impl Case {
             Self::StrengthProfile => strength_profile::study(level, out),
             Self::SlopeProfile => slope_profile::study(level, out),
             Self::AnisotropicSlope => anisotropic_slope::study(level, out),
+            Self::SofteningFooting => softening_footing::study(level, out),
             Self::ReinforcementBar => reinforcement::bar::study(out),
             Self::ReinforcementSeam => reinforcement::seam::study(level, out),
             Self::ReinforcementCut => reinforcement::cut::study(level, out),

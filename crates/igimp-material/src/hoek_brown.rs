@@ -302,7 +302,7 @@ impl HoekBrown {
         let [ratio, share, _] = self.powers;
         let intact = self.parameters.intact_strength;
         let [up, low] = circle.ends;
-        let [g_u, g_w] = circle.paces(0.0);
+        let [g_u, g_w] = circle.paces(self.parameters.dilation_angle.sin());
         let pace = g_u / g_w;
         let straight = intact / ratio * (1.0 + pace);
         let far = up + pace * low + share * straight;
