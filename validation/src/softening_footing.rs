@@ -22,7 +22,7 @@ const PRANDTL: Oracle = Oracle {
 const BOUNDS: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,
     source: "limit loads of the same mesh with intact and with residual strength",
-    locator: "no load of soil between them is beyond: limit loads grow with the strength",
+    locator: "limit loads grow with the strength, and that of soil on its way lies between",
 };
 const NO_MESH: Oracle = Oracle {
     kind: OracleKind::Theory,
@@ -49,7 +49,7 @@ const APART: f64 = 0.02;
 const MESH: f64 = 0.03;
 
 /// Where meshes are compared without a length, and by how much the coarser has to bear more \[-\].
-const CONTROL: (f64, f64) = (0.0199, 1.08);
+const CONTROL: (f64, f64) = (0.0199, 1.05);
 
 /// How clay loses strength.
 #[derive(Clone, Copy, PartialEq, Eq)]
