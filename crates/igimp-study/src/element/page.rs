@@ -6,7 +6,7 @@ use igimp_results::summary::FigureNote;
 use igimp_text::short;
 
 use super::measure::{Measure, undrained};
-use super::{Drive, Tested, path_words, said, table};
+use super::{Compared, Drive, Tested, path_words, said, table};
 
 /// The page of a folder that has the tables and pictures of the test.
 pub(super) fn page(tested: &Tested) -> Page {
@@ -65,7 +65,7 @@ fn sentence(line: &str) -> String {
 fn warnings(tested: &Tested) -> Vec<String> {
     let varies = tested.material.varies().then(|| sentence(said::VARIES));
     let compared = tested.compared.iter();
-    let beyond = compared.flat_map(|own| own.beyond()).map(|own| {
+    let beyond = compared.flat_map(Compared::beyond).map(|own| {
         format!(
             "{} was measured beyond the early end of the test.",
             own.name()

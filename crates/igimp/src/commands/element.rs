@@ -37,7 +37,7 @@ pub(crate) fn element(arguments: &ElementArguments) -> Result<Exit, ProgramError
         data,
     };
     let mut tested = test(material, &request).map_err(|error| refused(&error))?;
-    tested.warnings = file.warnings.trim_end().to_owned();
+    file.warnings.trim_end().clone_into(&mut tested.warnings);
     let folder = arguments.out.clone().unwrap_or_else(|| {
         let test = if arguments.path.is_some() {
             "path"
