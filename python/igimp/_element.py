@@ -46,7 +46,7 @@ class ElementTest:
         return Tables(made)["data"] if made else None
 
     def save(self, folder: str | os.PathLike[str]) -> Figures:
-        """Writes table and pictures into a folder; the pictures, which a notebook shows."""
+        """Writes ``report.html``, table and pictures into a folder; the pictures, which a notebook shows."""
         folder = Path(folder)
         names = [name for name in self._made.write(folder) if name.endswith(".svg")]
         stems = [name.removesuffix(".svg") for name in names]

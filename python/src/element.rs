@@ -122,7 +122,7 @@ pub(crate) fn element(
     asked: Asked,
     law: Option<Py<PyAny>>,
 ) -> PyResult<ElementTest> {
-    let (_, mut material) = material_of(py, &source)?;
+    let (file, mut material) = material_of(py, &source)?;
     let trouble = Trouble::default();
     if let Some(law) = law {
         give_to(py, &mut material, law, &trouble)?;
@@ -132,7 +132,8 @@ pub(crate) fn element(
     if let Some(raised) = trouble.take() {
         return Err(raised);
     }
-    let tested = tested.map_err(|error| unmade(py, &error))?;
+    let mut tested = tested.map_err(|error| unmade(py, &error))?;
+    file.warnings.trim_end().clone_into(&mut tested.warnings);
     Ok(ElementTest(tested))
 }
 

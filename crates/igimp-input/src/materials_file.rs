@@ -169,10 +169,6 @@ mod tests {
             "materials.sand.softening={ band_width = \"1 m\" }",
             "nothing of `sand` softens",
         );
-        refused(
-            "materials.sand.friction={ depths = [\"0 m\", \"5 m\"], values = [\"35 deg\", \"30 deg\"] }",
-            "friction that softens has to be one angle",
-        );
         refused("materials.sand.softening.friction.strain=0.0", "strain");
         refused(
             "materials.sand.softening.friction.residual=89.5 deg",

@@ -9,6 +9,8 @@ use igimp_model::{AxisSpec, BodyPart, Boundaries, Case, LoadKind, Side, StageKin
 use igimp_results::summary::SetupTable;
 use igimp_text::short;
 
+pub use materials::of_material;
+
 /// Stands for what a row does not have.
 const NONE: &str = "–";
 /// Most corners of a body that are listed one by one.

@@ -27,7 +27,7 @@ pub const SECTION: &str = include_str!("viewer/soil.html");
 pub const STYLE: &str = include_str!("viewer/viewer.css");
 
 /// The script in parts.
-const PARTS: [&str; 19] = [
+const PARTS: [&str; 20] = [
     include_str!("viewer/frame.js"),
     include_str!("viewer/camera.js"),
     include_str!("viewer/slant.js"),
@@ -36,6 +36,7 @@ const PARTS: [&str; 19] = [
     include_str!("viewer/axes.js"),
     include_str!("viewer/water.js"),
     include_str!("viewer/contours.js"),
+    include_str!("viewer/levels.js"),
     include_str!("viewer/outlines.js"),
     include_str!("viewer/overlay.js"),
     include_str!("viewer/seams.js"),

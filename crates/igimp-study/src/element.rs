@@ -4,12 +4,15 @@ mod closed_form;
 mod compared;
 mod data;
 mod measure;
+mod page;
 mod path_file;
+mod path_words;
 mod pictures;
+mod said;
 mod stations;
 mod table;
+mod values;
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use igimp_figures::CurvePlot;
@@ -17,17 +20,18 @@ use igimp_material::{ConstitutiveModel, MaterialError};
 use igimp_model::{Drainage, Material};
 use igimp_report::ReportError;
 use igimp_results::tables::table::Table;
-use igimp_solver::element::{ElementError, ElementPath, ElementRun, ElementState, ElementTest};
-use igimp_text::short;
+use igimp_solver::element::{ElementError, ElementPath, ElementRun, ElementTest};
 use thiserror::Error;
 
 pub use compared::{Compared, Off};
 pub use data::{Data, DataError, Row, parse_data, read_data};
 pub use igimp_solver::element::{Kinematics, StandardTest};
 pub use measure::Measure;
+pub(crate) use page::pictures;
 pub use path_file::{PathFileError, read_path};
 use stations::Stations;
 pub use table::{name_of, of_name};
+use values::KeyValues;
 
 /// What is driven.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +70,11 @@ pub struct Tested {
     pub text: String,
     /// The data beside it.
     pub compared: Option<Compared>,
-    drive: Drive,
+    /// What was said as the file of its material was read, ready to print; it stands on the page. Empty at first.
+    pub warnings: String,
+    request: Request,
+    material: Material,
+    values: KeyValues,
     title: String,
 }
 
@@ -131,23 +139,23 @@ pub fn test(material: &Material, request: &Request) -> Result<Tested, TestError>
         Drive::Standard(standard, _) => name_of(*standard).replace('-', " "),
         Drive::Path(_) => "path".to_owned(),
     };
-    let title = format!("{}: {}, {what}", material.name, material.strength.name());
-    let mut text = said(material, &*law, request, &run, &title);
-    if let Some(own) = &compared {
-        text.push_str(&own.said());
-    }
-    Ok(Tested {
+    let mut tested = Tested {
         table: table::table(
             (&run.states, &ways),
             &request.drive,
             law.internal_variables(),
         ),
-        text,
+        text: String::new(),
+        values: KeyValues::new(material, &*law, request, &run.states),
         run,
         compared,
-        drive: request.drive.clone(),
-        title,
-    })
+        warnings: String::new(),
+        request: request.clone(),
+        title: format!("{}: {}, {what}", material.name, material.strength.name()),
+        material: material.clone(),
+    };
+    tested.text = said::said(&tested);
+    Ok(tested)
 }
 
 /// A law that was driven, with the ways of its states.
@@ -208,7 +216,7 @@ impl Drive {
 impl Tested {
     /// What was measured, what is computed there, and the difference: a table named `data`, if there are data.
     pub fn data_table(&self) -> Option<Table> {
-        Some(self.compared.as_ref()?.table(&self.drive))
+        Some(self.compared.as_ref()?.table(&self.request.drive))
     }
 
     /// The picture of computed less measured over scales of the columns, in SI; none without data.
@@ -216,130 +224,55 @@ impl Tested {
         let compared = self.compared.as_ref()?;
         Some(pictures::residuals(
             compared,
-            &self.drive,
+            &self.request.drive,
             &self.title,
             scales,
         ))
     }
 
-    /// Writes `element.csv`, `data.csv` where there are data, and the pictures into a folder that exists; their names.
+    /// Writes `element.csv`, `data.csv` where there are data, the pictures, and all of it as `report.html` into a folder that exists;
+    /// their names.
     ///
     /// # Errors
     /// [`ReportError`] of what cannot be written.
     pub fn write(&self, folder: &Path) -> Result<Vec<String>, ReportError> {
+        let files = self.write_parts(folder)?;
+        page::page(self).write(folder)?;
+        Ok(["report.html".to_owned()]
+            .into_iter()
+            .chain(files)
+            .collect())
+    }
+
+    /// Writes all but the page.
+    pub(crate) fn write_parts(&self, folder: &Path) -> Result<Vec<String>, ReportError> {
         self.table.write_csv(folder)?;
         let mut names = vec!["element.csv".to_owned()];
         if let Some(table) = self.data_table() {
             table.write_csv(folder)?;
             names.push("data.csv".to_owned());
         }
-        let compared = self.compared.as_ref();
-        for (name, plot) in pictures::plots(&self.run.states, &self.drive, &self.title, compared) {
+        for (name, plot) in self.plots() {
             plot.write(&folder.join(&name))?;
             names.extend(["svg", "png"].map(|kind| format!("{name}.{kind}")));
         }
         Ok(names)
     }
-}
 
-/// The state with the largest of something.
-fn largest(states: &[ElementState], of: impl Fn(&ElementState) -> f64) -> &ElementState {
-    let first = &states[0];
-    states.iter().fold(
-        first,
-        |most, state| if of(state) > of(most) { state } else { most },
-    )
-}
+    /// The pictures by the names of their files.
+    fn plots(&self) -> Vec<(String, CurvePlot)> {
+        let compared = self.compared.as_ref();
+        let drive = &self.request.drive;
+        pictures::plots(&self.run.states, drive, &self.title, compared)
+    }
 
-/// The lines of a test.
-fn said(
-    material: &Material,
-    law: &dyn ConstitutiveModel,
-    request: &Request,
-    run: &ElementRun,
-    title: &str,
-) -> String {
-    let [axial, side] = request.stress.map(|stress| short(stress / 1e3));
-    let steps = run.states.len() - 1;
-    let corrections: usize = run.states.iter().map(|state| state.corrections).sum();
-    let mut text = format!(
-        "{title}\n  from σ_y = {axial} kPa, σ_x = σ_z = {side} kPa, {steps} steps, {corrections} corrections\n"
-    );
-    if material.varies() {
-        text.push_str("  strength or stiffness vary in the case: the greatest count\n");
+    /// What holds of the material in its case and not in the test.
+    fn notes(&self) -> Vec<&'static str> {
+        let varies = self.material.varies().then_some(said::VARIES);
+        let is_undrained = matches!(self.material.drainage, Drainage::Undrained { .. });
+        let undrained = is_undrained.then_some(said::UNDRAINED);
+        varies.into_iter().chain(undrained).collect()
     }
-    if matches!(material.drainage, Drainage::Undrained { .. }) {
-        text.push_str("  stresses are effective ones; an undrained test keeps the volume, whatever the water's stiffness\n");
-    }
-    text.push_str(&values(material, law, request, &run.states));
-    if let Some(lost) = &run.failure {
-        let _ = writeln!(text, "  ended early: {lost}");
-        if let Some(law) = &lost.law {
-            let _ = writeln!(text, "  because: {law}");
-        }
-    }
-    text
-}
-
-/// Peak and end of a test, and what a formula says of it.
-fn values(
-    material: &Material,
-    law: &dyn ConstitutiveModel,
-    request: &Request,
-    states: &[ElementState],
-) -> String {
-    let mut text = String::new();
-    let is_shear = matches!(request.drive, Drive::Standard(test, _) if test.is_shear());
-    let (symbol, measure): (&str, fn(&ElementState) -> f64) = if is_shear {
-        ("τ_xy", |state| state.sigma[0][1])
-    } else {
-        ("q", ElementState::q)
-    };
-    let peak = largest(states, measure);
-    let end = states.last().unwrap_or(peak);
-    let strain = table::abscissa(&request.drive);
-    let percent =
-        |state: &ElementState| short(100.0 * strain.of(state, &states[0], &request.drive));
-    let _ = writeln!(
-        text,
-        "  largest {symbol} {} kPa at {} % of {}",
-        short(measure(peak) / 1e3),
-        percent(peak),
-        table::driven_name(&request.drive),
-    );
-    let _ = writeln!(
-        text,
-        "  at the end, {} %: p {} kPa, q {} kPa, q/p {}, volumetric strain {} %, mobilised {}",
-        percent(end),
-        short(end.p() / 1e3),
-        short(end.q() / 1e3),
-        short(end.q() / end.p()),
-        short(100.0 * end.volumetric_strain()),
-        short(law.utilisation(&principal(end, request.kinematics), &end.history)),
-    );
-    if let Drive::Standard(standard, strain) = request.drive
-        && strain > 0.0
-        && let Some(own) = closed_form::strength(material, standard, request, end)
-    {
-        let _ = writeln!(
-            text,
-            "  closed form at failure: {symbol} = {} kPa, {}; at the end {} % of it",
-            short(own.value / 1e3),
-            own.from,
-            short(100.0 * measure(end) / own.value),
-        );
-    }
-    text
-}
-
-/// Principal stresses, Kirchhoff \[Pa\].
-fn principal(state: &ElementState, kinematics: Kinematics) -> [f64; 3] {
-    let volume = match kinematics {
-        Kinematics::Finite => (-state.volumetric_strain()).exp(),
-        Kinematics::Small => 1.0,
-    };
-    let tau = state.sigma.map(|row| row.map(|stress| stress * volume));
-    igimp_material::principal_values::<3>(&tau)
 }
 
 #[cfg(test)]

@@ -320,7 +320,7 @@ impl Fitted {
                 path: own.clone(),
                 source,
             })?;
-            let mut files = tested.write(&own)?;
+            let mut files = tested.write_parts(&own)?;
             let scales: Vec<f64> = scales.iter().map(|own| own * self.deviation).collect();
             let plot = tested.residuals(&scales).filter(|_| self.deviation > 0.0);
             if let Some(plot) = plot {

@@ -195,7 +195,7 @@ pub(crate) struct ElementArguments {
     /// Replace a value of the file, as in materials.clay.cohesion="12 kPa" (may be repeated).
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Folder of the table and the pictures; results/element-MATERIAL-TEST when not given.
+    /// Folder of the report, tables and pictures; results/element-MATERIAL-TEST when not given.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 }
@@ -237,14 +237,14 @@ pub(crate) struct FitArguments {
     /// Replace a value of the file, as in materials.clay.cohesion="12 kPa" (may be repeated).
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Folder of tables and pictures; results/fit-MATERIAL when not given.
+    /// Folder of the report, tables and pictures; results/fit-MATERIAL when not given.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct View {
-    /// Results folder; its run may still be going on.
+    /// Results folder; its run may still be going on. Of a test or a fit the report is opened.
     pub(crate) folder: PathBuf,
     /// Results folder of another run, shown beside it: frames and fields are chosen for both.
     #[arg(long, value_name = "DIR")]

@@ -11,6 +11,7 @@ mod pieces;
 mod profiles;
 mod rasters;
 mod seeding;
+mod softening_friction;
 mod solid_bodies;
 mod solids;
 

@@ -133,8 +133,7 @@ fn material<const D: usize>(
         (None, Some(Strength::HardeningSoil(own))) => Some([own.unloading, own.poisson]),
         (None, _) => None,
     };
-    let varies = profile(friction.as_ref()).is_some();
-    let softening = softening::curves(name, &own.form, (strength, varies), problems);
+    let softening = softening::curves(name, &own.form, strength, problems);
     let drainage = drainage((common, &own.form), stiffness, strength, problems);
     let permeable = permeability(common, extent, problems).ok()?;
     let material = Material {
@@ -159,9 +158,9 @@ fn material<const D: usize>(
         },
     };
     if problems.errors() == before
-        && let Err(error) = material.law()
+        && let Err(why) = checks::possible(&material, 0.0)
     {
-        let message = format!("the material `{}` is not possible: {error}", clip(name, 40));
+        let message = format!("the material `{}` is not possible{why}", clip(name, 40));
         problems.error(stated.place, message);
     }
     Some(material)

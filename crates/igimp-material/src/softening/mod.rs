@@ -557,10 +557,15 @@ impl Strength for Softening {
         let is_ratio = ratio >= 0.0;
         required("friction ratio", ratio, is_ratio, "finite and not negative")?;
         let mut kind = self.kind;
-        let Kind::MohrCoulomb { friction, .. } = &mut kind else {
+        let Kind::MohrCoulomb {
+            cohesion, friction, ..
+        } = &mut kind
+        else {
             return Ok(None);
         };
         *friction = friction.map(|tangent| tangent * ratio);
+        let (left, angle) = (cohesion.residual, friction.residual.atan());
+        MohrCoulomb::new(self.elasticity, left, angle, 0.0)?;
         Ok(Some(Arc::new(self.with(kind)?)))
     }
 

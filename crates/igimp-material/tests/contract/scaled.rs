@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use igimp_material::{
-    ConstitutiveModel, Elasticity, HenckyElastic, History, MohrCoulomb, PointContext, Principal,
-    Ratios, ScaledLaw, Strength, TangentKind, Tresca, VonMises, lift_finite, lift_small,
+    ConstitutiveModel, Curve, Decay, Elasticity, FrictionalCurves, HenckyElastic, History,
+    MohrCoulomb, PointContext, Principal, Ratios, ScaledLaw, Softening, Strength, TangentKind,
+    Tresca, VonMises, lift_finite, lift_small,
 };
 
 use crate::random::Random;
@@ -249,4 +250,70 @@ fn friction_at_a_ratio_is_the_law_with_that_friction() {
     assert!(make(0.0, 0.5, 0.0).at_friction(0.0).is_err());
     let tresca = Tresca::new(elasticity, 1.0).unwrap();
     assert!(tresca.at_friction(0.5).unwrap().is_none());
+}
+
+/// A softening law by the tangents of φ and by ψ, initial and residual.
+fn softening(residual_cohesion: f64, tangents: [f64; 2], dilation: [f64; 2]) -> Softening {
+    let curve = |[initial, residual]: [f64; 2]| Curve {
+        initial,
+        residual,
+        strain: 0.1,
+        decay: Decay::Exponential,
+    };
+    let curves = FrictionalCurves {
+        cohesion: curve([1.3, residual_cohesion]),
+        friction_angle: curve(tangents.map(f64::atan)),
+        dilation_angle: curve(dilation),
+    };
+    Softening::mohr_coulomb(Elasticity::new(100.0, 0.3).unwrap(), curves, None).unwrap()
+}
+
+/// GOAL: friction of a softening law at a ratio is the law made with those angles, initial and residual, with the dilation that it has
+/// or that of φ where that is less; at one it is the law itself.
+/// ORACLE: the law made with them. BAND: 1e-12 of stiffness and stress, at one to the bit.
+#[test]
+fn friction_that_softens_at_a_ratio_is_the_law_with_those_angles() {
+    let tangents = [0.8, 0.4];
+    // Dilation that is nowhere above φ, and one that is above it all along.
+    let rows = [
+        ([0.1, 0.0], 0.6, [0.1, 0.0]),
+        ([0.1, 0.0], 1.3, [0.1, 0.0]),
+        ([0.1, 0.0], 1.0, [0.1, 0.0]),
+        ([0.6, 0.3], 0.3, tangents.map(|own| (0.3_f64 * own).atan())),
+        ([0.1, 0.05], 0.0, [0.0, 0.0]),
+    ];
+    let mut random = Random(47);
+    for (dilation, ratio, acting) in rows {
+        let law = softening(0.4, tangents, dilation);
+        let at: Law = law.at_friction(ratio).unwrap().unwrap();
+        let made = softening(0.4, tangents.map(|own| ratio * own), acting);
+        for k in 0..600 {
+            let size = [1e-3, 1e-2, 0.1, 0.5][k % 4];
+            let strain: Principal = random.values(size);
+            let mut history = History::default();
+            history.internal[0] = [0.0, random.between(0.0, 0.3)][k % 2];
+            let answer = |law: &dyn ConstitutiveModel| {
+                law.return_map(&strain, &history, &PointContext::STATIC)
+                    .unwrap()
+            };
+            let (one, other) = (answer(&*at), answer(&made));
+            for a in 0..3 {
+                assert!(close(one.tau[a], other.tau[a], 300.0 * size), "{ratio}");
+            }
+            let [one_kappa, kappa] = [one, other].map(|own| own.history.internal[0]);
+            assert!(close(one_kappa, kappa, 3.0 * size), "{ratio}");
+            if ratio.total_cmp(&1.0).is_eq() {
+                let own = answer(&law);
+                assert_eq!((own.tau, own.tangent), (one.tau, one.tangent));
+                assert_eq!(own.history, one.history);
+            }
+        }
+    }
+    assert!(
+        softening(0.4, tangents, [0.0; 2])
+            .at_friction(-0.1)
+            .is_err()
+    );
+    let bare = softening(0.0, tangents, [0.0; 2]);
+    assert!(bare.at_friction(0.0).is_err(), "nothing is left of it");
 }

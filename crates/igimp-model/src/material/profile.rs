@@ -58,6 +58,16 @@ impl Profile {
         }
     }
 
+    /// The least of the values that a table of levels or depths states; none of other profiles.
+    pub fn least(&self) -> Option<f64> {
+        match self {
+            Self::Level(Variation::Table(rows)) | Self::Depth(Variation::Table(rows)) => {
+                rows.iter().map(|row| row[1]).reduce(f64::min)
+            }
+            _ => None,
+        }
+    }
+
     /// The integral from a place up to a level; of a share of the stress, none is asked for, that of its value at the
     /// place.
     pub(crate) fn integral<const D: usize>(

@@ -37,6 +37,8 @@ pub struct Section {
     pub title: String,
     /// Paragraphs.
     pub sentences: Vec<String>,
+    /// What a reader has to know before a number is used, as a list.
+    pub warnings: Vec<String>,
     /// Tables.
     pub tables: Vec<PageTable>,
     /// A text as it stands in a file.
@@ -99,6 +101,7 @@ struct FilledSection<'a> {
     id: String,
     title: &'a str,
     sentences: &'a [String],
+    warnings: &'a [String],
     tables: &'a [PageTable],
     text: &'a str,
     pictures: Vec<Picture>,
@@ -121,6 +124,7 @@ impl Page {
             id: format!("section-{}", place + 1),
             title: &section.title,
             sentences: &section.sentences,
+            warnings: &section.warnings,
             tables: &section.tables,
             text: &section.text,
             pictures: (section.pictures.iter())

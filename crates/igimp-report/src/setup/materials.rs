@@ -1,6 +1,8 @@
 //! Materials in words.
 
-use igimp_model::{Case, Material, Parameter, ParameterValue, Profile, StressShare, Variation};
+use igimp_model::{
+    Case, Material, Parameter, ParameterValue, Profile, Profiles, Strength, StressShare, Variation,
+};
 use igimp_results::summary::SetupTable;
 use igimp_text::short;
 
@@ -23,31 +25,66 @@ pub(super) fn materials<const D: usize>(case: &Case<D>) -> SetupTable {
     )
 }
 
+/// The law of a material and its parameters with their units, a row each; where they vary, the greatest.
+pub fn of_material(material: &Material) -> SetupTable {
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    let mut rows = match &material.given {
+        Some(given) => vec![row("Law", given.0.name().to_owned())],
+        None => vec![row("Law", material.strength.name().to_owned())],
+    };
+    let poisson = || short(material.poisson);
+    match &material.strength {
+        // Its elasticity is among the parameters.
+        Strength::ModifiedCamClay(_) => {}
+        Strength::HardeningSoil(_) => rows.push(row("ν", poisson())),
+        _ => {
+            let young = format!("{} MPa", short(material.young / 1e6));
+            rows.extend([row("E", young), row("ν", poisson())]);
+        }
+    }
+    if material.given.is_none() {
+        let constant = Profiles::default();
+        let parameters = material.strength.parameters().into_iter();
+        rows.extend(parameters.map(|own| {
+            let name = own.label.trim_end().trim_end_matches('=').trim_end();
+            row(name, value(own, &constant))
+        }));
+        let effects = material
+            .softening
+            .iter()
+            .flat_map(|own| own.in_words(short));
+        rows.extend(effects.map(|words| row("with strain, rate or direction", words)));
+    }
+    table("Material", &["Parameter", "Value"], rows)
+}
+
+/// The value of a parameter with its unit, by profile where it varies.
+fn value(parameter: Parameter, profiles: &Profiles) -> String {
+    let degrees = |angle: f64| short(angle.to_degrees());
+    match (parameter.value, &profiles.strength, &profiles.friction) {
+        (ParameterValue::Cohesive(_), Some(profile), _) => in_words(profile, over(1e3), " kPa"),
+        (ParameterValue::Friction(_), _, Some(profile)) => {
+            in_words(profile, |tangent| degrees(tangent.atan()), "°")
+        }
+        (ParameterValue::Cohesive(stress) | ParameterValue::Stress(stress), ..) => {
+            kilo(stress, "Pa")
+        }
+        (ParameterValue::Friction(angle) | ParameterValue::Angle(angle), ..) => {
+            format!("{}°", degrees(angle))
+        }
+        (ParameterValue::Modulus(stress), ..) => format!("{} MPa", short(1e-6 * stress)),
+        (ParameterValue::Number(number), ..) => short(number),
+        (ParameterValue::Note, ..) => String::new(),
+    }
+}
+
 fn material(material: &Material) -> Vec<String> {
     let own = &material.profiles;
     let or_constant = |profile: &Option<Profile>, constant: f64, scale: f64| match profile {
         Some(profile) => in_words(profile, over(scale), ""),
         None => short(constant / scale),
     };
-    let degrees = |angle: f64| short(angle.to_degrees());
-    let printed = |parameter: Parameter| {
-        let value = match (parameter.value, &own.strength, &own.friction) {
-            (ParameterValue::Cohesive(_), Some(profile), _) => in_words(profile, over(1e3), " kPa"),
-            (ParameterValue::Friction(_), _, Some(profile)) => {
-                in_words(profile, |tangent| degrees(tangent.atan()), "°")
-            }
-            (ParameterValue::Cohesive(stress) | ParameterValue::Stress(stress), ..) => {
-                kilo(stress, "Pa")
-            }
-            (ParameterValue::Friction(angle) | ParameterValue::Angle(angle), ..) => {
-                format!("{}°", degrees(angle))
-            }
-            (ParameterValue::Modulus(stress), ..) => format!("{} MPa", short(1e-6 * stress)),
-            (ParameterValue::Number(number), ..) => short(number),
-            (ParameterValue::Note, ..) => String::new(),
-        };
-        format!("{}{value}", parameter.label)
-    };
+    let printed = |parameter: Parameter| format!("{}{}", parameter.label, value(parameter, own));
     let parameters = material.strength.parameters().into_iter();
     let mut strength: Vec<String> = parameters.map(printed).collect();
     strength.extend(
@@ -56,6 +93,11 @@ fn material(material: &Material) -> Vec<String> {
             .iter()
             .flat_map(|own| own.in_words(short)),
     );
+    if own.friction.is_some() && material.softening.is_some_and(|own| own.friction.is_some()) {
+        strength.push(
+            "φ in the end where it is greatest, elsewhere as much less by its tangent".into(),
+        );
+    }
     vec![
         material.name.clone(),
         material.strength.name().to_owned(),

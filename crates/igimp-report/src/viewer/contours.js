@@ -277,6 +277,11 @@ class Contours {
 
   // Writes the values of the lines, over all that lies over these.
   write(pen, place) {
+    const { scene, texts } = this;
+    if (scene.dimension === 3) {
+      scene.canvas.dataset.contourLabels = texts && texts.length > 0 ? writeLevels(pen, scene, place, texts) : 0;
+      return;
+    }
     const see = ([x, y]) => projected(place, this.scene.camera, [x, y, 0]);
     const sets = this.texts ? this.sets.map(({ lines }) => lines.map((line) => line.map(see))) : [];
     this.scene.canvas.dataset.contourLabels = this.label(pen, place, sets);

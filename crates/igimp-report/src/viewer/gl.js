@@ -107,11 +107,11 @@ class Surface {
   levelSlices() {
     const { gl, corners, slicePlaces, boxes } = this;
     if (this.levels === 0 || this.count.slices === 0) return;
-    const own = Float32Array.from(this.sliced, (box, k) => {
+    this.sliceLevels = Float32Array.from(this.sliced, (box, k) => {
       const share = [0, 1, 2].map((axis) => (slicePlaces[3 * k + axis] - boxes.low[3 * box + axis]) / (boxes.high[3 * box + axis] - boxes.low[3 * box + axis]));
       return [0, 1, 2, 3, 4, 5, 6, 7].reduce((sum, j) => sum + corners[8 * box + j] * share.reduce((product, x, axis) => product * ((j >> axis) & 1 ? x : 1 - x), 1), 0);
     });
-    this.hand("slices", 2, 1, gl.FLOAT, own, 0);
+    this.hand("slices", 2, 1, gl.FLOAT, this.sliceLevels, 0);
   }
 
   // Pieces as triangles around their first corners, and whose each corner is; the number of corners.

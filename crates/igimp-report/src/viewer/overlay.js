@@ -83,7 +83,7 @@ class Overlay {
     this.water.paint(pen, place);
     this.slip(pen, place);
     this.members(pen, place);
-    if (scene.dimension === 2) this.contours.write(pen, place);
+    this.contours.write(pen, place);
     if (this.arrows) this.paintArrows(pen, place);
     if (this.section) this.paintSection(pen, place);
   }

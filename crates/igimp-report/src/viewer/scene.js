@@ -106,6 +106,7 @@ class Scene {
     if (this.dimension === 3) {
       const range = levels.length > 1 ? [levels[0], levels[1] - levels[0]] : [levels[0], 1];
       if (this.surface) this.surface.contour(levels.length > 0 ? cornerValues(boxes, values).map((own) => (own - range[0]) / range[1]) : null, colours);
+      this.overlay.contours.take([], colours, this.surface ? texts : null);
       this.canvas.dataset.contourLevels = levels.join(" ");
     } else if (boxes.pieces) {
       this.overlay.contours.take(levels.length > 0 ? contoursOf(boxes.pieces, values, this.centres(), levels, soil) : [], colours, texts);

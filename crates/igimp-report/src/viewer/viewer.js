@@ -123,10 +123,6 @@ class Viewer {
   // What depends on the first frame: its dimension and its size.
   furnish(dimension) {
     const { part, wish } = this;
-    const values = part.contours.querySelector("option[value='values']");
-    // Contours in space have no texts.
-    values.disabled = dimension === 3;
-    if (dimension === 3 && part.contours.value === "values") part.contours.value = "lines";
     // A scale for all frames asks for all of them.
     if (this.shown.particles > LARGE) part.fixed.checked = false;
     part.space.hidden = dimension === 2;

@@ -117,7 +117,7 @@ table! {
 table! {
     FRICTIONAL_SOFTENING: FrictionalSoftening, "Strength by effective stress that softens or hardens with plastic strain: one of the three at least.";
     cohesion: table(STRENGTH_CURVE: StrengthCurve), optional "it stays", "cohesion, and with it the tension cut-off";
-    friction: table(ANGLE_CURVE: AngleCurve), optional "it stays", "friction angle; its tangent follows the curve";
+    friction: table(ANGLE_CURVE: AngleCurve), optional "it stays", "friction angle; its tangent follows the curve; where friction varies, the residual is that of the greatest, and goes with it by the tangent";
     dilation: table(ANGLE_CURVE: AngleCurve), optional "it stays",
         "dilation angle, nowhere above the friction angle that is left; a residual of zero ends dilation";
     band_width: quantity(Length, Positive), optional "strains are as stated on any cells",

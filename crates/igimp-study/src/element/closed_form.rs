@@ -7,6 +7,7 @@ use igimp_solver::element::{ElementState, Kinematics, StandardTest};
 use super::Request;
 
 /// A strength, and where it is from.
+#[derive(Clone, Debug)]
 pub(super) struct ClosedForm {
     /// \[Pa\].
     pub(super) value: f64,

@@ -72,6 +72,27 @@ impl Compared {
         })
     }
 
+    /// The columns of which nothing was computed, as the test ended before.
+    pub(super) fn beyond(&self) -> impl Iterator<Item = Measure> {
+        let columns = self.data.columns.iter().enumerate();
+        columns.filter_map(|(place, own)| self.off(place).is_none().then_some(*own))
+    }
+
+    /// How far off a column is in print: values, root mean square, the largest difference and its line; dashes where nothing is known.
+    pub(crate) fn off_in_words(&self, column: usize) -> [String; 4] {
+        let own = self.data.columns[column];
+        let printed = |value: f64| format!("{} {}", short(own.printed(value)), own.unit());
+        match self.off(column) {
+            Some(off) => [
+                off.values.to_string(),
+                printed(off.mean),
+                printed(off.largest.0),
+                off.largest.1.to_string(),
+            ],
+            None => [(); 4].map(|()| "–".to_owned()),
+        }
+    }
+
     /// A line for each column.
     pub(crate) fn said(&self) -> String {
         let mut text = String::new();

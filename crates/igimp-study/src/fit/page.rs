@@ -1,15 +1,21 @@
 //! The report of a fit: parameters, correlations, differences, and every test with its data.
 
+use std::path::Path;
+
 use igimp_report::report::page::{Column, Page, PageTable, Section};
 use igimp_results::summary::FigureNote;
 use igimp_text::short;
 
 use super::said;
 use super::{Fitted, Found, Known};
-use crate::element::{Compared, Tested};
+use crate::element::{Compared, Tested, pictures};
 
 /// Stands for what has no number.
 const NONE: &str = "–";
+
+/// What the picture of residuals shows.
+const RESIDUALS: &str =
+    "Residuals over their standard deviation; of scatter alone 95 % lie within the lines at 2";
 
 /// The page; `written` has the folder of every test, and its files.
 pub(super) fn page(fitted: &Fitted, written: &[(String, Vec<String>)]) -> Page {
@@ -181,17 +187,12 @@ fn differences(fitted: &Fitted) -> Section {
 /// The row of a quantity of a test, with its standard deviation in SI.
 fn off((compared, at): (&Compared, usize), column: usize, deviation: f64) -> Vec<String> {
     let own = compared.data.columns[column];
-    let printed = |value: f64| format!("{} {}", short(own.printed(value)), own.unit());
-    let numbers = match compared.off(column) {
-        Some(off) => [
-            off.values.to_string(),
-            printed(deviation),
-            printed(off.mean),
-            printed(off.largest.0),
-            off.largest.1.to_string(),
-        ],
-        None => [(); 5].map(|()| NONE.to_owned()),
+    let [values, mean, largest, line] = compared.off_in_words(column);
+    let deviation = match compared.off(column) {
+        Some(_) => format!("{} {}", short(own.printed(deviation)), own.unit()),
+        None => NONE.to_owned(),
     };
+    let numbers = [values, deviation, mean, largest, line];
     let data = &compared.data.name;
     let words = [at.to_string(), own.name().to_owned(), data.clone()];
     words.into_iter().chain(numbers).collect()
@@ -201,32 +202,27 @@ fn off((compared, at): (&Compared, usize), column: usize, deviation: f64) -> Vec
 fn test(tested: &Tested, at: usize, (folder, files): &(String, Vec<String>)) -> Section {
     let first = tested.text.lines().next().unwrap_or_default();
     let what = first.rsplit(", ").next().unwrap_or_default();
-    let of_kind = |kind: &'static str| {
-        let own = files.iter().filter_map(move |file| file.strip_suffix(kind));
-        own.map(|stem| format!("{folder}/{stem}"))
-    };
-    let pictures = of_kind(".svg").map(|file| FigureNote {
-        caption: caption(file.rsplit('/').next().unwrap_or_default()),
-        file,
-    });
+    let inside = |file: &str| format!("{folder}/{file}");
+    let mut pictures = pictures(tested);
+    pictures.extend(
+        files
+            .iter()
+            .any(|own| own == "residuals.svg")
+            .then(|| FigureNote {
+                file: "residuals".to_owned(),
+                caption: RESIDUALS.to_owned(),
+            }),
+    );
+    for own in &mut pictures {
+        own.file = inside(&own.file);
+    }
+    let is_table = |own: &&String| Path::new(own).extension().is_some_and(|end| end == "csv");
+    let tables = files.iter().filter(is_table);
     Section {
         title: format!("Test {at}: {what}"),
         text: tested.text.clone(),
-        pictures: pictures.collect(),
-        files: of_kind(".csv").map(|file| format!("{file}.csv")).collect(),
+        pictures,
+        files: tables.map(|own| inside(own)).collect(),
         ..Section::default()
     }
-}
-
-/// What a picture of a test shows.
-fn caption(name: &str) -> String {
-    match name {
-        "stress-strain" => "Stress over strain: the law with the parameters found, and the data",
-        "stress-path" => "The path of stress",
-        "volume" => "Volumetric strain over strain",
-        "pore-pressure" => "Pore pressure over strain",
-        "residuals" => "Residuals over their standard deviation; of scatter alone 95 % lie within the lines at 2",
-        other => return other.replace('-', " "),
-    }
-    .to_owned()
 }

@@ -36,7 +36,8 @@ pub(crate) fn element(arguments: &ElementArguments) -> Result<Exit, ProgramError
         duration: arguments.duration,
         data,
     };
-    let tested = test(material, &request).map_err(|error| refused(&error))?;
+    let mut tested = test(material, &request).map_err(|error| refused(&error))?;
+    file.warnings.trim_end().clone_into(&mut tested.warnings);
     let folder = arguments.out.clone().unwrap_or_else(|| {
         let test = if arguments.path.is_some() {
             "path"

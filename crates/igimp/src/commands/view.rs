@@ -1,5 +1,7 @@
 //! `igimp view`: a results folder in the browser, by a small server on the loopback address.
 //!
+//! A folder that has a page and no run, such as that of `igimp element`, needs no server: its page is opened.
+//!
 //! The address holds a random port and a random token. Nothing is ever written, nothing but the page
 //! and the tables and frames of the folder is given away, and that only to who knows the token and
 //! asks this computer by its own name.
@@ -18,6 +20,16 @@ use results::Results;
 use server::Server;
 
 pub(crate) fn view(arguments: &View) -> Result<Exit, ProgramError> {
+    if arguments.beside.is_none()
+        && let Some(page) = results::page_alone(&arguments.folder)
+    {
+        let page = page.display().to_string();
+        output::say(&page)?;
+        if !arguments.no_open {
+            browser::open(&page);
+        }
+        return Ok(Exit::Done);
+    }
     let results = Results::open(&arguments.folder)?;
     let beside = arguments.beside.as_deref().map(Results::open).transpose()?;
     let (interrupt, interrupted) = mpsc::channel();

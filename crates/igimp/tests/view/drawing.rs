@@ -118,3 +118,37 @@ const found = { off, edges: creasesOf(cube).length / 6, length: lengthOf(creases
     assert!((found["length"].as_f64().unwrap() - 24.0).abs() < 1e-9);
     assert_eq!(found["ball"], 0);
 }
+
+/// Values of contours in space stand on lines that are seen: those of a field that rises with z go around the two sides of a cube that
+/// look at the eye, and along the face of a cut in place of the side that it takes away. BAND: 1e-9 of their length.
+#[test]
+fn contours_in_space_are_written_where_they_are_seen() {
+    let script = "
+const [n, low, high, corners, faces] = [4, [], [], [], { box: [], face: [] }];
+for (let k = 0; k < n ** 3; k += 1) {
+  const own = [k % n, Math.floor(k / n) % n, Math.floor(k / n ** 2)];
+  low.push(...own);
+  high.push(...own.map((x) => x + 1));
+  for (let j = 0; j < 8; j += 1) corners.push(own[2] + (j >> 2) - 0.5);
+  own.forEach((x, axis) => [0, n - 1].forEach((end, side) => {
+    if (x !== end) return;
+    faces.box.push(k);
+    faces.face.push(2 * axis + side);
+  }));
+}
+const scene = { boxes: { low, high, faces, count: n ** 3 }, surface: { corners }, camera: new Camera(3), isLeftOut: () => false };
+const place = scene.camera.layout(600, { low: [0, 0, 0], high: [n, n, n] });
+const length = (points) => points.reduce((sum, p, k) => (k ? sum + Math.hypot(p[0] - points[k - 1][0], p[1] - points[k - 1][1]) : 0), 0);
+const along = (y, z) => length([[0, y, z], [n, y, z], [n, n, z]].map((point) => projected(place, scene.camera, point)));
+const off = (cut, y) => crossingsInSight({ ...scene, cut }, place, 3).map((own, level) => own.reduce((sum, { from, to }) => sum + length([from, to]), 0) / along(y, level + 0.5) - 1);
+const found = [off(null, 0), off({ axis: 1, normal: [0, -1, 0], offset: -1.5 }, 1.5)].flat();
+";
+    let Some(found) = found("levels", script) else {
+        return;
+    };
+    let shares = found.as_array().unwrap();
+    assert_eq!(shares.len(), 6);
+    for share in shares {
+        assert!(share.as_f64().unwrap().abs() < 1e-9, "{found}");
+    }
+}

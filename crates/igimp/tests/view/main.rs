@@ -3,6 +3,7 @@
 //! ORACLE: the tables of the run. The page itself is tried in a headless browser where there is one.
 #![cfg(unix)]
 
+mod alone;
 mod drawing;
 mod over;
 mod page;

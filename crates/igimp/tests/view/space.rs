@@ -125,7 +125,7 @@ fn layered() -> String {
 }
 
 /// GOAL: each body in space has its outline, in the report as on the page; a cut shows where two soils meet; contours stand at the
-/// ticks of the scale.
+/// ticks of the scale, with their values.
 /// ORACLE: the edges of two boxes of 2 m by 2 m by 1 m, and of the square of 2 m with the line between them.
 #[test]
 fn bodies_in_space_have_their_outlines() {
@@ -147,5 +147,12 @@ fn bodies_in_space_have_their_outlines() {
         assert!((length("data-seam-length") - 10.0).abs() < 0.02);
         let levels = attribute(&page, "canvas", "data-contour-levels");
         assert!(levels.split(' ').count() > 3, "{levels}");
+        // An ordinary canvas has no contours in space.
+        let labels = length("data-contour-labels");
+        assert_eq!(
+            labels > 1.0,
+            page.contains("data-by=\"webgl2\""),
+            "{labels}"
+        );
     }
 }

@@ -1,9 +1,36 @@
 //! What materials ask of the grid, the stages and the solver.
 
 use igimp_linear::SolverKind;
-use igimp_model::{Case, Material, Stage, StageKind};
+use igimp_model::{Case, Material, Profile, Stage, StageKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number};
+
+/// Parts between the least and the greatest friction at whose ends a law is looked at.
+const PARTS: u32 = 16;
+
+/// Why a material has no law on cells of a height \[m\], as the end of a sentence; where friction varies it has to have one from the
+/// least of it to the greatest: stress snaps back first where φ is near 20°.
+pub(crate) fn possible(material: &Material, cell: f64) -> Result<(), String> {
+    let law = (material.law_on(cell)).map_err(|error| format!(": {error}"))?;
+    let (Some(least), Some(greatest)) = (
+        material.profiles.friction.as_ref().and_then(Profile::least),
+        (material.strength.friction_angle()).filter(|own| *own > 0.0),
+    ) else {
+        return Ok(());
+    };
+    for part in 0..PARTS {
+        let share = f64::from(part) / f64::from(PARTS);
+        let friction = least + share * (greatest.tan() - least);
+        // A law that is made anew, as one that is reduced is, looks at its curves.
+        (law.at_friction(friction / greatest.tan()))
+            .and_then(|law| law.map(|law| law.reduced(1.0)).transpose())
+            .map_err(|error| {
+                let degrees = number(friction.atan().to_degrees());
+                format!(" where its friction is {degrees} deg: {error}")
+            })?;
+    }
+    Ok(())
+}
 
 /// Refuses strength that softens so fast, on the cells of a case, that stress snaps back.
 pub(crate) fn check_on_cells<const D: usize>(case: &Case<D>, problems: &mut Problems) {
@@ -12,9 +39,9 @@ pub(crate) fn check_on_cells<const D: usize>(case: &Case<D>, problems: &mut Prob
         let Some(curves) = material.softening.filter(|own| own.band_width.is_some()) else {
             continue;
         };
-        if let Err(error) = material.law_on(cell) {
+        if let Err(why) = possible(material, cell) {
             let message = format!(
-                "the material `{}` is not possible on cells of {} m, where its strains are times {}: {error}",
+                "the material `{}` is not possible on cells of {} m, where its strains are times {}{why}",
                 clip(&material.name, 40),
                 number(cell),
                 number(curves.strain_ratio(cell))

@@ -15,7 +15,7 @@ use igimp_schema::tree::read::At;
 pub(super) fn curves(
     name: &str,
     model: &Model,
-    (strength, friction_varies): (Option<Strength>, bool),
+    strength: Option<Strength>,
     problems: &mut Problems,
 ) -> Result<Option<StrengthCurves>, Wrong> {
     match model {
@@ -24,7 +24,7 @@ pub(super) fn curves(
         Model::MohrCoulomb(Ok(own)) => {
             let stated = own.softening.as_ref().map_err(|_| Wrong)?;
             match stated {
-                Some(own) => frictional(name, own, (strength, friction_varies), problems).map(Some),
+                Some(own) => frictional(name, own, strength, problems).map(Some),
                 None => Ok(None),
             }
         }
@@ -127,7 +127,7 @@ fn of_undrained(
 fn frictional(
     name: &str,
     own: &At<FrictionalSoftening>,
-    (strength, friction_varies): (Option<Strength>, bool),
+    strength: Option<Strength>,
     problems: &mut Problems,
 ) -> Result<StrengthCurves, Wrong> {
     let Some(Strength::MohrCoulomb {
@@ -144,15 +144,6 @@ fn frictional(
             .help(
                 "leave `flow` out: strengths of Davis are of one dilation angle, which ends here",
             );
-        return Err(Wrong);
-    }
-    if let (Some(friction), true) = (&own.friction, friction_varies) {
-        problems
-            .error(
-                friction.place,
-                "friction that softens has to be one angle, and friction varies here",
-            )
-            .help("friction = \"25 deg\", or soften cohesion and dilation alone");
         return Err(Wrong);
     }
     if own.cohesion.is_none() && own.friction.is_none() && own.dilation.is_none() {

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::fs::{self, File};
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::UNIX_EPOCH;
@@ -28,6 +29,10 @@ const SHOWN: [(&str, &str, &str); 5] = [
 /// Most folders that a message lists.
 const MOST_LISTED: usize = 12;
 
+/// Bytes of a page that are looked at for its maker, and what stands there.
+const LARGEST_HEAD: u64 = 2048;
+const GENERATOR: &str = "<meta name=\"generator\" content=\"igimp";
+
 /// Largest summary that is read \[bytes\].
 const LARGEST_SUMMARY: u64 = 64 << 20;
 
@@ -53,13 +58,7 @@ impl Results {
                 bodies: OnceLock::new(),
             });
         }
-        let mut inside: Vec<PathBuf> = fs::read_dir(&root)
-            .map_err(access)?
-            .filter_map(|entry| Some(entry.ok()?.file_name()))
-            .filter(|name| is_of_a_run(&root.join(name)))
-            .map(|name| folder.join(name))
-            .collect();
-        inside.sort();
+        let inside = runs_inside(folder, &root).map_err(access)?;
         let shown = folder.display();
         if inside.is_empty() {
             return Err(ProgramError::usage(
@@ -234,6 +233,31 @@ impl Results {
 /// Whether a run laid out its results here.
 fn is_of_a_run(folder: &Path) -> bool {
     folder.join("paraview").is_dir()
+}
+
+/// The folders of runs in a folder, in their order.
+fn runs_inside(folder: &Path, root: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let mut inside: Vec<PathBuf> = fs::read_dir(root)?
+        .filter_map(|entry| Some(entry.ok()?.file_name()))
+        .filter(|name| is_of_a_run(&root.join(name)))
+        .map(|name| folder.join(name))
+        .collect();
+    inside.sort();
+    Ok(inside)
+}
+
+/// The page of a folder that is none of a run and holds none, such as that of a test or of a fit, if igimp made one.
+pub(super) fn page_alone(folder: &Path) -> Option<PathBuf> {
+    let root = fs::canonicalize(folder).ok()?;
+    if is_of_a_run(&root) || !runs_inside(folder, &root).ok()?.is_empty() {
+        return None;
+    }
+    let page = root.join("report.html");
+    let mut head = Vec::new();
+    let file = File::open(&page).ok()?;
+    file.take(LARGEST_HEAD).read_to_end(&mut head).ok()?;
+    let is_own = String::from_utf8_lossy(&head).contains(GENERATOR);
+    is_own.then_some(page)
 }
 
 /// Number of factors that the case lists for a search, each of which is a row of the tables.
