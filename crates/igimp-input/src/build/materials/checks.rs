@@ -1,7 +1,7 @@
 //! What materials ask of the grid, the stages and the solver.
 
 use igimp_linear::SolverKind;
-use igimp_model::{Case, Material, Stage, StageKind};
+use igimp_model::{Case, Stage, StageKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number};
 
@@ -79,8 +79,7 @@ pub(crate) fn check_rates<const D: usize>(case: &Case<D>, problems: &mut Problem
     if case.stages.iter().any(takes_time) {
         return;
     }
-    let goes = |own: &&Material| own.softening.is_some_and(|own| own.rate.is_some());
-    for material in case.materials.iter().filter(goes) {
+    for material in case.materials.iter().filter(|own| own.goes_with_rate()) {
         let message = format!(
             "the strength of `{}` goes with the rate of strain, and no stage takes time",
             clip(&material.name, 40)
