@@ -21,7 +21,7 @@ const NUMBER: f64 = 0.279;
 const DIAMETER: f64 = 0.5e-3;
 
 fn beads() -> SharedLaw {
-    let elasticity = Elasticity::new(20.0, 0.3).unwrap();
+    let elasticity = Elasticity::new(10.0, 0.3).unwrap();
     // In the cone of plane strain μ is the sine of the angle.
     let law = DruckerPrager::new(elasticity, 0.0, SLOW.asin(), 0.0, Cone::PlaneStrain).unwrap();
     let rate = InertialFriction {
@@ -51,7 +51,7 @@ fn layer(cells: usize, slope: f64, duration: f64) -> Motion<2> {
     // Soft beside what is usual: the round-off of displacements times their stiffness is force.
     motion.walls.tied = Some(TiedWalls {
         axis: 0,
-        stiffness: 5.0,
+        stiffness: 2.0,
     });
     motion
 }
@@ -78,12 +78,12 @@ fn bagnold(slope: f64, height: f64) -> f64 {
     2.0 / 3.0 * number / DIAMETER * (SOLID * GRAVITY * cosine).sqrt() * depths
 }
 
-/// GOAL: the profile of steady flow, on two grids and two slopes; a slope below μ_s stands. BAND: 2 % of the speed at the surface on 8
-/// cells, 1 % on 16.
+/// GOAL: the profile of steady flow, on two grids and two slopes; a slope below μ_s stands. BAND: 0.5 % of the speed at the surface on 8
+/// cells, 0.2 % on 16.
 #[test]
 fn grains_flow_down_an_incline_as_bagnold_says() {
-    for (cells, band) in [(8, 0.02), (16, 0.01)] {
-        for slope in [0.45, 0.52] {
+    for (cells, band) in [(8, 0.005), (16, 0.002)] {
+        for slope in [0.45, 0.5] {
             let mut motion = layer(cells, slope, 0.1);
             let surface = bagnold(slope, DEPTH);
             steady(&mut motion, surface);
