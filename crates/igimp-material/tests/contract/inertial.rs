@@ -106,7 +106,7 @@ fn steady_shear_has_the_friction_of_its_inertial_number() {
     }
 }
 
-/// GOAL: in the cone of plane strain the shear stress over the pressure is the sine of the angles: mu of Jop et al. ORACLE: the cone
+/// GOAL: in the cone of plane strain the shear stress over the pressure is the sine of the angles: μ of Jop et al. (eq. 129a). ORACLE: the cone
 /// of that sine. BAND: 1e-12.
 #[test]
 fn friction_in_the_plane_is_the_sine_of_the_angle() {
