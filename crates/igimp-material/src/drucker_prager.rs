@@ -1,17 +1,19 @@
 //! Drucker–Prager plasticity: a cone about the hydrostatic axis that agrees with Mohr–Coulomb along one path (theory, eqs. 93
 //! and 94).
 //!
-//! The return to cone and apex is in closed form: theory, eqs. 95 and 96; de Souza Neto, Perić & Owen (2008), section 8.3.
+//! The return to cone and apex is in closed form: theory, eqs. 95 and 96; de Souza Neto, Perić & Owen (2008), section 8.3. Its
+//! friction may grow with the speed of shear, which leaves it so: eqs. 129 to 129c.
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use crate::error::{positive, required};
+use crate::inertial_friction::{Sheared, SlowCone};
 use crate::law::{ON_SURFACE, mobilised, trial_stress};
 use crate::spectral::principal::{deviator, deviator_norm, largest, mean};
 use crate::{
-    ConstitutiveModel, Dissipation, Elasticity, History, MaterialError, NonlocalRates,
-    PointContext, Principal, Regime, ReturnMap, ShearStrength, Strength,
+    ConstitutiveModel, Dissipation, Elasticity, History, InertialFriction, MaterialError,
+    NonlocalRates, PointContext, Principal, Regime, ReturnMap, ShearStrength, Strength,
 };
 
 /// Where the cone of [`DruckerPrager`] agrees with Mohr–Coulomb of the same c, φ and ψ.
@@ -35,6 +37,9 @@ pub enum Cone {
 /// ψ by the [`Cone`], and are made anew with every change of strength.
 ///
 /// Trial states beyond the end of the cone go to its apex p = c cot φ with a tangent of zero, with ψ = 0 too.
+///
+/// [`with_rate`](Self::with_rate) makes friction grow with the speed of shear in steps that take time. What is said of its strength
+/// elsewhere is that of slow shear: f of a state that flows fast is positive.
 ///
 /// ```
 /// use igimp_material::{
@@ -64,6 +69,22 @@ pub struct DruckerPrager {
     shear: f64,
     /// M_ψ \[-\].
     flow: f64,
+    /// Friction that grows with the speed of shear, and (M_2 − M)/M \[-\].
+    rate: Option<(InertialFriction, f64)>,
+}
+
+impl Cone {
+    /// M/sin φ and M_ψ by sin φ and sin ψ \[-\].
+    fn factors(self, sin: f64, dilation: f64) -> (f64, f64) {
+        match self {
+            Self::Compression => (6.0 / (3.0 - sin), 6.0 * dilation / (3.0 - dilation)),
+            Self::Extension => (6.0 / (3.0 + sin), 6.0 * dilation / (3.0 + dilation)),
+            Self::PlaneStrain => {
+                let root = dilation.mul_add(dilation, 3.0).sqrt();
+                (3.0 * root / (3.0 + sin * dilation), 3.0 * dilation / root)
+            }
+        }
+    }
 }
 
 impl DruckerPrager {
@@ -104,14 +125,7 @@ impl DruckerPrager {
         )?;
         let ((sin, cos), dilation) = (friction_angle.sin_cos(), dilation_angle.sin());
         // M = factor · sin φ and k = factor · c cos φ: the apex is that of Mohr–Coulomb.
-        let (factor, flow) = match cone {
-            Cone::Compression => (6.0 / (3.0 - sin), 6.0 * dilation / (3.0 - dilation)),
-            Cone::Extension => (6.0 / (3.0 + sin), 6.0 * dilation / (3.0 + dilation)),
-            Cone::PlaneStrain => {
-                let root = dilation.mul_add(dilation, 3.0).sqrt();
-                (3.0 * root / (3.0 + sin * dilation), 3.0 * dilation / root)
-            }
-        };
+        let (factor, flow) = cone.factors(sin, dilation);
         Ok(Self {
             elasticity,
             strength: ShearStrength {
@@ -128,6 +142,27 @@ impl DruckerPrager {
             slope: factor * sin,
             shear: factor * cohesion * cos,
             flow,
+            rate: None,
+        })
+    }
+
+    /// The law with friction that grows with the speed of shear in steps that take time: M at the apex that stays.
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`] of soil that dilates or has no friction, of a fast friction angle that is not above φ
+    /// and below π/2, and of numbers that are not positive.
+    pub fn with_rate(self, rate: InertialFriction) -> Result<Self, MaterialError> {
+        let (slow, dilation) = (self.strength.friction_angle, self.dilation_angle);
+        let keeps_volume = dilation == 0.0;
+        let requirement = "0 where friction grows with the speed of shear";
+        required("dilation_angle", dilation, keeps_volume, requirement)?;
+        positive("friction_angle", slow)?;
+        rate.check(slow)?;
+        let sin = rate.friction_angle.sin();
+        let fast = self.cone.factors(sin, 0.0).0 * sin;
+        Ok(Self {
+            rate: Some((rate, fast / self.slope - 1.0)),
+            ..self
         })
     }
 
@@ -136,7 +171,8 @@ impl DruckerPrager {
         self.cone
     }
 
-    /// The law at another strength: ψ stays but never exceeds φ, and ψ/φ as given is kept.
+    /// The law at another strength: ψ stays but never exceeds φ, ψ/φ as given is kept, and tan φ of fast shear goes as that of slow
+    /// shear.
     fn at_strength(&self, cohesion: f64, friction_angle: f64) -> Result<Self, MaterialError> {
         let dilation_angle = self.dilation_angle.min(friction_angle);
         let law = Self::new(
@@ -146,10 +182,39 @@ impl DruckerPrager {
             dilation_angle,
             self.cone,
         )?;
+        let law = match self.rate {
+            Some((own, _)) if friction_angle > 0.0 => {
+                let ratio = friction_angle.tan() / self.strength.friction_angle.tan();
+                law.with_rate(own.times(ratio))?
+            }
+            _ => law,
+        };
         Ok(Self {
             dilatancy: self.dilatancy,
             ..law
         })
+    }
+
+    /// Plastic shear of a step of a duration \[time\] whose trial state has q \[stress\] beyond the cone, at a mean stress p
+    /// \[stress\].
+    fn sheared(&self, excess: f64, p: f64, duration: f64) -> Sheared {
+        let stiffness = 3.0 * self.elasticity.shear();
+        let strength = self.shear - self.slope * p;
+        match &self.rate {
+            Some((own, growth)) if duration > 0.0 && strength > 0.0 => {
+                let cone = SlowCone {
+                    excess,
+                    strength,
+                    pressure: strength / self.slope,
+                    growth: *growth,
+                    stiffness,
+                };
+                own.sheared(&cone, duration)
+            }
+            _ => Sheared::slowly(
+                excess / (stiffness + self.elasticity.bulk() * self.slope * self.flow),
+            ),
+        }
     }
 
     /// The trial state goes to the apex.
@@ -181,7 +246,7 @@ impl ConstitutiveModel for DruckerPrager {
         &self,
         eps_e_trial: &Principal,
         history: &History,
-        _: &PointContext,
+        context: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
         let trial = trial_stress(&self.elasticity, eps_e_trial)?;
         let (bulk, shear) = (self.elasticity.bulk(), self.elasticity.shear());
@@ -192,11 +257,12 @@ impl ConstitutiveModel for DruckerPrager {
         if excess <= ON_SURFACE * self.stress_scale(&trial) {
             return Ok(ReturnMap::elastic(&self.elasticity, trial, *history));
         }
-        let stiffness = 3.0 * shear + bulk * self.slope * self.flow;
-        let delta_lambda = excess / stiffness;
+        let sheared = self.sheared(excess, p, context.duration);
+        let stiffness = 3.0 * shear + bulk * self.slope * self.flow + sheared.by_strain;
+        let delta_lambda = sheared.strain;
         let pressed = p - bulk * self.flow * delta_lambda;
         // On the cone by its equation, and not by the difference of two large stresses.
-        let left = self.shear - self.slope * pressed;
+        let left = sheared.factor * (self.shear - self.slope * pressed);
         if left <= 0.0 {
             return Ok(self.at_apex(eps_e_trial, history));
         }
@@ -208,7 +274,7 @@ impl ConstitutiveModel for DruckerPrager {
             tangent[a][a] += 2.0 * shear * share;
             let along = bulk * self.flow + 2.0 * shear * direction[a];
             for b in 0..3 {
-                let rise = 2.0 * shear * direction[b] + bulk * self.slope;
+                let rise = 2.0 * shear * direction[b] + bulk * self.slope * sheared.by_pressure;
                 tangent[a][b] += 4.0 / 3.0 * shear * (1.0 - share) * direction[a] * direction[b]
                     - along * rise / stiffness;
             }

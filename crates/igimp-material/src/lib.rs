@@ -10,7 +10,7 @@
 //! | the seam | [`ConstitutiveModel`], [`PointContext`], [`ReturnMap`], [`History`], [`Regime`] |
 //! | strength and its reduction | [`Strength`], [`ShearStrength`], [`Dissipation`] |
 //! | laws | [`HenckyElastic`], [`VonMises`], [`Tresca`], [`MohrCoulomb`], [`DruckerPrager`], [`HoekBrown`], [`ModifiedCamClay`], [`HardeningSoil`] |
-//! | laws whose strength goes with plastic strain, the direction of stress, the rate of strain | [`Softening`], [`Curve`], [`Directions`], [`RateEffect`] |
+//! | laws whose strength goes with plastic strain, the direction of stress, the rate of strain | [`Softening`], [`Curve`], [`Directions`], [`RateEffect`]; [`InertialFriction`] |
 //! | soil whose strength and stiffness vary | [`Ratios`], [`ScaledLaw`] |
 //! | from principal space to tensors | [`lift_finite`], [`lift_small`], [`Lifted`], [`SpatialTangent`] |
 //! | what can go wrong | [`MaterialError`] |
@@ -63,6 +63,7 @@ mod error;
 mod hardening_soil;
 mod hencky;
 mod hoek_brown;
+mod inertial_friction;
 mod koiter;
 mod law;
 mod mohr_coulomb;
@@ -81,6 +82,7 @@ pub use error::MaterialError;
 pub use hardening_soil::{HardeningSoil, HardeningSoilParameters};
 pub use hencky::HenckyElastic;
 pub use hoek_brown::{HoekBrown, HoekBrownParameters};
+pub use inertial_friction::InertialFriction;
 pub use law::{
     Batches, ConstitutiveModel, Dissipation, ElasticStiffness, History, INTERNAL_VARIABLES,
     InternalVariable, Nonlocal, NonlocalRates, PointContext, Regime, ReturnMap, Scaling,

@@ -76,6 +76,12 @@ impl Material {
         }
     }
 
+    /// Whether its strength goes with the rate of strain, in stages that take time.
+    pub fn goes_with_rate(&self) -> bool {
+        let cone_does = matches!(self.strength, Strength::DruckerPrager { rate: Some(_), .. });
+        cone_does || self.softening.is_some_and(|own| own.rate.is_some())
+    }
+
     /// The constitutive law; where strength, friction or stiffness vary, that of the greatest, of which particles have multiples.
     ///
     /// # Errors

@@ -11,7 +11,7 @@ use super::tree::{Node, Value, from_value};
 /// A decimal number or a fraction, as a regular expression.
 const NUMBER: &str = r"[-+]?([0-9_]+\.?[0-9_]*|\.[0-9_]+)([eE][-+]?[0-9]+)?";
 /// Dimensions that keys take.
-const DIMENSIONS: [Dimension; 16] = [
+const DIMENSIONS: [Dimension; 17] = [
     Dimension::Length,
     Dimension::Stress,
     Dimension::UnitWeight,
@@ -21,6 +21,7 @@ const DIMENSIONS: [Dimension; 16] = [
     Dimension::Acceleration,
     Dimension::ForcePerLength,
     Dimension::MomentPerLength,
+    Dimension::MassDensity,
     Dimension::Force,
     Dimension::Moment,
     Dimension::Time,

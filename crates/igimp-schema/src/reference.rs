@@ -78,6 +78,7 @@ fn units(out: &mut String) {
         Dimension::Acceleration,
         Dimension::ForcePerLength,
         Dimension::MomentPerLength,
+        Dimension::MassDensity,
         Dimension::Force,
         Dimension::Moment,
         Dimension::Time,

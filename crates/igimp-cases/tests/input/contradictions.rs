@@ -30,6 +30,41 @@ fn materials_and_grid_that_make_no_sense() {
 }
 
 #[test]
+fn friction_by_speed_that_makes_no_sense() {
+    let sand = edited(
+        igimp_input::shipped::find("column_collapse").unwrap().text,
+        &[(
+            "model = \"mohr-coulomb\"",
+            "model = \"drucker-prager\"\ncone = \"plane-strain\"\nrate = { friction = \"39 deg\", inertial_number = 0.279, grain_diameter = \"0.5 mm\", grain_density = \"2650 kg/m3\" }",
+        )],
+    );
+    insta::assert_snapshot!(messages(
+        ("sand.toml", &sand),
+        &[
+            &[("\"39 deg\"", "\"31 deg\"")],
+            &[("\"39 deg\"", "\"90 deg\"")],
+            &[("dilation = \"0 deg\"", "dilation = \"5 deg\"")],
+            &[("friction = \"31 deg\"", "friction = \"0 deg\"")],
+            &[(
+                "cohesion = \"10 Pa\"",
+                "cohesion = { at_top = \"10 Pa\", gradient = \"1 kPa/m\" }"
+            )],
+            &[(
+                "friction = \"31 deg\"",
+                "friction = { levels = [\"0 m\", \"1 m\"], values = [\"30 deg\", \"31 deg\"] }"
+            )],
+            &[("2650 kg/m3", "26 kN/m3")],
+            &[("0.279", "0")],
+            &[
+                ("type = \"dynamic\" ", "type = \"gravity\" "),
+                ("duration = \"0.6 s\"", ""),
+                ("at_rest = 1e-6", "")
+            ],
+        ]
+    ));
+}
+
+#[test]
 fn bodies_that_make_no_sense() {
     let rock = "[[\"0 m\",\"0 m\"], [\"60 m\",\"0 m\"], [\"60 m\",\"2 m\"], [\"0 m\",\"2 m\"]]";
     insta::assert_snapshot!(messages(

@@ -18,6 +18,7 @@
 //! | `hoek_brown` | the same of Hoek–Brown, with its envelope and its reduction |
 //! | `softening` | the same, and closed forms, of laws whose strength goes with plastic strain |
 //! | `undrained` | strength by the direction of stress and by the rate of strain: closed forms, the contract |
+//! | `inertial` | friction that grows with the speed of shear: closed forms, the contract |
 //! | `utilisation` | the share of the strength that a stress mobilises |
 //! | `refusals` | what is not accepted, and the words for it |
 //!
@@ -31,6 +32,7 @@ mod flow_rule;
 mod hardening;
 mod hardening_soil;
 mod hoek_brown;
+mod inertial;
 mod lifts;
 mod memory;
 mod random;

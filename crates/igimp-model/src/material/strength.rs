@@ -5,8 +5,8 @@ use std::sync::Arc;
 use igimp_assembly::SharedLaw;
 use igimp_material::{
     CamClayParameters, Cone, DruckerPrager, Elasticity, HardeningSoil, HardeningSoilParameters,
-    HenckyElastic, HoekBrown, HoekBrownParameters, MaterialError, ModifiedCamClay, MohrCoulomb,
-    ShearStiffness, Tresca, VonMises,
+    HenckyElastic, HoekBrown, HoekBrownParameters, InertialFriction, MaterialError,
+    ModifiedCamClay, MohrCoulomb, ShearStiffness, Tresca, VonMises,
 };
 
 /// How plastic flow of frictional soil follows from its angle of dilation.
@@ -57,6 +57,8 @@ pub enum Strength {
         dilation_angle: f64,
         /// Where it agrees with Mohr–Coulomb of these parameters.
         cone: Cone,
+        /// How friction grows with the speed of shear, if it does.
+        rate: Option<InertialFriction>,
     },
     /// Modified Cam-clay; its elasticity is of its own.
     ModifiedCamClay(CamClayParameters),
@@ -107,6 +109,22 @@ fn frictional(cohesion: f64, friction_angle: f64, dilation_angle: f64) -> [Param
     ]
 }
 
+/// Friction of fast shear and what makes shear fast.
+fn inertial(own: &InertialFriction) -> [Parameter; 4] {
+    [
+        parameter("φ₂ = ", ParameterValue::Angle(own.friction_angle)),
+        parameter("I₀ = ", ParameterValue::Number(own.inertial_number)),
+        parameter(
+            "grains in mm: ",
+            ParameterValue::Number(1e3 * own.grain_diameter),
+        ),
+        parameter(
+            "grains in kg/m³: ",
+            ParameterValue::Number(own.grain_density),
+        ),
+    ]
+}
+
 impl Strength {
     /// Name of the law, in print.
     pub fn name(&self) -> &'static str {
@@ -152,6 +170,7 @@ impl Strength {
                 friction_angle,
                 dilation_angle,
                 cone,
+                rate,
             } => {
                 let cone = match cone {
                     Cone::Compression => "cone of triaxial compression",
@@ -160,6 +179,7 @@ impl Strength {
                 };
                 let mut parameters = frictional(cohesion, friction_angle, dilation_angle).to_vec();
                 parameters.push(parameter(cone, ParameterValue::Note));
+                parameters.extend(rate.iter().flat_map(inertial));
                 parameters
             }
             Self::HoekBrown(own) => vec![
@@ -291,13 +311,16 @@ impl Strength {
                 friction_angle,
                 dilation_angle,
                 cone,
-            } => Arc::new(DruckerPrager::new(
-                elasticity,
-                at_least(cohesion),
-                friction_angle,
-                dilation_angle,
-                cone,
-            )?),
+                rate,
+            } => {
+                let cohesion = at_least(cohesion);
+                let law =
+                    DruckerPrager::new(elasticity, cohesion, friction_angle, dilation_angle, cone)?;
+                Arc::new(match rate {
+                    Some(rate) => law.with_rate(rate)?,
+                    None => law,
+                })
+            }
             Self::HoekBrown(parameters) => Arc::new(HoekBrown::new(elasticity, parameters)?),
             Self::HardeningSoil(own) => Arc::new(HardeningSoil::new(HardeningSoilParameters {
                 cohesion: at_least(own.cohesion),

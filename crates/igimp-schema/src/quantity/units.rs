@@ -21,7 +21,7 @@ pub enum Dimension {
     ForcePerLength,
     /// Moment per metre run, in plane strain \[N m/m\].
     MomentPerLength,
-    /// Mass per volume \[kg/m³\]; no key takes one, it is known to say so.
+    /// Mass per volume \[kg/m³\]: of grains; soil has a unit weight.
     MassDensity,
     /// Force, in space \[N\].
     Force,

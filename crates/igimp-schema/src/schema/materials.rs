@@ -167,7 +167,19 @@ table! {
     "Elastic and perfectly plastic, Drucker-Prager with non-associated flow: a cone that agrees with Mohr-Coulomb along one path.";
     strength: part(FRICTIONAL: Frictional);
     cone: apart(choice(Cone)), required "\"plane-strain\"", "where it has the strength of Mohr-Coulomb";
+    rate: apart(table(INERTIAL_RATE: InertialRate)), optional "one friction at all speeds",
+        "friction of dry grains that grows with the speed of shear, mu(I), in stages that take time";
     stiffness: part(STIFFNESS: Stiffness);
+}
+
+table! {
+    INERTIAL_RATE: InertialRate,
+    "Friction of dry grains that grows with the inertial number I = shear rate * grain_diameter / (pressure / grain_density)^0.5 \
+     (Jop, Forterre and Pouliquen 2006). `friction` of the material is that of slow shear.";
+    friction: quantity(Angle, Positive), required "\"39 deg\"", "friction angle of shear without end fast, above that of slow shear";
+    inertial_number: number(Positive), required "0.279", "I_0, at which half of the growth is reached";
+    grain_diameter: quantity(Length, Positive), required "\"0.5 mm\"", "diameter of the grains";
+    grain_density: quantity(MassDensity, Positive), required "\"2650 kg/m3\"", "density of the grains, without pores";
 }
 
 choices! {

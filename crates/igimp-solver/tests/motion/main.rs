@@ -6,5 +6,6 @@ mod contact;
 mod contact_in_space;
 mod dynamics;
 mod free_field;
+mod granular;
 mod ground;
 mod impact;

@@ -76,6 +76,7 @@ fn triaxial_drained(strength: Strength, side: f64, volume: f64) -> Option<(f64, 
             cohesion,
             friction_angle,
             cone: Cone::Compression,
+            rate: None,
             ..
         } => Some((passive(side, cohesion / volume, friction_angle), PASSIVE)),
         Strength::HardeningSoil(own) => Some((
@@ -115,6 +116,7 @@ fn triaxial_undrained(
             friction_angle,
             dilation_angle: 0.0,
             cone: Cone::Compression,
+            rate: None,
         } => {
             let [axial, side] = stress;
             let (sin, cos) = friction_angle.sin_cos();

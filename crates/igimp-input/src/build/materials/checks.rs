@@ -106,8 +106,7 @@ pub(crate) fn check_rates<const D: usize>(case: &Case<D>, problems: &mut Problem
     if case.stages.iter().any(takes_time) {
         return;
     }
-    let goes = |own: &&Material| own.softening.is_some_and(|own| own.rate.is_some());
-    for material in case.materials.iter().filter(goes) {
+    for material in case.materials.iter().filter(|own| own.goes_with_rate()) {
         let message = format!(
             "the strength of `{}` goes with the rate of strain, and no stage takes time",
             clip(&material.name, 40)

@@ -1,13 +1,13 @@
 //! Soil with cohesion and friction, Mohr–Coulomb and Drucker–Prager: its parameters from what a file states.
 
-use igimp_material::Cone;
+use igimp_material::{Cone, InertialFriction};
 use igimp_model::{Flow, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::materials::{
-    self as keys, DruckerPrager, Frictional, Model, MohrCoulomb,
+    self as keys, DruckerPrager, Frictional, InertialRate, Model, MohrCoulomb,
 };
 use igimp_schema::text::{clip, number};
-use igimp_schema::tree::read::Either;
+use igimp_schema::tree::read::{At, Either};
 
 use super::profiles::{Extent, Property, TABLES, Terms, property};
 use super::{STRENGTH, softening};
@@ -135,7 +135,12 @@ pub(super) fn drucker_prager(
     both: [Option<&Property>; 2],
     problems: &mut Problems,
 ) -> Option<Strength> {
-    let [cohesion, friction_angle, dilation_angle] = angles(name, &own.strength, both, problems)?;
+    let parameters = angles(name, &own.strength, both, problems);
+    let rate = match own.rate.as_ref().ok()? {
+        Some(rate) => Some(inertial(rate, own, both, problems)?),
+        None => None,
+    };
+    let [cohesion, friction_angle, dilation_angle] = parameters?;
     Some(Strength::DruckerPrager {
         cohesion,
         friction_angle,
@@ -145,6 +150,56 @@ pub(super) fn drucker_prager(
             keys::Cone::Extension => Cone::Extension,
             keys::Cone::PlaneStrain => Cone::PlaneStrain,
         },
+        rate,
+    })
+}
+
+/// Friction that grows with the speed of shear, of soil that keeps its volume and has one strength.
+fn inertial(
+    rate: &At<InertialRate>,
+    own: &DruckerPrager,
+    both: [Option<&Property>; 2],
+    problems: &mut Problems,
+) -> Option<InertialFriction> {
+    let dilation = own.strength.dilation.as_ref().ok()?;
+    let slow = match &**own.strength.friction.as_ref().ok()? {
+        Either::First(angle) => Some(*angle),
+        Either::Second(_) => None,
+    };
+    let fast = &rate.friction;
+    let varies = both.iter().flatten().any(|own| own.profile.is_some());
+    let refused = match slow {
+        _ if **dilation > 0.0 => Some((
+            dilation.place,
+            "`rate` is of soil that keeps its volume as it flows, and this one dilates",
+            "dilation = \"0 deg\", or remove `rate`",
+        )),
+        Some(slow) if !varies && **fast <= slow => Some((
+            fast.place,
+            "the friction angle of fast shear must be above that of slow shear",
+            "with the cone of plane strain mu of the literature is the sine of the angle: glass beads have 22.3 deg and 39.8 deg",
+        )),
+        _ if fast.to_degrees() > 89.999_999 => Some((
+            fast.place,
+            "the friction angle must be below 90 deg",
+            "grains have 30 deg to 45 deg in fast shear",
+        )),
+        Some(slow) if !varies && slow > 0.0 => None,
+        _ => Some((
+            rate.place,
+            "`rate` needs one cohesion and one friction angle, above zero",
+            "layers with materials of their own in place of what varies",
+        )),
+    };
+    if let Some((place, message, help)) = refused {
+        problems.error(place, message).help(help);
+        return None;
+    }
+    Some(InertialFriction {
+        friction_angle: **fast,
+        inertial_number: *rate.inertial_number,
+        grain_diameter: *rate.grain_diameter,
+        grain_density: *rate.grain_density,
     })
 }
 

@@ -49,8 +49,7 @@ pub(super) fn consolidation<const D: usize>(
         return Err(Wrong);
     }
     let goes_with_time = |own: &igimp_model::Material| {
-        matches!(own.drainage, Drainage::Undrained { flows: true, .. })
-            || own.softening.is_some_and(|own| own.rate.is_some())
+        matches!(own.drainage, Drainage::Undrained { flows: true, .. }) || own.goes_with_rate()
     };
     let materials = &about.context.materials;
     if materials.iter().all(Option::is_some) && !materials.iter().flatten().any(goes_with_time) {
