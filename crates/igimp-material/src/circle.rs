@@ -156,7 +156,7 @@ impl Circle {
         }
     }
 
-    /// The invariant κ of the plastic strain \[-\], and its derivatives by Λ and sin ψ.
+    /// The invariant κ of the plastic strain \[-\] (theory, eq. 107a), and its derivatives by Λ and sin ψ.
     #[inline]
     pub(crate) fn equivalent(&self, multiplier: f64, y: f64) -> [f64; 3] {
         let [largest, middle, least] = self.trial;
