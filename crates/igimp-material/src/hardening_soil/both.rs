@@ -23,8 +23,8 @@ struct Both<'a> {
     planes: Planes,
 }
 
-/// What a pair of unknowns leaves.
-struct Left {
+/// Residuals of a pair of unknowns.
+struct Residuals {
     /// Strain of the hyperbola less that of the flow \[-\], and the excess over the cap \[stress\].
     values: [f64; 2],
     /// Their derivatives by x and by μ.
@@ -68,7 +68,8 @@ impl<'a> Both<'a> {
         (path, softened)
     }
 
-    fn at(&self, share: f64, mu: f64) -> Left {
+    /// The residuals of shear and cap, with their derivatives.
+    fn at(&self, share: f64, mu: f64) -> Residuals {
         let Start {
             hyperbola, moduli, ..
         } = *self.start;
@@ -119,7 +120,7 @@ impl<'a> Both<'a> {
         let (per_volume, scale) = (slope / moduli.bulk, 0.5 / equivalent);
         let outwards = |rate: &Principal| scale * dot(&normal, rate) - per_volume * mu * mean(rate);
         let [residual, residual_by] = along.residual;
-        Left {
+        Residuals {
             values: [residual, equivalent - tip],
             slopes: [
                 [residual_by, along.strain_by[0] * s_mu - multiplier_mu],

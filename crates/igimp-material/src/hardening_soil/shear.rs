@@ -101,6 +101,9 @@ impl Path<'_> {
         for _ in 0..MOST_CORRECTIONS {
             let own = self.at(share);
             let [residual, slope] = own.residual;
+            if residual.is_nan() {
+                return None;
+            }
             if residual > 0.0 {
                 (high, is_bounded) = (share, true);
             } else if share >= failure {
