@@ -5,7 +5,7 @@ use igimp_material::Tensor;
 use igimp_shape::Grid;
 use rayon::prelude::*;
 
-use crate::body::particles::{CHUNK, ParticleFields, Particles};
+use crate::body::particles::{CHUNK, ParticleFields, Particles, volume_ratio};
 use crate::contributions::consolidation::PoresAfter;
 use crate::contributions::inertia::Motion;
 use crate::contributions::rigid::{RigidBody, seeded_too_close};
@@ -37,6 +37,7 @@ impl<const D: usize> Particles<D> {
             &mut fields.half_length,
             &fields.half_length0,
             &mut fields.def_grad,
+            &mut fields.hoop_strain,
         );
         let stressed = (
             &mut fields.b_e,
@@ -52,7 +53,7 @@ impl<const D: usize> Particles<D> {
             .enumerate()
             .with_min_len(CHUNK)
             .for_each(|(particle, ((moving, stressed), slot))| {
-                let (x, displacement, half_length, half_length0, def_grad) = moving;
+                let (x, displacement, half_length, half_length0, def_grad, hoop_strain) = moving;
                 let (b_e, sigma, eps_p_eq, internal, regime, excess) = stressed;
                 let own = &trial.particles[slot as usize];
                 let step = interpolate(stencils, particle, u);
@@ -65,22 +66,25 @@ impl<const D: usize> Particles<D> {
                             x[axis] += step[axis];
                         }
                         *def_grad = multiply(&own.delta_def_grad, def_grad);
+                        *hoop_strain = (1.0 + *hoop_strain) * own.delta_hoop_stretch - 1.0;
+                        let ratio = volume_ratio(def_grad, *hoop_strain);
                         let update = method.domain_update;
                         *half_length = updated_half_length(update, half_length0, def_grad);
-                        (*b_e, *sigma) =
-                            stress_state(method.kinematics, own, determinant(def_grad));
+                        (*b_e, *sigma) = stress_state(method.kinematics, own, ratio);
                     }
                     Geometry::Given => {
                         *b_e = own.b_e();
                         *sigma = match method.kinematics {
-                            Kinematics::FiniteStrain => divided(&own.tau, determinant(def_grad)),
+                            Kinematics::FiniteStrain => {
+                                divided(&own.tau, volume_ratio(def_grad, *hoop_strain))
+                            }
                             Kinematics::SmallStrain => own.tau,
                         };
                     }
                 }
                 *excess = match method.kinematics {
                     _ if own.excess == 0.0 => 0.0,
-                    Kinematics::FiniteStrain => own.excess / determinant(def_grad),
+                    Kinematics::FiniteStrain => own.excess / volume_ratio(def_grad, *hoop_strain),
                     Kinematics::SmallStrain => own.excess,
                 };
                 (*eps_p_eq, *internal) = (own.history.eps_p_eq, own.history.internal);

@@ -7,7 +7,7 @@ use crate::body::particles::CHUNK;
 use crate::contributions::inertia::Motion;
 use crate::contributions::nodal_forces::NodalForces;
 use crate::contributions::nodal_mass::product;
-use crate::equations::kinematics::{ParticleTrial, gradients};
+use crate::equations::kinematics::{Gradients, ParticleTrial};
 use crate::equations::system::System;
 use crate::equations::trial::Trial;
 use crate::error::AssemblyError;
@@ -196,7 +196,7 @@ impl<const D: usize> System<'_, D> {
         let particles = self.particles;
         let supports = self.stencils.of(particle);
         let stretch = match self.method.kinematics {
-            Kinematics::FiniteStrain => determinant(&particles.def_grad[particle]),
+            Kinematics::FiniteStrain => particles.volume_ratio(particle),
             Kinematics::SmallStrain => 1.0,
         };
         let volume = self.reference_volume(particle);
@@ -221,11 +221,13 @@ impl<const D: usize> System<'_, D> {
             stiffness => excess * excess / stiffness,
         };
         let dilation = || {
-            let mut mean = gradients(supports, u).1;
+            let hoops = self.stencils.hoops_of(particle);
+            let gradients = Gradients::of((supports, hoops), u);
+            let mut mean = gradients.bar;
             for (a, row) in mean.iter_mut().enumerate() {
                 row[a] += 1.0;
             }
-            determinant(&mean).ln()
+            (determinant(&mean) * (1.0 + gradients.hoop.bar)).ln()
         };
         let mass = particles.mass[particle] + self.loads.pores.mass(particle);
         let kinetic = |v: &[f64; D]| 0.5 * mass * v.iter().map(|v| v * v).sum::<f64>();

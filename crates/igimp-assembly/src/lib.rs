@@ -48,7 +48,7 @@ pub use equations::system::{Structures, System};
 pub use equations::trial::Trial;
 pub use error::AssemblyError;
 pub use laws::SharedLaw;
-pub use method::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
+pub use method::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, Section, SmallCuts};
 pub use step::stencils::Stencils;
 pub use step::ties::Carrier;
 pub use step::unknowns::Unknowns;

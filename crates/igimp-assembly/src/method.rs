@@ -1,5 +1,6 @@
 //! The switches of the method: basis, locking control, geometry, kinematics, domain update, small cuts.
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use igimp_shape::{Basis, Gimp, Linear};
@@ -27,6 +28,32 @@ pub enum Geometry {
     /// Positions, domains, F and supports stay as they are; strain adds up as small strain (theory,
     /// eq. 11b). Displacements are recorded and enter no equation.
     Given,
+}
+
+/// What a body in the plane is a section of; in space it says nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Section {
+    /// A body without end, of which a slice of unit thickness is computed (the default).
+    #[default]
+    PlaneStrain,
+    /// A body of revolution about x = 0 (theory, eqs. 130 to 130e): x is the radius, volumes, masses and forces are those of the
+    /// whole circle.
+    Axisymmetric,
+}
+
+impl Section {
+    /// Whether strain goes around an axis.
+    pub fn is_axisymmetric(self) -> bool {
+        self == Self::Axisymmetric
+    }
+
+    /// The thickness of the body at a radius, $`2πr`$ or the unit \[length\].
+    pub fn thickness(self, radius: f64) -> f64 {
+        match self {
+            Self::PlaneStrain => 1.0,
+            Self::Axisymmetric => TAU * radius,
+        }
+    }
 }
 
 /// How strain is measured over a step.
@@ -99,6 +126,8 @@ pub struct Method {
     pub basis: Arc<dyn Basis>,
     /// What is done against locking.
     pub locking: Locking,
+    /// What a body in the plane is a section of.
+    pub section: Section,
     /// The geometry that steps are computed on.
     pub geometry: Geometry,
     /// Strain measure.
@@ -114,6 +143,7 @@ impl Method {
         Self {
             basis,
             locking,
+            section: Section::PlaneStrain,
             geometry: Geometry::Moving,
             kinematics: Kinematics::FiniteStrain,
             domain_update: DomainUpdate::DiagonalU,
@@ -148,7 +178,7 @@ impl Method {
 
     /// The variant's name as the paper writes it, such as `iGIMP + B-bar`.
     pub fn label(&self) -> String {
-        let basis = if self.basis.name() == "linear" {
+        let basis = if self.is_of_points() {
             "iMPM"
         } else {
             "iGIMP"
@@ -158,6 +188,11 @@ impl Method {
             Locking::BBar => format!("{basis} + B-bar"),
             Locking::SharedStrain => format!("{basis} + shared strain"),
         }
+    }
+
+    /// Whether soil is concentrated in the middles of particles.
+    pub(crate) fn is_of_points(&self) -> bool {
+        self.basis.name() == "linear"
     }
 
     /// How strain is measured over a step of this geometry: increments on a given one are small.

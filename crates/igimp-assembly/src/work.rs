@@ -4,7 +4,7 @@ use igimp_material::{MaterialError, Tensor, logarithmic_strain, principal_values
 use rayon::prelude::*;
 
 use crate::body::particles::CHUNK;
-use crate::equations::kinematics::{add_small_strain, gradients};
+use crate::equations::kinematics::Gradients;
 use crate::equations::system::System;
 use crate::equations::trial::Trial;
 use crate::error::AssemblyError;
@@ -123,9 +123,9 @@ impl<const D: usize> System<'_, D> {
 
     /// The small strain of a step at a particle \[-\].
     fn strain_of_step(&self, particle: usize, u: &[[f64; D]]) -> Tensor {
-        let (gradient, gradient_bar) = gradients(self.stencils.of(particle), u);
+        let (supports, hoops) = (self.stencils.of(particle), self.stencils.hoops_of(particle));
         let mut strain = [[0.0; 3]; 3];
-        add_small_strain(&mut strain, &gradient, &gradient_bar);
+        Gradients::of((supports, hoops), u).add_small_strain(&mut strain);
         strain
     }
 

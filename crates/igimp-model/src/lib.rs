@@ -127,6 +127,16 @@ impl<const D: usize> Case<D> {
 }
 
 impl<const D: usize> Case<D> {
+    /// Whether forces and volumes are those of the whole body, and not per metre run.
+    pub fn is_whole(&self) -> bool {
+        D == 3 || self.method.section.is_axisymmetric()
+    }
+
+    /// Behind units of forces and volumes: `/m` where they are per metre run.
+    pub fn per_metre(&self) -> &'static str {
+        if self.is_whole() { "" } else { "/m" }
+    }
+
     /// The same problem on a grid whose cells are cut into `n` in each direction.
     ///
     /// Places, lengths and steps stay. What a file states by the cell (particles, small cuts, the stride

@@ -58,6 +58,7 @@ pub(crate) enum Range {
     Positive,
     NotNegative,
     WithinOne,
+    AboveMinusOne,
     /// Finite, and with a positive determinant.
     Invertible,
 }
@@ -70,6 +71,7 @@ impl Range {
                 Self::Positive => value > 0.0,
                 Self::NotNegative => value >= 0.0,
                 Self::WithinOne => value.abs() < 1.0,
+                Self::AboveMinusOne => value > -1.0,
             }
     }
 
@@ -79,6 +81,7 @@ impl Range {
             Self::Positive => "positive and finite",
             Self::NotNegative => "zero or positive, and finite",
             Self::WithinOne => "between -1 and 1",
+            Self::AboveMinusOne => "above -1 and finite",
         }
     }
 }

@@ -29,7 +29,7 @@ pub struct ParticleSeed<const D: usize> {
     pub x: [f64; D],
     /// Half-lengths l_p of the domain \[length\].
     pub half_length: [f64; D],
-    /// Volume V_0 \[length^D; per unit thickness in plane strain\].
+    /// Volume V_0 \[length^D; per unit thickness in plane strain, of the whole circle in an axisymmetric section\].
     pub volume: f64,
     /// Density ρ_0 \[mass/length³\].
     pub density: f64,
@@ -51,6 +51,8 @@ columns! {
     acceleration: [f64; D] = [0.0; D], Range::Finite, optional;
     /// Deformation gradient F; the out-of-plane stretch is 1 in plane strain \[-\].
     def_grad: [[f64; D]; D] = identity(), Range::Invertible;
+    /// Strain around the axis F_θθ − 1; zero unless the section is axisymmetric \[-\].
+    hoop_strain: f64 = 0.0, Range::AboveMinusOne, optional;
     /// Elastic left Cauchy–Green tensor b_e, 3 × 3 with zz in plane strain \[-\].
     b_e: Tensor = identity(), Range::Finite;
     /// Cauchy stress that the law answers, 3 × 3, tension positive: effective stress σ′ where there is water, else σ
@@ -291,7 +293,7 @@ impl<const D: usize> Particles<D> {
 
     /// Current volume V = det F · V_0 of a particle \[length^D\].
     pub fn volume(&self, particle: usize) -> f64 {
-        determinant(&self.fields.def_grad[particle]) * self.fields.volume0[particle]
+        self.volume_ratio(particle) * self.fields.volume0[particle]
     }
 
     /// Half-lengths of the box by which results draw and measure a particle \[length\]: its domain, at most six times as long as
@@ -303,7 +305,7 @@ impl<const D: usize> Particles<D> {
 
     /// Ratio of the volume of a particle to that at the start J = det F \[-\].
     pub fn volume_ratio(&self, particle: usize) -> f64 {
-        determinant(&self.fields.def_grad[particle])
+        volume_ratio(&self.fields.def_grad[particle], self.fields.hoop_strain[particle])
     }
 
     /// Total Cauchy stress σ of a particle, tension positive: what its law answers, less the pressure of the water in
@@ -326,6 +328,11 @@ impl<const D: usize> Particles<D> {
     pub(crate) fn fields_mut(&mut self) -> &mut ParticleFields<D> {
         &mut self.fields
     }
+}
+
+/// J = det F, with the stretch around the axis \[-\].
+pub(crate) fn volume_ratio<const D: usize>(def_grad: &[[f64; D]; D], hoop_strain: f64) -> f64 {
+    determinant(def_grad) * (1.0 + hoop_strain)
 }
 
 fn validate<const D: usize>(particle: usize, seed: &ParticleSeed<D>) -> Result<(), AssemblyError> {

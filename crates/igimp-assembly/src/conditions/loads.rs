@@ -4,13 +4,14 @@
 use igimp_shape::{Grid, Linear, Scratch, Support, supports};
 
 use crate::error::{AssemblyError, padded};
+use crate::method::Section;
 
 /// A force on a point that moves with the soil. Its direction stays (dead load).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadPoint<const D: usize> {
     /// Position \[length\].
     pub x: [f64; D],
-    /// Force at load factor 1 \[force; per unit thickness in plane strain\].
+    /// Force at load factor 1 \[force; per unit thickness in plane strain, on the whole circle in an axisymmetric section\].
     pub force: [f64; D],
     /// Index of its factor in [`StepLoads::factors`]; points of one load share it.
     pub load: usize,
@@ -45,6 +46,20 @@ impl<const D: usize> LoadPoint<D> {
                 }
             })
             .collect()
+    }
+
+    /// The same where the part of an edge that it stands in the middle of goes around the axis of a section: at the centroid of
+    /// the ring, with the force on all of it. `way` leads from one end of the part to the other \[length\].
+    #[must_use]
+    pub fn around(mut self, section: Section, way: &[f64; D]) -> Self {
+        let radius = self.x[0];
+        if section.is_axisymmetric() && radius > 0.0 {
+            for axis in 0..D {
+                self.x[axis] += way[0] / (12.0 * radius) * way[axis];
+                self.force[axis] *= section.thickness(radius);
+            }
+        }
+        self
     }
 
     /// A traction on a rectangle across one axis, as equal points in the middle of equal parts, so many along each

@@ -50,7 +50,7 @@ impl<'a, const D: usize> BesideParticles<'a, D> {
         Ok(Self {
             ghost: ghost_penalty(grid, particles, stencils, young, penalty),
             drag: nodal_drag(grid, stencils, conditions.loads.drag),
-            contact: Contact::find(bodies, particles, stencils, conditions, unknowns),
+            contact: Contact::find(bodies, particles, stencils, of_step, unknowns),
             reinforcement: Members::find(members, stencils, conditions, method, unknowns)?,
             consolidation: Consolidation::find(
                 particles, bodies, stencils, of_step, unknowns, pores,

@@ -15,7 +15,6 @@ use crate::conditions::StepConditions;
 use crate::conditions::water::{PoreState, Water};
 use crate::error::AssemblyError;
 use crate::method::{Kinematics, Method};
-use crate::small::determinant;
 use crate::step::stencils::Stencils;
 
 /// What pore water adds to the stress of a particle.
@@ -104,7 +103,7 @@ impl Pores {
             let particle = particle as usize;
             let own = &states[particle];
             let volume0 = particles.volume0[particle];
-            let stretch = determinant(&particles.def_grad[particle]);
+            let stretch = particles.volume_ratio(particle);
             let density = own.added_density + (stretch - 1.0) * own.water_density;
             pores.mass[particle] = volume0 * density;
             let force: [f64; D] = std::array::from_fn(|axis| {
@@ -152,7 +151,7 @@ impl Pores {
     ) -> PoreResponse {
         let at_volume = |pressure: f64| {
             if pressure != 0.0 && method.kinematics == Kinematics::FiniteStrain {
-                pressure * determinant(&particles.def_grad[particle])
+                pressure * particles.volume_ratio(particle)
             } else {
                 pressure
             }

@@ -24,6 +24,7 @@ use crate::contributions::pore_water::PoreResponse;
 use crate::error::AssemblyError;
 use crate::method::{Geometry, Kinematics, Method};
 use crate::small::{congruence, determinant, identity, inverse};
+use crate::step::hoops::Hoop;
 
 /// An elastic Hencky strain beyond this makes b_e = exp(2 ε_e) leave the floating-point numbers \[-\].
 const LARGEST_STRAIN: f64 = 300.0;
@@ -33,6 +34,8 @@ const LARGEST_STRAIN: f64 = 300.0;
 pub struct ParticleTrial<const D: usize> {
     /// ΔF, the deformation gradient of the step \[-\].
     pub delta_def_grad: [[f64; D]; D],
+    /// ΔF_θθ, the stretch of the step around the axis; 1 unless the section is axisymmetric \[-\].
+    pub delta_hoop_stretch: f64,
     /// Kirchhoff stress τ (Cauchy stress in small strain) that the law answers \[force/length²\], tension positive.
     pub tau: Tensor,
     /// Principal elastic Hencky strain after the return \[-\], extension positive.
@@ -54,6 +57,7 @@ impl<const D: usize> ParticleTrial<D> {
     pub(crate) fn at_rest() -> Self {
         Self {
             delta_def_grad: identity(),
+            delta_hoop_stretch: 1.0,
             tau: [[0.0; 3]; 3],
             eps_e: [0.0; 3],
             frame: identity(),
@@ -77,6 +81,8 @@ pub(crate) struct Linearisation<const D: usize> {
     pub(crate) push: [[f64; D]; D],
     /// ΔF_c⁻¹ of the cell-averaged gradient; the identity in small strain.
     pub(crate) push_bar: [[f64; D]; D],
+    /// 1/ΔF_θθ, and that of the cell-averaged stretch; 1 in small strain.
+    pub(crate) push_hoop: Hoop,
     /// Stress and tangent in spatial axes, those of the water in the pores included.
     pub(crate) lifted: Lifted<D>,
     /// What its plastic and its nonlocal strain are to each other, where strength sees that.
@@ -97,6 +103,8 @@ pub(crate) struct Straining<const D: usize> {
     /// As [`Linearisation::push`] and [`Linearisation::push_bar`].
     push: [[f64; D]; D],
     push_bar: [[f64; D]; D],
+    delta_hoop_stretch: f64,
+    push_hoop: Hoop,
     /// Logarithm of the ratio of volumes, where pore water asks for it.
     ln_volume: f64,
     strain: TrialStrain,
@@ -113,14 +121,15 @@ impl<const D: usize> Straining<D> {
 #[inline]
 pub(crate) fn strained<const D: usize>(
     state: ParticleState<'_>,
-    supports: &[Support<D>],
+    (supports, hoops): (&[Support<D>], &[Hoop]),
     u: &[[f64; D]],
     method: &Method,
 ) -> Result<Straining<D>, AssemblyError> {
     let particle = state.particle;
-    let (gradient, gradient_bar) = gradients(supports, u);
-    let mut delta_def_grad = gradient;
-    let mut delta_bar = gradient_bar;
+    let gradients = Gradients::of((supports, hoops), u);
+    let mut delta_def_grad = gradients.own;
+    let mut delta_bar = gradients.bar;
+    let hoop = UNSTRETCHED.plus(1.0, gradients.hoop);
     for a in 0..D {
         delta_def_grad[a][a] += 1.0;
         delta_bar[a][a] += 1.0;
@@ -128,35 +137,43 @@ pub(crate) fn strained<const D: usize>(
     let material = |source| AssemblyError::Material { particle, source };
     if method.geometry == Geometry::Moving {
         positive(particle, determinant(&delta_def_grad))?;
+        positive(particle, hoop.own)?;
     }
     let mut ln_volume = 0.0;
     Ok(match method.kinematics_of_step() {
         Kinematics::FiniteStrain => {
             let det = determinant(&delta_def_grad);
             let det_bar = positive(particle, determinant(&delta_bar))?;
-            let lambda = (det_bar / det).cbrt();
+            let volume_bar = det_bar * positive(particle, hoop.bar)?;
+            let lambda = (volume_bar / (det * hoop.own)).cbrt();
             if state.pores.asks_for_volume() {
-                ln_volume = det_bar.ln();
+                ln_volume = volume_bar.ln();
             }
-            let b_trial = pushed_forward(state.b_e, &delta_def_grad, lambda * lambda);
+            let stretch = (&delta_def_grad, hoop.own);
+            let b_trial = pushed_forward(state.b_e, stretch, lambda * lambda);
             Straining {
                 delta_def_grad,
                 push: inverse(&delta_def_grad, det),
                 push_bar: inverse(&delta_bar, det_bar),
+                delta_hoop_stretch: hoop.own,
+                push_hoop: Hoop {
+                    own: hoop.own.recip(),
+                    bar: hoop.bar.recip(),
+                },
                 ln_volume,
                 strain: TrialStrain::finite::<D>(&b_trial).map_err(material)?,
             }
         }
         Kinematics::SmallStrain => {
             let mut strain = logarithmic_strain(state.b_e).map_err(material)?;
-            add_small_strain(&mut strain, &gradient, &gradient_bar);
-            for (a, row) in gradient_bar.iter().enumerate() {
-                ln_volume += row[a];
-            }
+            gradients.add_small_strain(&mut strain);
+            ln_volume = gradients.dilation();
             Straining {
                 delta_def_grad,
                 push: identity(),
                 push_bar: identity(),
+                delta_hoop_stretch: hoop.own,
+                push_hoop: UNSTRETCHED,
                 ln_volume,
                 strain: TrialStrain::small::<D>(&strain).map_err(material)?,
             }
@@ -184,6 +201,7 @@ pub(crate) fn answered<const D: usize>(
     }
     *trial = ParticleTrial {
         delta_def_grad: straining.delta_def_grad,
+        delta_hoop_stretch: straining.delta_hoop_stretch,
         tau: lifted.tau,
         eps_e: lifted.eps_e,
         frame: lifted.frame,
@@ -195,6 +213,7 @@ pub(crate) fn answered<const D: usize>(
     let mut linearisation = Linearisation {
         push: straining.push,
         push_bar: straining.push_bar,
+        push_hoop: straining.push_hoop,
         lifted,
         nonlocal: None,
     };
@@ -205,50 +224,71 @@ pub(crate) fn answered<const D: usize>(
     Ok(linearisation)
 }
 
-/// Gradients of nodal step displacements `u` at a particle: its own, and the cell-averaged one \[-\].
-#[inline]
-pub(crate) fn gradients<const D: usize>(
-    supports: &[Support<D>],
-    u: &[[f64; D]],
-) -> ([[f64; D]; D], [[f64; D]; D]) {
-    let mut gradient = [[0.0; D]; D];
-    let mut gradient_bar = [[0.0; D]; D];
-    for support in supports {
-        let displacement = &u[support.node];
-        for a in 0..D {
-            for b in 0..D {
-                gradient[a][b] += displacement[a] * support.grad[b];
-                gradient_bar[a][b] += displacement[a] * support.grad_bar[b];
+/// No stretch around the axis.
+const UNSTRETCHED: Hoop = Hoop { own: 1.0, bar: 1.0 };
+
+/// Gradients of nodal step displacements at a particle \[-\].
+pub(crate) struct Gradients<const D: usize> {
+    /// Its own.
+    pub(crate) own: [[f64; D]; D],
+    /// The cell-averaged one.
+    pub(crate) bar: [[f64; D]; D],
+    /// Strain around the axis u_r/r, both of them; zero unless the section is axisymmetric.
+    pub(crate) hoop: Hoop,
+}
+
+impl<const D: usize> Gradients<D> {
+    /// Those of displacements `u` \[length\].
+    #[inline]
+    pub(crate) fn of((supports, hoops): (&[Support<D>], &[Hoop]), u: &[[f64; D]]) -> Self {
+        let mut own = [[0.0; D]; D];
+        let mut bar = [[0.0; D]; D];
+        for support in supports {
+            let displacement = &u[support.node];
+            for a in 0..D {
+                for b in 0..D {
+                    own[a][b] += displacement[a] * support.grad[b];
+                    bar[a][b] += displacement[a] * support.grad_bar[b];
+                }
             }
         }
+        let around = supports.iter().zip(hoops);
+        let hoop = around.fold(Hoop::default(), |sum, (support, hoop)| {
+            sum.plus(u[support.node][0], *hoop)
+        });
+        Self { own, bar, hoop }
     }
-    (gradient, gradient_bar)
-}
 
-/// Adds the small strain of a step, with the cell-averaged dilatation (theory, eq. 9) \[-\].
-#[inline]
-pub(crate) fn add_small_strain<const D: usize>(
-    strain: &mut Tensor,
-    gradient: &[[f64; D]; D],
-    gradient_bar: &[[f64; D]; D],
-) {
-    let mut difference = 0.0;
-    for a in 0..D {
-        difference += gradient_bar[a][a] - gradient[a][a];
-        for b in 0..D {
-            strain[a][b] += 0.5 * (gradient[a][b] + gradient[b][a]);
+    /// The cell-averaged dilatation, in small strain.
+    #[inline]
+    pub(crate) fn dilation(&self) -> f64 {
+        let in_plane = (0..D).fold(0.0, |sum, a| sum + self.bar[a][a]);
+        in_plane + self.hoop.bar
+    }
+
+    /// Adds the small strain of the step, with the cell-averaged dilatation (theory, eqs. 9 and 130c) \[-\].
+    #[inline]
+    pub(crate) fn add_small_strain(&self, strain: &mut Tensor) {
+        let Self { own, bar, hoop } = self;
+        let mut difference = hoop.bar - hoop.own;
+        for a in 0..D {
+            difference += bar[a][a] - own[a][a];
+            for b in 0..D {
+                strain[a][b] += 0.5 * (own[a][b] + own[b][a]);
+            }
+        }
+        strain[2][2] += hoop.own;
+        for a in 0..3 {
+            strain[a][a] += difference / 3.0;
         }
     }
-    for a in 0..3 {
-        strain[a][a] += difference / 3.0;
-    }
 }
 
-/// The trial tensor λ² ΔF b ΔFᵀ, with λ² b_zz out of plane.
+/// The trial tensor λ² ΔF b ΔFᵀ, with λ² ΔF_θθ² b_zz out of plane.
 #[inline]
 fn pushed_forward<const D: usize>(
     b: &Tensor,
-    delta_def_grad: &[[f64; D]; D],
+    (delta_def_grad, hoop): (&[[f64; D]; D], f64),
     lambda2: f64,
 ) -> Tensor {
     let mut in_plane = [[0.0; D]; D];
@@ -263,7 +303,7 @@ fn pushed_forward<const D: usize>(
                 * if a < D && c < D {
                     pushed[a][c]
                 } else {
-                    b[a][c]
+                    hoop * hoop * b[a][c]
                 };
         }
     }

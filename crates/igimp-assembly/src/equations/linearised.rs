@@ -34,6 +34,7 @@ use igimp_shape::Support;
 use crate::equations::kinematics::Linearisation;
 use crate::method::Kinematics;
 use crate::small::transpose_apply;
+use crate::step::hoops::Hoop;
 
 /// Numbers that are worked on together.
 const LANES: usize = 4;
@@ -98,6 +99,57 @@ impl<const D: usize> Moduli<D> {
     }
 }
 
+/// What the tangent of stress of a particle of a body of revolution has to do with the direction around the axis, t (theory,
+/// eq. 130e).
+struct HoopModuli<const D: usize> {
+    /// V A_ttcd by c, d \[energy\].
+    row: [[f64; D]; D],
+    /// V A_abtt by b, a \[energy\].
+    column: [[f64; D]; D],
+    /// V (A_tttt + p − τ_tt) \[energy\].
+    both: f64,
+    /// V A_pptt / 3 \[energy\].
+    left: f64,
+    /// V A_ttqq / 3 \[energy\].
+    right: f64,
+}
+
+impl<const D: usize> HoopModuli<D> {
+    /// Those of a particle of volume `volume`: what sums over all directions have beyond those over the plane.
+    fn of(own: &Linearisation<D>, volume: f64, kinematics: Kinematics) -> Self {
+        let (tangent, tau) = (own.lifted.tangent(), &own.lifted.tau);
+        let (mut row, mut column) = ([[0.0; D]; D], [[0.0; D]; D]);
+        for c in 0..D {
+            for d in 0..D {
+                let in_plane = (0..D).fold([0.0; 2], |[row, column], a| {
+                    let modulus = &tangent.modulus;
+                    [row + modulus[a][a][c][d], column + modulus[c][d][a][a]]
+                });
+                row[c][d] = volume * (tangent.trace_left[c][d] - in_plane[0]);
+                column[d][c] = volume * (tangent.trace_right[c][d] - in_plane[1]);
+            }
+        }
+        let (mut left, mut right, mut both) = (tangent.trace, tangent.trace, 0.0);
+        for a in 0..D {
+            left -= tangent.trace_left[a][a];
+            right -= tangent.trace_right[a][a];
+            both -= column[a][a];
+        }
+        let [left, right] = [left, right].map(|sum| volume * sum);
+        let geometric = match kinematics {
+            Kinematics::FiniteStrain => (tau[0][0] + tau[1][1] - 2.0 * tau[2][2]) / 3.0,
+            Kinematics::SmallStrain => 0.0,
+        };
+        Self {
+            row,
+            column,
+            both: left + both + volume * geometric,
+            left: left / 3.0,
+            right: right / 3.0,
+        }
+    }
+}
+
 /// One particle after another.
 #[derive(Debug, Default)]
 pub(crate) struct Linearised<const D: usize> {
@@ -105,12 +157,16 @@ pub(crate) struct Linearised<const D: usize> {
     g: Vec<[f64; D]>,
     /// Pushed cell-averaged gradients ḡ by support.
     g_bar: Vec<[f64; D]>,
+    /// Pushed stretch around the axis by support, t_i and t̄_i; none unless the section is axisymmetric.
+    hoops: Vec<Hoop>,
     /// The factors y by c, d and rows (i, a), the rows filled up to full lanes.
     y: Vec<[f64; LANES]>,
     /// The factors h, in the same way.
     h: Vec<[f64; LANES]>,
     /// The columns of one support by c and rows.
     columns: Vec<[f64; LANES]>,
+    /// The factors of t_j and of t̄_j, by rows.
+    around: [Vec<[f64; LANES]>; 2],
     /// Lanes of a vector.
     lanes: usize,
 }
@@ -118,9 +174,19 @@ pub(crate) struct Linearised<const D: usize> {
 impl<const D: usize> Linearised<D> {
     /// Pushes the gradients of a particle forward.
     #[inline]
-    pub(crate) fn push(&mut self, supports: &[Support<D>], own: &Linearisation<D>) {
+    pub(crate) fn push(
+        &mut self,
+        (supports, hoops): (&[Support<D>], &[Hoop]),
+        own: &Linearisation<D>,
+    ) {
         self.g.clear();
         self.g_bar.clear();
+        self.hoops.clear();
+        let pushed = |hoop: &Hoop| Hoop {
+            own: own.push_hoop.own * hoop.own,
+            bar: own.push_hoop.bar * hoop.bar,
+        };
+        self.hoops.extend(hoops.iter().map(pushed));
         let g = |support: &Support<D>| transpose_apply(&own.push, &support.grad);
         let g_bar = |support: &Support<D>| transpose_apply(&own.push_bar, &support.grad_bar);
         self.g.extend(supports.iter().map(g));
@@ -158,6 +224,77 @@ impl<const D: usize> Linearised<D> {
                 volume * force
             })
         })
+    }
+
+    /// The radial forces of the stress around the axis on the supports of a particle of volume `volume`; none unless the
+    /// section is axisymmetric.
+    #[inline]
+    pub(crate) fn hoop_forces(
+        &self,
+        own: &Linearisation<D>,
+        volume: f64,
+    ) -> impl Iterator<Item = f64> {
+        let tau = &own.lifted.tau;
+        let p = (tau[0][0] + tau[1][1] + tau[2][2]) / 3.0;
+        let deviator = tau[2][2] - p;
+        (self.hoops.iter()).map(move |hoop| volume * (deviator * hoop.own + p * hoop.bar))
+    }
+
+    /// Computes the factors of the rows of a particle of volume `volume`.
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    pub(crate) fn linearise_particle(
+        &mut self,
+        own: &Linearisation<D>,
+        volume: f64,
+        kinematics: Kinematics,
+    ) {
+        let moduli = Moduli::of(own, volume, kinematics);
+        self.linearise(&moduli);
+        if !self.hoops.is_empty() {
+            self.add_hoops(&moduli, &HoopModuli::of(own, volume, kinematics));
+        }
+    }
+
+    /// Adds to the factors of the rows what stretching around the axis does, and sets those of its columns.
+    fn add_hoops(&mut self, moduli: &Moduli<D>, hoop: &HoopModuli<D>) {
+        for factors in &mut self.around {
+            factors.clear();
+            factors.resize(self.lanes, [0.0; LANES]);
+        }
+        let [around, around_bar] = &mut self.around;
+        let (around, around_bar) = (around.as_flattened_mut(), around_bar.as_flattened_mut());
+        let (y, h) = (self.y.as_flattened_mut(), self.h.as_flattened_mut());
+        let stride = LANES * self.lanes;
+        let pushed = std::iter::zip(&self.g, &self.g_bar).zip(&self.hoops);
+        for (i, ((g, g_bar), &Hoop { own: t, bar: t_bar })) in pushed.enumerate() {
+            let added = moduli.trace * (t_bar - t) + hoop.right * t;
+            for c in 0..D {
+                for d in 0..D {
+                    let place = (c * D + d) * stride + i * D;
+                    y[place] += moduli.left[c][d] * (t_bar - t) + hoop.row[c][d] * t;
+                    if c == d {
+                        y[place] -= added;
+                        h[place] += added;
+                    }
+                }
+            }
+            for a in 0..D {
+                let radial = if a == 0 { 1.0 } else { 0.0 };
+                let d_3 = g_bar[a] - g[a] + radial * (t_bar - t);
+                let mut z = moduli.trace * d_3 + radial * hoop.right * t;
+                let mut own = hoop.left * d_3 + radial * hoop.both * t;
+                for b in 0..D {
+                    z += moduli.right[b][a] * g[b];
+                    own += hoop.column[b][a] * g[b];
+                }
+                around[i * D + a] = own - z;
+                around_bar[i * D + a] = z - radial * moduli.vp * t_bar;
+            }
+        }
     }
 
     /// Computes the factors of the rows.
@@ -252,6 +389,15 @@ impl<const D: usize> Linearised<D> {
                     }
                 }
                 column[k] = sum;
+            }
+        }
+        if let Some(hoop) = self.hoops.get(j) {
+            let [around, around_bar] = &self.around;
+            let radial = self.columns[..lanes].iter_mut();
+            for (column, (own, bar)) in radial.zip(around.iter().zip(around_bar)) {
+                for lane in 0..LANES {
+                    column[lane] += own[lane] * hoop.own + bar[lane] * hoop.bar;
+                }
             }
         }
         let columns = self.columns.as_flattened();

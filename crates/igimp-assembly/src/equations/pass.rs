@@ -139,13 +139,18 @@ impl<const D: usize> System<'_, D> {
                 .evaluate_with(particle, u, kind, answer, trial)
                 .map_err(|error| (particle, error))?;
             let volume = self.reference_volume(particle);
-            scratch.linearised.push(supports, &own);
+            let hoops = self.stencils.hoops_of(particle);
+            scratch.linearised.push((supports, hoops), &own);
             let forces = scratch.linearised.forces(&own, volume);
             for (support, force) in supports.iter().zip(forces) {
                 let sum = &mut strip.f_int[support.node - strip.first_node];
                 for axis in 0..D {
                     sum[axis] += force[axis];
                 }
+            }
+            let forces = scratch.linearised.hoop_forces(&own, volume);
+            for (support, force) in supports.iter().zip(forces) {
+                strip.f_int[support.node - strip.first_node][0] += force;
             }
             let water = self.beside.consolidation.of_particle(particle, supports, u);
             if let Some(water) = &water {
@@ -279,7 +284,7 @@ impl<const D: usize> System<'_, D> {
                 (particle, unknown),
             ),
         };
-        let supports = self.stencils.of(particle);
+        let supports = (self.stencils.of(particle), self.stencils.hoops_of(particle));
         Ok((state, strained(state, supports, u, self.method)?))
     }
 
@@ -334,7 +339,7 @@ impl<const D: usize> WithSimd for Addition<'_, D> {
             }
         } else {
             let nodes = self.supports.iter().map(|support| support.node);
-            linearised.linearise(&Moduli::of(self.own, self.volume, self.kinematics));
+            linearised.linearise_particle(self.own, self.volume, self.kinematics);
             if let Some(own) = self.water {
                 scalar.set_water(own, self.supports);
             } else if let Some(own) = self.strain {

@@ -449,9 +449,9 @@ mod tests {
             let supports = stencils.of(particle);
             let own = system.evaluate_particle(particle, &u, kind, &mut trial);
             let own = own.unwrap();
-            linearised.push(supports, &own);
+            linearised.push((supports, &[]), &own);
             let volume = system.reference_volume(particle);
-            linearised.linearise(&Moduli::of(&own, volume, method.kinematics));
+            linearised.linearise_particle(&own, volume, method.kinematics);
             for (j, column) in supports.iter().enumerate() {
                 let columns = linearised.columns(j);
                 for (component, (c, _)) in system.unknowns().of(column.node).enumerate() {

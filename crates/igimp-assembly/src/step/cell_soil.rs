@@ -12,6 +12,7 @@ use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
 use crate::method::{Geometry, Locking, Method};
 use crate::step::domain::{capped_half_length, merge_equal_nodes, off_grid};
+use crate::step::hoops::{Hoop, RadialPart, off_middle};
 
 /// A cell that is filled to less than this share holds a sliver of soil that reached over its face
 /// \[-\]. A choice: less leaves nodes with so little soil that they climb without end at a limit load, more takes weight
@@ -31,16 +32,40 @@ const OWN_ISOCHORIC: f64 = 0.3;
 
 /// The soil of every cell, and the parts of every particle.
 pub(crate) struct CellSoil<const D: usize> {
-    /// The parts of `CHUNK` particles after `CHUNK` particles: where those of each begin, and all.
-    parts: Vec<(Vec<u32>, Vec<CellPart<D>>)>,
+    /// The parts of `CHUNK` particles after `CHUNK` particles.
+    parts: Vec<Parts<D>>,
     /// Whether a cell holds no more than a sliver, by cell.
     is_sliver: Vec<bool>,
     /// Where the tents of a cell give the gradients that its particles share, from 0 to 1 in each
     /// direction, by cell: the centre X = 1/2, or the centroid of the soil \[-\].
     shared_at: Vec<[f64; D]>,
+    /// Radius at which the tents of a cell give the stretch around the axis that its particles share, by cell: its middle, or
+    /// that of its soil by area \[length\]. Empty unless the section is axisymmetric.
+    hoop_at: Vec<f64>,
     /// Share β of its own distortion that a particle keeps, by law \[-\].
     own_share: Vec<f64>,
     locking: Locking,
+}
+
+/// The parts of some particles.
+#[derive(Default)]
+struct Parts<const D: usize> {
+    /// Where those of each particle begin, and where the last end.
+    first: Vec<u32>,
+    all: Vec<CellPart<D>>,
+    /// Their extents along the radius; none unless the section is axisymmetric.
+    radial: Vec<RadialPart>,
+}
+
+/// A part of a particle that counts.
+struct Kept<'a, const D: usize> {
+    part: &'a CellPart<D>,
+    /// Centroid of the part in the cell, from 0 to 1 in each direction \[-\].
+    centroid: [f64; D],
+    /// Radius of the middle of the part \[length\]; 0 unless the section is axisymmetric.
+    radius: f64,
+    /// Its share of what is kept \[-\].
+    weight: f64,
 }
 
 impl<const D: usize> CellSoil<D> {
@@ -60,16 +85,22 @@ impl<const D: usize> CellSoil<D> {
             .into_par_iter()
             .map(|chunk| {
                 let own = chunk * CHUNK..len.min((chunk + 1) * CHUNK);
-                let (mut first, mut all) = (Vec::with_capacity(own.len() + 1), Vec::new());
-                first.push(0);
+                let mut parts = Parts {
+                    first: Vec::with_capacity(own.len() + 1),
+                    ..Parts::default()
+                };
+                parts.first.push(0);
                 for particle in own {
                     let (x, half_length) = soil_of(particles, particle, method.geometry);
                     let half_length = capped_half_length(grid, &x, half_length);
-                    cell_parts(grid, &*method.basis, &x, &half_length, &mut all)
+                    cell_parts(grid, &*method.basis, &x, &half_length, &mut parts.all)
                         .map_err(|source| off_grid(particle, &x, source))?;
-                    first.push(all.len() as u32);
+                    if method.section.is_axisymmetric() {
+                        parts.weigh_by_radius(grid, method, x[0], half_length[0]);
+                    }
+                    parts.first.push(parts.all.len() as u32);
                 }
-                Ok((first, all))
+                Ok(parts)
             })
             .collect::<Vec<Result<_, AssemblyError>>>();
         let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
@@ -78,14 +109,18 @@ impl<const D: usize> CellSoil<D> {
             parts,
             is_sliver: vec![false; grid.cell_count()],
             shared_at: vec![[0.5; D]; grid.cell_count()],
+            hoop_at: Vec::new(),
             own_share: laws.iter().map(of_law).collect(),
             locking: method.locking,
         };
+        if method.section.is_axisymmetric() {
+            soil.share_by_radius(grid);
+        }
         if method.geometry == Geometry::Given || !points.is_empty() {
             soil.find_soil(
                 grid,
                 particles,
-                method.geometry,
+                method,
                 &loaded_cells(grid, points),
             );
         }
@@ -98,30 +133,65 @@ impl<const D: usize> CellSoil<D> {
         &mut self,
         grid: &Grid<D>,
         particles: &Particles<D>,
-        geometry: Geometry,
+        method: &Method,
         is_loaded: &[bool],
     ) {
-        let is_given = geometry == Geometry::Given;
+        let is_given = method.geometry == Geometry::Given;
         let all = is_given && self.locking == Locking::SharedStrain;
         let mut volume = vec![0.0; grid.cell_count()];
         let mut moment = vec![[0.0; D]; grid.cell_count()];
+        let mut area = vec![0.0; self.hoop_at.len()];
         for particle in 0..particles.len() {
-            for part in of(&self.parts, particle) {
+            for (part, centroid, radius) in self.parts_of(particle) {
                 let cell = grid.cell_index(part.cell);
                 let own = part.share * particles.volume(particle);
                 volume[cell] += own;
                 for axis in 0..D {
-                    moment[cell][axis] += own * part.middle[axis];
+                    moment[cell][axis] += own * centroid[axis];
+                }
+                if let Some(area) = area.get_mut(cell) {
+                    *area += own / radius;
                 }
             }
         }
         for (cell, (volume, moment)) in volume.into_iter().zip(moment).enumerate() {
+            let size: f64 = grid.cell_size(grid.cell_place(cell)).iter().product();
+            let thickness = (self.hoop_at.get(cell)).map_or(1.0, |&r| method.section.thickness(r));
+            self.is_sliver[cell] = is_given && volume < SLIVER * size * thickness;
             if volume > 0.0 && (all || is_loaded[cell]) {
                 self.shared_at[cell] = moment.map(|moment| moment / volume);
+                if let Some(area) = area.get(cell) {
+                    self.hoop_at[cell] = volume / area;
+                }
             }
-            let size: f64 = grid.cell_size(grid.cell_place(cell)).iter().product();
-            self.is_sliver[cell] = is_given && volume < SLIVER * size;
         }
+    }
+
+    /// Shares gradients of whole cells at their centroids by volume, and the stretch around the axis in their middles (theory,
+    /// eq. 130b).
+    fn share_by_radius(&mut self, grid: &Grid<D>) {
+        for (cell, shared_at) in self.shared_at.iter_mut().enumerate() {
+            let (nodes, place) = (grid.axes[0].nodes(), grid.cell_place(cell)[0]);
+            let size = nodes[place + 1] - nodes[place];
+            let middle = nodes[place] + 0.5 * size;
+            shared_at[0] += off_middle(middle, 0.5 * size) / size;
+            self.hoop_at.push(middle);
+        }
+    }
+
+    /// The parts of one particle, with the centroids of their volumes in their cells, and the radii of their middles.
+    fn parts_of(&self, particle: usize) -> impl Iterator<Item = (&CellPart<D>, [f64; D], f64)> {
+        let (parts, place) = (&self.parts[particle / CHUNK], particle % CHUNK);
+        let (first, last) = (parts.first[place] as usize, parts.first[place + 1] as usize);
+        (first..last).map(|k| {
+            let mut centroid = parts.all[k].middle;
+            let radial = parts.radial.get(k);
+            if let Some(radial) = radial {
+                centroid[0] = radial.centroid;
+            }
+            let radius = radial.map_or(0.0, |radial| radial.middle);
+            (&parts.all[k], centroid, radius)
+        })
     }
 
     /// Replaces `out` with the supports of a particle of law number `law` (theory, eq. 8b), nodes
@@ -131,18 +201,20 @@ impl<const D: usize> CellSoil<D> {
         grid: &Grid<D>,
         (particle, law): (usize, usize),
         out: &mut Vec<Support<D>>,
+        hoops: &mut Vec<Hoop>,
     ) {
         let own = match self.locking {
             Locking::SharedStrain => self.own_share[law],
             Locking::None | Locking::BBar => 1.0,
         };
         out.clear();
-        for (part, weight) in self.kept(grid, particle) {
+        for kept in self.kept(grid, particle) {
+            let Kept { part, weight, .. } = kept;
             let shared_at = match self.locking {
-                Locking::None => part.middle,
+                Locking::None => kept.centroid,
                 Locking::BBar | Locking::SharedStrain => self.shared_at[grid.cell_index(part.cell)],
             };
-            let own_tents = grid.tents(part.cell, part.middle);
+            let own_tents = grid.tents(part.cell, kept.centroid);
             for (tent, shared) in own_tents.zip(grid.tents(part.cell, shared_at)) {
                 let (node, value, grad) = tent;
                 out.push(Support {
@@ -158,21 +230,65 @@ impl<const D: usize> CellSoil<D> {
         out.sort_by_key(|support| support.node);
         let count = merge_equal_nodes(out);
         out.truncate(count);
+        hoops.clear();
+        if !self.hoop_at.is_empty() {
+            self.add_hoops(grid, (particle, own), out, hoops);
+        }
+    }
+
+    /// Sets `hoops` to what the supports of a particle, which keeps a share `own` of its own, stretch it around the axis
+    /// (theory, eqs. 130a and 130b).
+    fn add_hoops(
+        &self,
+        grid: &Grid<D>,
+        (particle, own): (usize, f64),
+        supports: &[Support<D>],
+        hoops: &mut Vec<Hoop>,
+    ) {
+        hoops.resize(supports.len(), Hoop::default());
+        for Kept { part, centroid, radius, weight } in self.kept(grid, particle) {
+            let (cell, [start, end]) = (grid.cell_index(part.cell), radii(grid, part.cell));
+            let at = |radius: f64, mut point: [f64; D]| {
+                point[0] = (radius - start) / (end - start);
+                grid.tents(part.cell, point).map(move |tent| tent.1 / radius)
+            };
+            let shared_at = match self.locking {
+                Locking::None => (radius, centroid),
+                Locking::BBar | Locking::SharedStrain => (self.hoop_at[cell], self.shared_at[cell]),
+            };
+            let both = at(radius, centroid).zip(at(shared_at.0, shared_at.1));
+            let nodes = grid.tents(part.cell, centroid).map(|tent| tent.0);
+            for (node, (at_part, shared)) in nodes.zip(both) {
+                let Ok(place) = supports.binary_search_by_key(&node, |support| support.node) else {
+                    continue;
+                };
+                let hoop = Hoop {
+                    own: own * at_part + (1.0 - own) * shared,
+                    bar: shared,
+                };
+                hoops[place] = hoops[place].plus(weight, hoop);
+            }
+        }
     }
 
     /// The parts of a particle that are not in slivers, or all if most of it is there; each with its share of what is
     /// kept (theory, eq. 8d).
-    fn kept(&self, grid: &Grid<D>, particle: usize) -> impl Iterator<Item = (&CellPart<D>, f64)> {
-        let parts = of(&self.parts, particle);
+    fn kept(&self, grid: &Grid<D>, particle: usize) -> impl Iterator<Item = Kept<'_, D>> {
         let kept = |part: &CellPart<D>| !self.is_sliver[grid.cell_index(part.cell)];
-        let share: f64 = (parts.iter().filter(|part| kept(part)))
-            .map(|part| part.share)
+        let share: f64 = (self.parts_of(particle).filter(|(part, ..)| kept(part)))
+            .map(|(part, ..)| part.share)
             .sum();
         // A choice: which half a particle lies in says whether it belongs to the body or stands beside it.
         let all = share <= 0.5;
         let whole = if all { 1.0 } else { share };
-        (parts.iter().filter(move |part| all || kept(part)))
-            .map(move |part| (part, part.share / whole))
+        (self.parts_of(particle).filter(move |(part, ..)| all || kept(part))).map(
+            move |(part, centroid, radius)| Kept {
+                part,
+                centroid,
+                radius,
+                weight: part.share / whole,
+            },
+        )
     }
 
     /// By law, the moments of mass about the centroids of the cells that shared gradients do not see (theory,
@@ -202,14 +318,15 @@ impl<const D: usize> CellSoil<D> {
             }
             let density = particles.mass[particle] / particles.volume(particle);
             let mass = (1.0 - self.own_share[law]) * particles.mass[particle];
-            for (part, weight) in self.kept(grid, particle) {
+            for kept in self.kept(grid, particle) {
+                let Kept { part, weight, .. } = kept;
                 let size = grid.cell_size(part.cell);
                 own.layer = own.layer.max(density * size[D - 1]);
                 let shared_at = self.shared_at[grid.cell_index(part.cell)];
                 let arm: [f64; D] = std::array::from_fn(|axis| {
-                    weight * mass * (part.middle[axis] - shared_at[axis]) * size[axis]
+                    weight * mass * (kept.centroid[axis] - shared_at[axis]) * size[axis]
                 });
-                let tents = grid.tents(part.cell, part.middle);
+                let tents = grid.tents(part.cell, kept.centroid);
                 for (tent, shared) in tents.zip(grid.tents(part.cell, shared_at)) {
                     let moment = &mut own.by_node[tent.0];
                     for a in 0..D {
@@ -273,11 +390,27 @@ fn soil_of<const D: usize>(
     }
 }
 
-/// The parts of one particle.
-fn of<const D: usize>(parts: &[(Vec<u32>, Vec<CellPart<D>>)], particle: usize) -> &[CellPart<D>] {
-    let (first, all) = &parts[particle / CHUNK];
-    let place = particle % CHUNK;
-    &all[first[place] as usize..first[place + 1] as usize]
+/// Where a cell begins and ends along the radius \[length\].
+fn radii<const D: usize>(grid: &Grid<D>, cell: [usize; D]) -> [f64; 2] {
+    let nodes = grid.axes[0].nodes();
+    [nodes[cell[0]], nodes[cell[0] + 1]]
+}
+
+impl<const D: usize> Parts<D> {
+    /// Weighs the parts of the last particle by their radii, its domain being of half-length `half_length` around `x` along
+    /// the radius: their shares are then those of its volume (theory, eq. 130).
+    fn weigh_by_radius(&mut self, grid: &Grid<D>, method: &Method, x: f64, half_length: f64) {
+        let half_length = if method.is_of_points() { 0.0 } else { half_length };
+        let first = self.radial.len();
+        let own = &mut self.all[first..];
+        let radial = own.iter().map(|part| RadialPart::of(grid, part, x, half_length));
+        self.radial.extend(radial);
+        let radial = &self.radial[first..];
+        let whole: f64 = std::iter::zip(&*own, radial).map(|(part, at)| part.share * at.middle).sum();
+        for (part, at) in own.iter_mut().zip(radial) {
+            part.share *= at.middle / whole;
+        }
+    }
 }
 
 /// The share β of its own distortion that a particle of a law keeps (theory, eq. 8c), the same for a

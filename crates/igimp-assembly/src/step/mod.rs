@@ -2,6 +2,7 @@
 
 pub(crate) mod cell_soil;
 pub(crate) mod domain;
+pub(crate) mod hoops;
 pub(crate) mod node_shares;
 pub(crate) mod small_cuts;
 pub(crate) mod stencils;

@@ -4,13 +4,14 @@ use igimp_shape::Grid;
 use rayon::prelude::*;
 
 use crate::body::particles::Particles;
+use crate::method::Section;
 use crate::step::strips::{Strips, split};
 use crate::step::supports::Supports;
 
 /// What a node represents of the body.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct NodeShare {
-    /// Σ S V \[length^D\].
+    /// Σ S V, over the thickness of the section \[length^D\].
     pub(crate) volume: f64,
     /// Σ S m \[mass\].
     pub(crate) mass: f64,
@@ -24,6 +25,7 @@ pub(crate) fn node_shares<const D: usize>(
     particles: &Particles<D>,
     supports: &Supports<D>,
     strips: &Strips,
+    section: Section,
 ) -> Vec<NodeShare> {
     let mut shares = vec![NodeShare::default(); grid.node_count()];
     for parity in 0..2 {
@@ -33,7 +35,9 @@ pub(crate) fn node_shares<const D: usize>(
         tasks.into_par_iter().for_each(|((nodes, slots), slice)| {
             for &particle in &strips.order()[slots.clone()] {
                 let particle = particle as usize;
-                let (volume, mass) = (particles.volume(particle), particles.mass[particle]);
+                let thickness = section.thickness(particles.x[particle][0]);
+                let volume = particles.volume(particle) / thickness;
+                let mass = particles.mass[particle];
                 for support in supports.of(particle) {
                     let share = &mut slice[support.node - nodes.start];
                     share.volume += support.value * volume;

@@ -10,6 +10,7 @@ use crate::error::AssemblyError;
 use crate::method::{Method, Remedy, SmallCuts};
 use crate::step::cell_soil::Moments;
 use crate::step::domain::bounds;
+use crate::step::hoops::Hoop;
 use crate::step::node_shares::{NodeShare, node_shares};
 use crate::step::small_cuts::{cell_volume, extrapolations, masters_of_cuts, small_cuts};
 use crate::step::strips::Strips;
@@ -69,7 +70,7 @@ impl<const D: usize> Stencils<D> {
         let loaded: Vec<LoadPoint<D>> = points.iter().filter(is_loaded).copied().collect();
         let mut supports = Supports::build(grid, particles, method, laws, &loaded)?;
         let mut strips = Strips::build(grid, &supports);
-        let mut shares = node_shares(grid, particles, &supports, &strips);
+        let mut shares = node_shares(grid, particles, &supports, &strips, method.section);
         let ties = ties(method, conditions, &supports, &shares);
         let mut is_carrier = vec![false; grid.node_count()];
         if !ties.is_empty() {
@@ -103,6 +104,12 @@ impl<const D: usize> Stencils<D> {
         self.supports.of(particle)
     }
 
+    /// How the supports of a particle stretch it around the axis, one by one; none unless the section is axisymmetric.
+    #[inline]
+    pub(crate) fn hoops_of(&self, particle: usize) -> &[Hoop] {
+        self.supports.hoops_of(particle)
+    }
+
     /// The particles in the order in which sums run: by the first node of their supports.
     pub fn order(&self) -> &[u32] {
         self.strips.order()
@@ -128,7 +135,7 @@ impl<const D: usize> Stencils<D> {
         self.supports.reach()
     }
 
-    /// Volume that a grid node represents, Σ_p S_i V_p \[length^D\].
+    /// Volume that a grid node represents, Σ_p S_i V_p, over the thickness of the section \[length^D\].
     pub fn node_volume(&self, node: usize) -> f64 {
         self.shares[node].volume
     }

@@ -9,6 +9,7 @@ use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
 use crate::method::{Geometry, Locking, Method};
 use crate::step::cell_soil::{CellSoil, Moments};
+use crate::step::hoops::Hoop;
 use crate::step::domain::{bounds, capped_half_length, merge_equal_nodes, off_grid};
 use crate::step::ties::{Ties, carried};
 
@@ -29,6 +30,8 @@ struct Chunk<const D: usize> {
     /// Where the supports of each particle begin, and how many there are.
     places: Vec<(u32, u32)>,
     all: Vec<Support<D>>,
+    /// Stretch around the axis by support; none unless the section is axisymmetric.
+    hoops: Vec<Hoop>,
     reach: usize,
 }
 
@@ -49,6 +52,7 @@ impl<const D: usize> Supports<D> {
         let len = particles.len();
         let by_cells = method.locking == Locking::SharedStrain
             || method.geometry == Geometry::Given
+            || method.section.is_axisymmetric()
             || !points.is_empty();
         let soil = by_cells
             .then(|| CellSoil::build(grid, particles, method, laws, points))
@@ -74,6 +78,17 @@ impl<const D: usize> Supports<D> {
         let chunk = &self.chunks[particle / CHUNK];
         let (start, count) = chunk.places[particle % CHUNK];
         &chunk.all[start as usize..(start + count) as usize]
+    }
+
+    /// The stretch around the axis by support of one particle; none unless the section is axisymmetric.
+    #[inline]
+    pub(crate) fn hoops_of(&self, particle: usize) -> &[Hoop] {
+        let chunk = &self.chunks[particle / CHUNK];
+        if chunk.hoops.is_empty() {
+            return &[];
+        }
+        let (start, count) = chunk.places[particle % CHUNK];
+        &chunk.hoops[start as usize..(start + count) as usize]
     }
 
     /// By law, moments of mass that shared gradients do not see (theory, eq. 8f). Empty where there are none.
@@ -113,13 +128,18 @@ impl<const D: usize> Supports<D> {
         let mut own = carried(self.of(particle), ties);
         own.sort_by_key(|support| support.node);
         let count = merge_equal_nodes(&mut own);
+        let hoops = carried_hoops(self.of(particle), self.hoops_of(particle), ties, &own[..count]);
         let chunk = &mut self.chunks[particle / CHUNK];
         let (start, room) = &mut chunk.places[particle % CHUNK];
         if count > *room as usize {
             *start = chunk.all.len() as u32;
             chunk.all.extend_from_slice(&own[..count]);
+            chunk.hoops.extend_from_slice(&hoops);
         } else {
             chunk.all[*start as usize..][..count].copy_from_slice(&own[..count]);
+            if !hoops.is_empty() {
+                chunk.hoops[*start as usize..][..count].copy_from_slice(&hoops);
+            }
         }
         *room = count as u32;
         let (_, extent) = bounds(grid, self.of(particle));
@@ -139,13 +159,14 @@ impl<const D: usize> Chunk<D> {
         let mut chunk = Self {
             places: Vec::with_capacity(range.len()),
             all: Vec::with_capacity(range.len() * 3_usize.pow(D as u32)),
+            hoops: Vec::new(),
             reach: 0,
         };
         let mut scratch = Scratch::default();
-        let mut own = Vec::new();
+        let (mut own, mut hoops) = (Vec::new(), Vec::new());
         for particle in range {
             if let Some(soil) = soil {
-                soil.supports(grid, (particle, particles.law[particle]), &mut own);
+                soil.supports(grid, (particle, particles.law[particle]), &mut own, &mut hoops);
                 let (_, extent) = bounds(grid, &own);
                 chunk.reach = extent.into_iter().fold(chunk.reach, usize::max);
             } else {
@@ -167,7 +188,31 @@ impl<const D: usize> Chunk<D> {
                 .places
                 .push((chunk.all.len() as u32, own.len() as u32));
             chunk.all.extend_from_slice(&own);
+            chunk.hoops.extend_from_slice(&hoops);
         }
         Ok(chunk)
     }
+}
+
+/// The stretch around the axis by the supports `tied` that stand for `supports` once tied nodes move with others.
+fn carried_hoops<const D: usize>(
+    supports: &[Support<D>],
+    hoops: &[Hoop],
+    ties: &Ties,
+    tied: &[Support<D>],
+) -> Vec<Hoop> {
+    let mut carried = vec![Hoop::default(); if hoops.is_empty() { 0 } else { tied.len() }];
+    for (support, &hoop) in supports.iter().zip(hoops) {
+        let mut add = |node: usize, weight: f64| {
+            let place = tied.binary_search_by_key(&node, |support| support.node);
+            if let Some(own) = place.ok().and_then(|place| carried.get_mut(place)) {
+                *own = own.plus(weight, hoop);
+            }
+        };
+        match ties.get(&support.node) {
+            Some(carriers) => carriers.iter().for_each(|own| add(own.node, own.weight)),
+            None => add(support.node, 1.0),
+        }
+    }
+    carried
 }

@@ -11,6 +11,7 @@ mod nonlocal;
 mod patch;
 mod pore_water;
 mod residual;
+mod revolution;
 mod small_cuts;
 mod stencils;
 mod tangent;

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use crate::common::{Random, conditions, displacements, grid, laws, methods, particles};
-use igimp_assembly::{Kinematics, Method, Particles, SharedLaw, Stencils, System};
+use igimp_assembly::{Kinematics, Method, Particles, Section, SharedLaw, Stencils, System};
 use igimp_linear::TangentMatrix;
 use igimp_material::{
     CamClayParameters, HardeningSoil, HardeningSoilParameters, ModifiedCamClay, ShearStiffness,
@@ -191,6 +191,28 @@ fn held<const D: usize>(cells: usize, columns: usize, law: &SharedLaw) {
         println!("{label}: {error:e}, asymmetry {asymmetry:e}");
         assert!(error < 1e-6, "{label}: {error:e}");
         assert!(asymmetry > 1e-4, "{label}: asymmetry {asymmetry:e}");
+    }
+}
+
+/// GOAL: the same of a body of revolution, whose strain goes around the axis too.
+#[test]
+fn tangent_of_a_body_of_revolution() {
+    let grid = grid::<2>(6);
+    let mut random = Random(23);
+    for (name, law) in laws() {
+        for method in methods() {
+            let method = Method {
+                section: Section::Axisymmetric,
+                ..method
+            };
+            let body = strained(&grid, &law, &method, &mut random);
+            let (error, asymmetry) = tangent_error(&grid, &body, &law, &method, 40, &mut random);
+            let label = format!("{name}, {}, {:?}", method.label(), method.kinematics);
+            assert!(error < 1e-7, "{label}: {error:e}");
+            if law.has_symmetric_tangent() {
+                assert!(asymmetry < 1e-12, "{label}: asymmetry {asymmetry:e}");
+            }
+        }
     }
 }
 

@@ -199,6 +199,7 @@ impl<'c, const D: usize> Model<'c, D> {
         let most = (0..self.case.stages.len()).map(there).max();
         ModelSize {
             dimensions: D,
+            axisymmetric: self.case.method.section.is_axisymmetric(),
             particles: most.unwrap_or(0).max(particles.len()),
             cells: self.case.grid.cells().iter().product(),
             unknowns: 0,
@@ -416,7 +417,10 @@ fn load_points<const D: usize>(case: &Case<D>) -> Vec<LoadPoint<D>> {
                     |length: f64| (POINTS_PER_CELL * length / cell).ceil().max(1.0) as usize;
                 let way: [f64; D] = std::array::from_fn(|axis| to[axis] - from[axis]);
                 points.extend(if D == 2 {
-                    LoadPoint::along_edge(from, to, traction, count(fields::length(&way)), load)
+                    let count = count(fields::length(&way));
+                    let part = way.map(|way| way / count as f64);
+                    let edge = LoadPoint::along_edge(from, to, traction, count, load).into_iter();
+                    edge.map(|point| point.around(case.method.section, &part)).collect()
                 } else {
                     let counts = way.map(|length| count(length.abs()));
                     LoadPoint::on_rectangle(from, to, traction, counts, load)

@@ -191,8 +191,8 @@ pub(crate) fn quantity<const D: usize>(
 }
 
 /// What is recorded of a rigid body, under these labels.
-pub(crate) fn recorded<const D: usize>() -> Vec<(String, RigidQuantity)> {
-    let per_run = if D == 2 { "/m" } else { "" };
+pub(crate) fn recorded<const D: usize>(case: &Case<D>) -> Vec<(String, RigidQuantity)> {
+    let per_run = case.per_metre();
     let mut recorded = Vec::new();
     let mut add = |label: String, of| recorded.push((label, of));
     let axes = || ["x", "y", "z"].into_iter().take(D).enumerate();
@@ -213,10 +213,10 @@ pub(crate) fn recorded<const D: usize>() -> Vec<(String, RigidQuantity)> {
         let label = format!("moment{about}_[N m{per_run}]");
         add(label, RigidQuantity::Moment(axis));
     }
-    let contact = if D == 2 {
-        "contact_width_[m]"
-    } else {
+    let contact = if case.is_whole() {
         "contact_area_[m2]"
+    } else {
+        "contact_width_[m]"
     };
     add(contact.to_owned(), RigidQuantity::ContactWidth);
     add("penetration_[cells]".to_owned(), RigidQuantity::Penetration);
@@ -228,11 +228,11 @@ pub(crate) fn recorded<const D: usize>() -> Vec<(String, RigidQuantity)> {
 }
 
 /// An empty history of a rigid body.
-pub(crate) fn table<const D: usize>(name: &str) -> Table {
+pub(crate) fn table<const D: usize>(case: &Case<D>, name: &str) -> Table {
     let moment = ["stage", "step", "progress_[-]"];
     let place = ["x_[m]", "y_[m]", "z_[m]"].into_iter().take(D);
     let header = moment.into_iter().chain(place).map(str::to_owned);
-    let labels = recorded::<D>().into_iter().map(|(label, _)| label);
+    let labels = recorded(case).into_iter().map(|(label, _)| label);
     Table {
         name: name.to_owned(),
         header: header.chain(labels).collect(),

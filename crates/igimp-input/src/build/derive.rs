@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use igimp_schema::schema::SPACE;
+use igimp_schema::schema::{AXISYMMETRIC, SPACE};
 use igimp_schema::tree::{Node, Value};
 
 use super::outputs::quantities::unit_of;
@@ -77,13 +77,14 @@ pub(super) fn derive(tree: &mut Node, file: &Path) {
     derive_output(tree, file);
     let analysis = tree.get("case").and_then(|case| case.text_at("analysis"));
     let dimensions = if analysis == Some(SPACE) { 3 } else { 2 };
+    let is_whole = dimensions == 3 || analysis == Some(AXISYMMETRIC);
     derive_small_cuts(tree, dimensions);
     if let Some(curves) = tree.get_mut("curves") {
         for curve in curves.items_mut() {
             for axis in ["x", "y"] {
                 if let Some(axis) = curve.get_mut(axis)
                     && axis.get("label").is_none()
-                    && let Some(label) = label(dimensions, axis)
+                    && let Some(label) = label((dimensions, is_whole), axis)
                 {
                     axis.add_derived("label", Value::Text(label));
                 }
@@ -191,11 +192,11 @@ fn strong_materials(tree: &Node) -> Vec<String> {
 }
 
 /// The quantity and its unit, as in `footing.settlement [m]`.
-fn label(dimensions: usize, axis: &Node) -> Option<String> {
+fn label((dimensions, is_whole): (usize, bool), axis: &Node) -> Option<String> {
     let of = axis.text_at("of")?;
     let divisors = axis.items_at("divide_by");
     if divisors.is_empty() {
-        return Some(format!("{of} [{}]", unit_of(dimensions, of)));
+        return Some(format!("{of} [{}]", unit_of(dimensions, is_whole, of)));
     }
     let mut label = of.to_owned();
     for divisor in divisors {

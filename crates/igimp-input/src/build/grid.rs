@@ -5,7 +5,9 @@ pub(crate) mod lines;
 
 use std::sync::Arc;
 
-use igimp_assembly::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
+use igimp_assembly::{
+    DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, Section, SmallCuts,
+};
 use igimp_model::{AxisSpec, BodyPart, GridSpec, MixedCells};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
@@ -399,6 +401,7 @@ pub(super) fn method(own: &keys::Method) -> Option<Method> {
         keys::Basis::Gimp => Arc::new(Gimp),
     };
     Some(Method {
+        section: Section::PlaneStrain,
         basis,
         locking: match *own.locking {
             keys::Locking::None => Locking::None,

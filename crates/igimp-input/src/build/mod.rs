@@ -3,6 +3,7 @@
 //! Every part is built as far as it can be, so that all problems are found at once.
 
 mod assemble;
+mod axisymmetric;
 mod bodies;
 mod context;
 mod derive;
@@ -86,10 +87,12 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     let names = AllNames::new(tree, problems);
     header(tree, problems);
     let analysis = CaseHead::analysis(tree.get("case")?);
-    if analysis.is_ok_and(|own| *own == Analysis::Space) {
-        space::build(tree, &names, file, problems).map(AnyCase::Space)
-    } else {
-        in_plane(tree, &names, file, problems).map(AnyCase::Plane)
+    match analysis.map_or(Analysis::PlaneStrain, |own| *own) {
+        Analysis::Space => space::build(tree, &names, file, problems).map(AnyCase::Space),
+        Analysis::PlaneStrain => in_plane(tree, &names, file, problems).map(AnyCase::Plane),
+        Analysis::Axisymmetric => in_plane(tree, &names, file, problems)
+            .and_then(|case| axisymmetric::section(tree, case, problems))
+            .map(AnyCase::Plane),
     }
 }
 
@@ -100,7 +103,7 @@ pub(super) fn materials_alone(tree: &mut Node, problems: &mut Problems) -> Optio
     all(materials::materials::<2>(tree, &[], problems))
 }
 
-/// The same for a case in plane strain.
+/// The same for a case in the plane.
 fn in_plane(
     tree: &Node,
     names: &AllNames,

@@ -164,7 +164,7 @@ fn dissipation_note(summary: &Summary, own: &ConsolidationSummary) -> String {
         quantity(own.excess, "Pa"),
         quantity(own.most_excess, "Pa"),
         short(own.outflow),
-        if summary.size.is_in_space() {
+        if summary.size.is_whole() {
             "m³"
         } else {
             "m³/m"
@@ -187,7 +187,7 @@ pub(super) struct MemberView {
 /// The tension of reinforcement at the end of the stages that changed it.
 pub(super) fn reinforcement(summary: &Summary) -> Vec<MemberView> {
     let stages = summary.stages.iter().filter(|own| own.safety.is_none());
-    let per_metre = !summary.size.is_in_space();
+    let per_metre = !summary.size.is_whole();
     let unit = force(summary);
     let view = |(stage, member): (&StageSummary, &MemberSummary)| MemberView {
         per_metre,
@@ -203,9 +203,9 @@ pub(super) fn reinforcement(summary: &Summary) -> Vec<MemberView> {
         .collect()
 }
 
-/// Unit of forces: per metre run in the plane.
+/// Unit of forces: per metre run in plane strain.
 fn force(summary: &Summary) -> &'static str {
-    if summary.size.is_in_space() {
+    if summary.size.is_whole() {
         "N"
     } else {
         "N/m"
@@ -236,7 +236,7 @@ pub(super) fn effort(summary: &Summary) -> Vec<Number> {
     add("Grid cells", grouped(size.cells));
     add("Most unknowns", grouped(size.unknowns));
     add("Weight", quantity(size.weight, force(summary)));
-    let volume = if size.is_in_space() { "m³" } else { "m³/m" };
+    let volume = if size.is_whole() { "m³" } else { "m³/m" };
     add("Volume", format!("{} {volume}", short(size.volume)));
     add("Time", time(summary.seconds));
     if summary.output_seconds > 0.0 {

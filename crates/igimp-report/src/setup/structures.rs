@@ -18,10 +18,10 @@ pub(super) fn rigid_bodies<const D: usize>(case: &Case<D>) -> SetupTable {
         "Reference point [m]",
         "Interface",
         "Tension",
-        if D == 2 {
-            "Weight [kN/m]"
-        } else {
+        if case.is_whole() {
             "Weight [kN]"
+        } else {
+            "Weight [kN/m]"
         },
         "Moved in stages",
     ];

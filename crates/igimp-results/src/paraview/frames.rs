@@ -58,6 +58,8 @@ pub struct Frames {
     reinforcement: Option<Collection>,
     /// Whether there is pore water to write of.
     pore_water: bool,
+    /// Whether the body is one of revolution.
+    axisymmetric: bool,
     /// By stage that moves in time: its number, and the places of its frames in the collections with their times \[s\].
     motion: Vec<(usize, Vec<(usize, f64)>)>,
     /// Frames that the disk is known to have.
@@ -84,6 +86,7 @@ impl Frames {
             rigid: of(pvd::RIGID, !case.rigid.is_empty())?,
             reinforcement: of(pvd::REINFORCEMENT, !case.reinforcement.is_empty())?,
             pore_water: case.has_pore_water(),
+            axisymmetric: case.method.section.is_axisymmetric(),
             motion: Vec::new(),
             folder: folder.to_path_buf(),
             particles: Collection::resume(folder, pvd::PARTICLES, frames)?,
@@ -259,6 +262,7 @@ impl Frames {
             carried: &carried,
             def_grad: true,
             pore_water: self.pore_water,
+            axisymmetric: self.axisymmetric,
             motion: !self.motion.is_empty(),
         };
         of_particles(particles, &extras)

@@ -19,6 +19,8 @@ pub struct Extras<'a> {
     pub def_grad: bool,
     /// Whether effective stress and pore pressure are written beside total stress.
     pub pore_water: bool,
+    /// Whether volumes and masses are those of a body of revolution, and not of a slice.
+    pub axisymmetric: bool,
     /// Whether velocity and acceleration are written: of bodies that move in time.
     pub motion: bool,
 }
@@ -46,7 +48,11 @@ pub fn of_particles<const D: usize>(
     let sigma: Vec<Tensor> = (0..n).map(|k| particles.total_stress(k)).collect();
     let regime = |k: usize| usize::from(particles.regime[k].code());
     // A slice of one metre in plane strain.
-    let per = if D == 2 { "/m" } else { "" };
+    let per = if D == 2 && !extras.axisymmetric {
+        "/m"
+    } else {
+        ""
+    };
     let mut cell_data = vec![
         DataArray::vectors("displacement [m]", &particles.displacement),
         DataArray::symmetric("sigma [Pa], tension +", &sigma),

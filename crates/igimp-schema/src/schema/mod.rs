@@ -96,9 +96,13 @@ table! {
 /// Name of the analysis in space.
 pub const SPACE: &str = Analysis::Space.name();
 
+/// Name of the analysis of a body of revolution.
+pub const AXISYMMETRIC: &str = Analysis::Axisymmetric.name();
+
 choices! {
     /// Kinds of analysis.
     Analysis;
     PlaneStrain "plane-strain", "per metre run; x points right, y up";
+    Axisymmetric "axisymmetric", "a body of revolution about x = 0; x is the radius, y points up, forces are those of the whole circle";
     Space "3d", "in space; x points right, y backwards, z up";
 }

@@ -13,7 +13,7 @@ use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::conditions::rigid_motion::{RigidMotion, rotations};
 use crate::contributions::nodal_forces::{AddBlock, NodalForces};
-use crate::method::Geometry;
+use crate::method::{Geometry, Method, Section};
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
 
@@ -49,7 +49,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         bodies: &'a [RigidBody<D>],
         particles: &Particles<D>,
         stencils: &Stencils<D>,
-        conditions: &StepConditions<D>,
+        (conditions, method): (&StepConditions<D>, &Method),
         unknowns: &Unknowns<D>,
     ) -> Self {
         let first_node = conditions.grid.node_count();
@@ -59,7 +59,8 @@ impl<'a, const D: usize> Contact<'a, D> {
             first_node,
         };
         for body in 0..bodies.len() {
-            contact.find_of(body, particles, stencils, conditions, unknowns);
+            let of_step = (conditions, method.section);
+            contact.find_of(body, particles, stencils, of_step, unknowns);
         }
         contact
     }
@@ -69,7 +70,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         index: usize,
         particles: &Particles<D>,
         stencils: &Stencils<D>,
-        conditions: &StepConditions<D>,
+        (conditions, section): (&StepConditions<D>, Section),
         unknowns: &Unknowns<D>,
     ) {
         let body = &self.bodies[index];
@@ -86,9 +87,15 @@ impl<'a, const D: usize> Contact<'a, D> {
         let motion = conditions.motions.get(index);
         let is_loaded = conditions.time.is_none() && motion.is_some_and(RigidMotion::is_pushed);
         let rolls = rolling_radius(body, conditions).is_some();
-        let knots = Gathering::new(body, node, particles, stencils, conditions, unknowns).sums();
+        let of_step = (conditions, section);
+        let knots = Gathering::new(body, node, particles, stencils, of_step, unknowns).sums();
         for (knot, sums) in knots {
-            let area = sums.area.min(tents[knot]);
+            // No more of a side touches than there is of it.
+            let area = if sums.length > tents[knot] {
+                tents[knot] * (sums.area / sums.length)
+            } else {
+                sums.area
+            };
             if area <= least {
                 continue;
             }

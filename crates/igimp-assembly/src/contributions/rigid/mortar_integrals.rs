@@ -10,6 +10,7 @@ use super::face::Face;
 use super::face_clipping::{Piece, pieces};
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
+use crate::method::Section;
 use crate::error::padded;
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
@@ -23,6 +24,8 @@ const LEAST_SHARE: f64 = 1e-9;
 #[derive(Default)]
 pub(crate) struct Sums<const D: usize> {
     pub(crate) area: f64,
+    /// The same over the thickness of the section.
+    pub(crate) length: f64,
     pub(crate) gap: f64,
     pub(crate) young: f64,
     pub(crate) adhesion: f64,
@@ -39,6 +42,7 @@ pub(crate) struct Gathering<'a, const D: usize> {
     particles: &'a Particles<D>,
     stencils: &'a Stencils<D>,
     conditions: &'a StepConditions<D>,
+    section: Section,
     unknowns: &'a Unknowns<D>,
     knots: BTreeMap<usize, Sums<D>>,
 }
@@ -56,7 +60,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
         node: usize,
         particles: &'a Particles<D>,
         stencils: &'a Stencils<D>,
-        conditions: &'a StepConditions<D>,
+        (conditions, section): (&'a StepConditions<D>, Section),
         unknowns: &'a Unknowns<D>,
     ) -> Self {
         Self {
@@ -65,6 +69,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
             particles,
             stencils,
             conditions,
+            section,
             unknowns,
             knots: BTreeMap::new(),
         }
@@ -212,6 +217,10 @@ impl<'a, const D: usize> Gathering<'a, D> {
         }
         let (body, node) = (self.body, self.node);
         let sums = self.knots.entry(knot).or_default();
+        let thickness = self.section.thickness(place[0]);
+        let length = weight;
+        let weight = thickness * weight;
+        sums.length += length;
         sums.area += weight;
         sums.gap += weight * gap;
         sums.young += weight * soil.young;

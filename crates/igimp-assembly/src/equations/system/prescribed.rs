@@ -5,7 +5,7 @@ use igimp_material::TangentKind;
 use super::System;
 use crate::conditions::rigid_motion::Drive;
 use crate::equations::kinematics::{Linearisation, ParticleTrial};
-use crate::equations::linearised::{Linearised, Moduli};
+use crate::equations::linearised::Linearised;
 use crate::error::AssemblyError;
 
 impl<const D: usize> System<'_, D> {
@@ -63,10 +63,10 @@ impl<const D: usize> System<'_, D> {
             }
             let own = self.evaluate_particle(particle, u, kind, &mut trial)?;
             let volume = self.reference_volume(particle);
-            linearised.push(supports, &own);
+            linearised.push((supports, self.stencils.hoops_of(particle)), &own);
             self.add_scalars_of_motion(particle, (&own, &linearised), u, &mut force);
             let kinematics = self.method.kinematics_of_step();
-            linearised.linearise(&Moduli::of(&own, volume, kinematics));
+            linearised.linearise_particle(&own, volume, kinematics);
             for (j, column) in supports.iter().enumerate() {
                 if !moves(column.node) {
                     continue;

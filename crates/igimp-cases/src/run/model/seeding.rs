@@ -55,6 +55,11 @@ fn bodies_filled<const D: usize>(
         let density = material.unit_weight / gravity;
         let parts = part.per_direction;
         let mut own = fill(grid, &*part.region, parts, density, part.material)?;
+        let section = case.method.section;
+        for seed in &mut own {
+            // A ring has the volume of its section times the way of its centroid.
+            seed.volume *= section.thickness(seed.x[0] + seed.centroid[0] * seed.half_length[0]);
+        }
         if material.profiles.unit_weight.is_some() {
             for seed in &mut own {
                 seed.density = material.unit_weight_at(&seed.x, &ground) / gravity;

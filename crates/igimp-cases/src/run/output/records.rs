@@ -112,7 +112,7 @@ impl Records {
                 }
             })
             .collect();
-        let rigid = case.rigid.iter().map(|part| rigid::table::<D>(&part.name));
+        let rigid = case.rigid.iter().map(|part| rigid::table(case, &part.name));
         let watched = case
             .monitors
             .iter()
@@ -125,7 +125,7 @@ impl Records {
             curves,
             monitors,
             rigid: rigid.collect(),
-            energy: energy_table::<D>(),
+            energy: energy_table(case.per_metre()),
             watched,
             peaks: vec![f64::NAN; case.checks.len()],
             factor_of_safety: f64::NAN,
@@ -329,11 +329,10 @@ impl<'a, const D: usize> AcceptedStep<'a, D> {
 }
 
 /// An empty table of energy.
-fn energy_table<const D: usize>() -> Table {
-    let unit = if D == 2 { "J/m" } else { "J" };
+fn energy_table(per_metre: &str) -> Table {
     let moment = ["stage", "step", "time_[s]"].map(str::to_owned);
     let parts = EnergySummary::default().parts();
-    let parts = parts.iter().map(|(name, _)| format!("{name}_[{unit}]"));
+    let parts = parts.iter().map(|(name, _)| format!("{name}_[J{per_metre}]"));
     Table {
         name: "energy".to_owned(),
         header: moment.into_iter().chain(parts).collect(),
@@ -367,7 +366,7 @@ pub(crate) fn rigid_row<const D: usize>(
         moment.progress,
     ];
     row.extend(bodies[slot].pose.origin);
-    let recorded = rigid::recorded::<D>().into_iter();
+    let recorded = rigid::recorded(case).into_iter();
     row.extend(recorded.map(|(_, of)| rigid::quantity(case, controls, bodies, index, of)));
     row
 }

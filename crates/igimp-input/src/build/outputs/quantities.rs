@@ -126,13 +126,14 @@ pub(crate) fn fields<const D: usize>(
     Some(fields)
 }
 
-/// SI unit of a quantity by its name.
-pub(crate) fn unit_of(dimensions: usize, name: &str) -> &'static str {
-    match (dimensions, unit_in_plane(dimensions, name)) {
-        (3, "N/m") => "N",
-        (3, "N m/m") => "N m",
-        (3, "J/m") => "J",
-        (3, "m2/s") => "m3/s",
+/// SI unit of a quantity by its name, per metre run or of a whole body.
+pub(crate) fn unit_of(dimensions: usize, is_whole: bool, name: &str) -> &'static str {
+    match (is_whole, unit_in_plane(dimensions, name)) {
+        (true, "N/m") => "N",
+        (true, "N m/m") => "N m",
+        (true, "J/m") => "J",
+        (true, "m") if name.ends_with(".contact_width") => "m2",
+        (true, "m2/s") => "m3/s",
         (_, unit) => unit,
     }
 }

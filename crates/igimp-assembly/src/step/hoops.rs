@@ -1,0 +1,62 @@
+//! How nodes stretch a body of revolution around its axis, x = 0 (theory, eqs. 130 to 130b).
+
+use igimp_shape::{CellPart, Grid};
+
+/// How much a support stretches a particle around the axis, for a radial displacement of one \[1/length\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Hoop {
+    /// T_i, of the particle's own place: the mean of N_i/r, by volume.
+    pub(crate) own: f64,
+    /// T̄_i, of the soil of its cells.
+    pub(crate) bar: f64,
+}
+
+impl Hoop {
+    /// This and `factor` times another.
+    #[inline]
+    pub(crate) fn plus(self, factor: f64, other: Self) -> Self {
+        Self {
+            own: self.own + factor * other.own,
+            bar: self.bar + factor * other.bar,
+        }
+    }
+}
+
+/// The extent of a particle's part in a cell along the radius.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RadialPart {
+    /// Radius of its middle \[length\].
+    pub(crate) middle: f64,
+    /// Place in the cell, from 0 to 1, of its centroid by volume, which is further out \[-\].
+    pub(crate) centroid: f64,
+}
+
+impl RadialPart {
+    /// That of a part of a domain of half-length `half_length` around `x` along the radius.
+    pub(crate) fn of<const D: usize>(
+        grid: &Grid<D>,
+        part: &CellPart<D>,
+        x: f64,
+        half_length: f64,
+    ) -> Self {
+        let (nodes, cell) = (grid.axes[0].nodes(), part.cell[0]);
+        let (start, size) = (nodes[cell], nodes[cell + 1] - nodes[cell]);
+        let lower = (x - half_length).max(start);
+        let upper = (x + half_length).min(start + size);
+        let middle = start + part.middle[0] * size;
+        Self {
+            middle,
+            centroid: part.middle[0] + off_middle(middle, 0.5 * (upper - lower)) / size,
+        }
+    }
+}
+
+/// How far the centroid by volume of a ring lies beyond its middle: a third of the square of half its width over its
+/// radius \[length\].
+pub(crate) fn off_middle(middle: f64, half_width: f64) -> f64 {
+    if middle > 0.0 {
+        half_width * half_width / (3.0 * middle)
+    } else {
+        0.0
+    }
+}

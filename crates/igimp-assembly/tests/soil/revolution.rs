@@ -1,0 +1,186 @@
+//! Bodies of revolution (theory, eqs. 130 to 130e).
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use igimp_assembly::{
+    Constraints, Geometry, Method, ParticleSeed, Particles, Section, SharedLaw, Stencils,
+    StepConditions, StepLoads, System, Trial,
+};
+use igimp_material::{Elasticity, HenckyElastic, MohrCoulomb, TangentKind};
+use igimp_shape::{Axis, Grid, Linear};
+
+use crate::common::by_particle;
+
+/// A grid from the axis on, with unequal cells.
+fn grid() -> Grid<2> {
+    let radii = Axis::from_nodes(vec![0.0, 0.8, 1.9, 2.9, 4.1]).unwrap();
+    Grid::new([radii, Axis::from_nodes(vec![0.0, 1.1, 2.0, 3.2]).unwrap()])
+}
+
+/// Three by two particles in all cells but the outermost and the topmost.
+fn body(grid: &Grid<2>) -> Particles<2> {
+    let mut seeds = Vec::new();
+    for cell in 0..grid.cell_count() {
+        let place = grid.cell_place(cell);
+        if place[0] == 3 || place[1] == 2 {
+            continue;
+        }
+        let (size, lower) = (grid.cell_size(place), grid.node_position(grid.node_index(place)));
+        let half_length = [size[0] / 6.0, size[1] / 4.0];
+        for k in 0..6 {
+            let part = [k % 3, k / 3];
+            let x: [f64; 2] = std::array::from_fn(|axis| {
+                lower[axis] + (2 * part[axis] + 1) as f64 * half_length[axis]
+            });
+            let area = 4.0 * half_length[0] * half_length[1];
+            seeds.push(ParticleSeed {
+                x,
+                half_length,
+                volume: Section::Axisymmetric.thickness(x[0]) * area,
+                density: 2.0,
+                law: 0,
+                centroid: [0.0; _],
+            });
+        }
+    }
+    Particles::new(&seeds).unwrap()
+}
+
+fn methods() -> Vec<Method> {
+    let mut methods = Vec::new();
+    let linear = Method {
+        basis: Arc::new(Linear),
+        ..Method::igimp_bbar()
+    };
+    for of in [
+        Method::igimp(),
+        Method::igimp_bbar(),
+        Method::shared_strain(),
+        linear,
+    ] {
+        for geometry in [Geometry::Moving, Geometry::Given] {
+            methods.push(Method {
+                section: Section::Axisymmetric,
+                geometry,
+                ..of.clone()
+            });
+        }
+    }
+    methods
+}
+
+fn elastic() -> SharedLaw {
+    Arc::new(HenckyElastic::new(Elasticity::new(100.0, 0.3).unwrap()))
+}
+
+/// The body at nodal displacements (a r, b z).
+fn trial(method: &Method, law: SharedLaw, [a, b]: [f64; 2]) -> (Trial<2>, Stencils<2>, Vec<[f64; 2]>) {
+    let grid = grid();
+    let particles = body(&grid);
+    let constraints = Constraints::free(&grid);
+    let loads = StepLoads::gravity([0.0, -3.0]);
+    let conditions = StepConditions::new(grid.clone(), constraints, loads, vec![law]).unwrap();
+    let stencils = Stencils::build(&particles, method, &conditions).unwrap();
+    let system = System::new(&particles, &stencils, &conditions, method).unwrap();
+    let u: Vec<[f64; 2]> = (0..system.node_count())
+        .map(|node| system.node_position(node))
+        .map(|[r, z]| [a * r, b * z])
+        .collect();
+    let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
+    let f_ext = system.f_ext().to_vec();
+    (trial, stencils, f_ext)
+}
+
+// GOAL: a uniform stretch is uniform at every particle, by every variant, on either geometry.
+// ORACLE: F = diag(1 + a, 1 + b, 1 + a).
+#[test]
+fn a_uniform_stretch_is_exact() {
+    let [a, b] = [0.03, -0.02];
+    let soil = MohrCoulomb::new(Elasticity::new(100.0, 0.3).unwrap(), 1e3, 0.4, 0.1).unwrap();
+    for law in [elastic(), Arc::new(soil)] {
+        for method in methods() {
+            let (trial, stencils, _) = trial(&method, law.clone(), [a, b]);
+            let expected = match method.geometry {
+                Geometry::Moving => [a.ln_1p(), b.ln_1p(), a.ln_1p()],
+                Geometry::Given => [a, b, a],
+            };
+            for own in by_particle(&trial, &stencils) {
+                let mut strains = own.eps_e;
+                let mut expected = expected;
+                strains.sort_by(f64::total_cmp);
+                expected.sort_by(f64::total_cmp);
+                for (strain, expected) in std::iter::zip(strains, expected) {
+                    assert!((strain - expected).abs() < 1e-14, "{}: {strain}", method.label());
+                }
+                assert!((own.delta_hoop_stretch - 1.0 - a).abs() < 1e-14);
+            }
+        }
+    }
+}
+
+// GOAL: uniform pressure is in equilibrium within the body, whose particles fill their cells.
+// ORACLE: no force on nodes within; the force of the pressure on the outer face, 2πR H p, and on the top, πR² p, in sum.
+#[test]
+fn uniform_pressure_is_in_equilibrium() {
+    let stretch = 0.02;
+    let grid = grid();
+    for method in methods() {
+        if method.basis.name() == "linear" {
+            continue;
+        }
+        let (trial, stencils, _) = trial(&method, elastic(), [stretch, stretch]);
+        let own = by_particle(&trial, &stencils)[0].tau[0][0];
+        let (p, [radius, height]) = match method.geometry {
+            Geometry::Moving => (own * (1.0_f64 + stretch).powi(-3), [2.9, 2.0].map(|x| x * (1.0 + stretch))),
+            Geometry::Given => (own, [2.9, 2.0]),
+        };
+        let mut sums = [0.0; 2];
+        for (node, f_int) in trial.f_int.iter().enumerate() {
+            let place = grid.node_place(node);
+            if place[0] < 3 && place[0] > 0 {
+                assert!(f_int[0].abs() < 1e-12 * p * radius * radius, "{} {place:?} {f_int:?}", method.label());
+            }
+            if place[0] == 3 {
+                sums[0] += f_int[0];
+            }
+            if place[1] == 2 {
+                sums[1] += f_int[1];
+            } else if place[1] == 1 {
+                assert!(f_int[1].abs() < 1e-12 * p * radius * radius, "{} {place:?} {f_int:?}", method.label());
+            }
+        }
+        let expected = [2.0 * PI * radius * height * p, PI * radius * radius * p];
+        for (sum, expected) in std::iter::zip(sums, expected) {
+            assert!((sum - expected).abs() < 1e-12 * expected, "{}: {sums:?} {expected}", method.label());
+        }
+    }
+}
+
+// GOAL: nodes take the weight of the rings around them.
+// ORACLE: ∫ N_i 2πr dr of the hat functions, by the exact integral over each cell: r_c h/2 ± h²/12.
+#[test]
+fn weight_is_that_of_rings() {
+    let grid = grid();
+    for method in methods() {
+        if method.basis.name() == "linear" {
+            continue;
+        }
+        let (.., f_ext) = trial(&method, elastic(), [0.0; 2]);
+        let nodes = grid.axes[0].nodes();
+        for k in 0..4 {
+            let mut ring = 0.0;
+            if k < 3 {
+                let h = nodes[k + 1] - nodes[k];
+                ring += 0.5 * (nodes[k] + nodes[k + 1]) * h / 2.0 - h * h / 12.0;
+            }
+            if k > 0 {
+                let h = nodes[k] - nodes[k - 1];
+                ring += 0.5 * (nodes[k] + nodes[k - 1]) * h / 2.0 + h * h / 12.0;
+            }
+            let column: f64 = (0..3).map(|row| f_ext[grid.node_index([k, row])][1]).sum();
+            let expected = -3.0 * 2.0 * 2.0 * 2.0 * PI * ring;
+            assert!((column - expected).abs() < 1e-12 * expected.abs(), "{}: {column} {expected}", method.label());
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! A case of a body of revolution: one in the plane whose section is axisymmetric, and what it has not.
+
+use igimp_assembly::Section;
+use igimp_model::{Case, LoadKind, PoreSource, RigidDrive, RigidMove, Side, StageKind, StageWalls};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::source::Place;
+use igimp_schema::tree::Node;
+
+/// Components of the motion of a rigid body in the plane, as their keys are called; the vertical one is free.
+const COMPONENTS: [(usize, &str); 2] = [(0, "x"), (2, "rotation")];
+
+/// The case with an axisymmetric section, held at its axis; reports what a body of revolution has not.
+pub(super) fn section(tree: &Node, mut case: Case<2>, problems: &mut Problems) -> Option<Case<2>> {
+    let before = problems.errors();
+    case.method.section = Section::Axisymmetric;
+    let start = case.grid.lower()[0];
+    if start < 0.0 {
+        problems
+            .error(place_of(tree, "grid"), "the grid begins left of the axis of revolution, x = 0")
+            .help("let domain.x begin at 0 m, or further right for a body with a hole");
+    }
+    let inner = &mut case.boundaries.sides[0][0];
+    if start <= 0.0 && *inner == Side::Free {
+        *inner = Side::Roller;
+    }
+    refuse_parts(tree, &case, problems);
+    for (index, stage) in case.stages.iter().enumerate() {
+        let place = item(tree, "stages", index);
+        refuse_stage((&stage.kind, stage.consolidation.is_some()), place, problems);
+    }
+    (problems.errors() == before).then_some(case)
+}
+
+/// Refuses loads, water, soil and structures that a body of revolution has not.
+fn refuse_parts(tree: &Node, case: &Case<2>, problems: &mut Problems) {
+    for (index, load) in case.loads.iter().enumerate() {
+        if let LoadKind::Point { .. } = load.kind {
+            problems
+                .error(item(tree, "loads", index), "a force at a point would be one along a whole circle")
+                .help("state a pressure over an area");
+        }
+    }
+    for (index, part) in case.rigid.iter().enumerate() {
+        if part.weight != 0.0 {
+            problems
+                .error(item(tree, "rigid", index), "the weight of a rigid body is stated per metre run, and a body of revolution has none")
+                .help("displace the body, and read its resistance");
+        }
+    }
+    if !case.reinforcement.is_empty() {
+        problems
+            .error(item(tree, "reinforcement", 0), "a bar would be a cone here: reinforcement goes with plane strain and space")
+            .help("compute the body in space, analysis = \"3d\"");
+    }
+    for (index, condition) in case.water.iter().enumerate() {
+        let sources = std::iter::once(&condition.source).chain(condition.bodies.iter().map(|own| &own.1));
+        let seeps = |source: &PoreSource| matches!(source, PoreSource::Seepage(_));
+        if sources.into_iter().any(seeps) {
+            problems
+                .error(item(tree, "water", index), "seepage is computed in plane strain and in space")
+                .help("state the pressures by points in a file, or a table");
+        }
+    }
+    for (index, material) in case.materials.iter().enumerate() {
+        let over_length = (material.softening.as_ref()).is_some_and(|own| own.nonlocal.is_some());
+        if over_length {
+            let place = tree.get("materials").and_then(|own| own.entries().get(index));
+            problems
+                .error(place.map(|own| own.node.place), "softening over a length goes with plane strain")
+                .help("scale it by the width of its bands: remove `length`");
+        }
+    }
+}
+
+/// Refuses a stage that would not keep a body one of revolution, or that flows, at its place.
+fn refuse_stage((kind, flows): (&StageKind, bool), place: Option<Place>, problems: &mut Problems) {
+    let mut refuse = |message: &str, help: &str| {
+        problems.error(place, message).help(help);
+    };
+    if flows {
+        refuse(
+            "consolidation is computed in plane strain and in space",
+            "compute the drained and the undrained end: they enclose it",
+        );
+    }
+    match kind {
+        StageKind::Gravity { horizontal: Some(share), .. } if *share != 0.0 => refuse(
+            "a horizontal force leaves no body of revolution",
+            "compute a slice in plane strain, or the body in space",
+        ),
+        StageKind::Rigid(moves) => moves.iter().for_each(|own| refuse_move(own, &mut refuse)),
+        StageKind::Dynamic(own) if !own.bodies.is_empty() || own.ground_motion.is_some() || own.walls != StageWalls::default() => refuse(
+            "rigid bodies, sides and ground move in time in plane strain and in space alone",
+            "let the soil move alone, or compute the body in space",
+        ),
+        _ => {}
+    }
+}
+
+/// Refuses a rigid body that does not go straight up or down, and forces on it.
+fn refuse_move(own: &RigidMove, refuse: &mut impl FnMut(&str, &str)) {
+    for (component, name) in COMPONENTS {
+        match own.drives[component] {
+            None | Some(RigidDrive::By(0.0)) => {}
+            Some(_) => refuse(
+                &format!("a body of revolution keeps its axis: {name} is held"),
+                "move it along y alone",
+            ),
+        }
+    }
+    if let Some(RigidDrive::Force(_)) = own.drives[1] {
+        refuse(
+            "a force on a rigid body is stated per metre run, and a body of revolution has none",
+            "displace the body, and read its resistance",
+        );
+    }
+}
+
+/// Where a table is stated.
+fn place_of(tree: &Node, key: &str) -> Option<Place> {
+    tree.get(key).map(|own| own.place)
+}
+
+/// Where an item of a list is stated.
+fn item(tree: &Node, list: &str, index: usize) -> Option<Place> {
+    tree.items_at(list).get(index).map(|own| own.place)
+}
