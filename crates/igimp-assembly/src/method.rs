@@ -178,11 +178,7 @@ impl Method {
 
     /// The variant's name as the paper writes it, such as `iGIMP + B-bar`.
     pub fn label(&self) -> String {
-        let basis = if self.is_of_points() {
-            "iMPM"
-        } else {
-            "iGIMP"
-        };
+        let basis = if self.is_of_points() { "iMPM" } else { "iGIMP" };
         match self.locking {
             Locking::None => basis.to_owned(),
             Locking::BBar => format!("{basis} + B-bar"),

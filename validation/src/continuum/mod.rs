@@ -6,3 +6,4 @@ pub(crate) mod elastica;
 pub(crate) mod laboratory;
 pub(crate) mod notched_strip;
 pub(crate) mod prism;
+pub(crate) mod revolution;

@@ -305,7 +305,10 @@ impl<const D: usize> Particles<D> {
 
     /// Ratio of the volume of a particle to that at the start J = det F \[-\].
     pub fn volume_ratio(&self, particle: usize) -> f64 {
-        volume_ratio(&self.fields.def_grad[particle], self.fields.hoop_strain[particle])
+        volume_ratio(
+            &self.fields.def_grad[particle],
+            self.fields.hoop_strain[particle],
+        )
     }
 
     /// Total Cauchy stress σ of a particle, tension positive: what its law answers, less the pressure of the water in

@@ -117,12 +117,7 @@ impl<const D: usize> CellSoil<D> {
             soil.share_by_radius(grid);
         }
         if method.geometry == Geometry::Given || !points.is_empty() {
-            soil.find_soil(
-                grid,
-                particles,
-                method,
-                &loaded_cells(grid, points),
-            );
+            soil.find_soil(grid, particles, method, &loaded_cells(grid, points));
         }
         Ok(soil)
     }
@@ -246,11 +241,18 @@ impl<const D: usize> CellSoil<D> {
         hoops: &mut Vec<Hoop>,
     ) {
         hoops.resize(supports.len(), Hoop::default());
-        for Kept { part, centroid, radius, weight } in self.kept(grid, particle) {
+        for Kept {
+            part,
+            centroid,
+            radius,
+            weight,
+        } in self.kept(grid, particle)
+        {
             let (cell, [start, end]) = (grid.cell_index(part.cell), radii(grid, part.cell));
             let at = |radius: f64, mut point: [f64; D]| {
                 point[0] = (radius - start) / (end - start);
-                grid.tents(part.cell, point).map(move |tent| tent.1 / radius)
+                grid.tents(part.cell, point)
+                    .map(move |tent| tent.1 / radius)
             };
             let shared_at = match self.locking {
                 Locking::None => (radius, centroid),
@@ -281,14 +283,15 @@ impl<const D: usize> CellSoil<D> {
         // A choice: which half a particle lies in says whether it belongs to the body or stands beside it.
         let all = share <= 0.5;
         let whole = if all { 1.0 } else { share };
-        (self.parts_of(particle).filter(move |(part, ..)| all || kept(part))).map(
-            move |(part, centroid, radius)| Kept {
-                part,
-                centroid,
-                radius,
-                weight: part.share / whole,
-            },
-        )
+        (self
+            .parts_of(particle)
+            .filter(move |(part, ..)| all || kept(part)))
+        .map(move |(part, centroid, radius)| Kept {
+            part,
+            centroid,
+            radius,
+            weight: part.share / whole,
+        })
     }
 
     /// By law, the moments of mass about the centroids of the cells that shared gradients do not see (theory,
@@ -400,13 +403,21 @@ impl<const D: usize> Parts<D> {
     /// Weighs the parts of the last particle by their radii, its domain being of half-length `half_length` around `x` along
     /// the radius: their shares are then those of its volume (theory, eq. 130).
     fn weigh_by_radius(&mut self, grid: &Grid<D>, method: &Method, x: f64, half_length: f64) {
-        let half_length = if method.is_of_points() { 0.0 } else { half_length };
+        let half_length = if method.is_of_points() {
+            0.0
+        } else {
+            half_length
+        };
         let first = self.radial.len();
         let own = &mut self.all[first..];
-        let radial = own.iter().map(|part| RadialPart::of(grid, part, x, half_length));
+        let radial = own
+            .iter()
+            .map(|part| RadialPart::of(grid, part, x, half_length));
         self.radial.extend(radial);
         let radial = &self.radial[first..];
-        let whole: f64 = std::iter::zip(&*own, radial).map(|(part, at)| part.share * at.middle).sum();
+        let whole: f64 = std::iter::zip(&*own, radial)
+            .map(|(part, at)| part.share * at.middle)
+            .sum();
         for (part, at) in own.iter_mut().zip(radial) {
             part.share *= at.middle / whole;
         }

@@ -9,8 +9,8 @@ use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
 use crate::method::{Geometry, Locking, Method};
 use crate::step::cell_soil::{CellSoil, Moments};
-use crate::step::hoops::Hoop;
 use crate::step::domain::{bounds, capped_half_length, merge_equal_nodes, off_grid};
+use crate::step::hoops::Hoop;
 use crate::step::ties::{Ties, carried};
 
 /// The supports of each particle, nodes ascending.
@@ -128,7 +128,12 @@ impl<const D: usize> Supports<D> {
         let mut own = carried(self.of(particle), ties);
         own.sort_by_key(|support| support.node);
         let count = merge_equal_nodes(&mut own);
-        let hoops = carried_hoops(self.of(particle), self.hoops_of(particle), ties, &own[..count]);
+        let hoops = carried_hoops(
+            self.of(particle),
+            self.hoops_of(particle),
+            ties,
+            &own[..count],
+        );
         let chunk = &mut self.chunks[particle / CHUNK];
         let (start, room) = &mut chunk.places[particle % CHUNK];
         if count > *room as usize {
@@ -166,7 +171,12 @@ impl<const D: usize> Chunk<D> {
         let (mut own, mut hoops) = (Vec::new(), Vec::new());
         for particle in range {
             if let Some(soil) = soil {
-                soil.supports(grid, (particle, particles.law[particle]), &mut own, &mut hoops);
+                soil.supports(
+                    grid,
+                    (particle, particles.law[particle]),
+                    &mut own,
+                    &mut hoops,
+                );
                 let (_, extent) = bounds(grid, &own);
                 chunk.reach = extent.into_iter().fold(chunk.reach, usize::max);
             } else {

@@ -26,7 +26,10 @@ fn body(grid: &Grid<2>) -> Particles<2> {
         if place[0] == 3 || place[1] == 2 {
             continue;
         }
-        let (size, lower) = (grid.cell_size(place), grid.node_position(grid.node_index(place)));
+        let (size, lower) = (
+            grid.cell_size(place),
+            grid.node_position(grid.node_index(place)),
+        );
         let half_length = [size[0] / 6.0, size[1] / 4.0];
         for k in 0..6 {
             let part = [k % 3, k / 3];
@@ -75,7 +78,11 @@ fn elastic() -> SharedLaw {
 }
 
 /// The body at nodal displacements (a r, b z).
-fn trial(method: &Method, law: SharedLaw, [a, b]: [f64; 2]) -> (Trial<2>, Stencils<2>, Vec<[f64; 2]>) {
+fn trial(
+    method: &Method,
+    law: SharedLaw,
+    [a, b]: [f64; 2],
+) -> (Trial<2>, Stencils<2>, Vec<[f64; 2]>) {
     let grid = grid();
     let particles = body(&grid);
     let constraints = Constraints::free(&grid);
@@ -111,7 +118,11 @@ fn a_uniform_stretch_is_exact() {
                 strains.sort_by(f64::total_cmp);
                 expected.sort_by(f64::total_cmp);
                 for (strain, expected) in std::iter::zip(strains, expected) {
-                    assert!((strain - expected).abs() < 1e-14, "{}: {strain}", method.label());
+                    assert!(
+                        (strain - expected).abs() < 1e-14,
+                        "{}: {strain}",
+                        method.label()
+                    );
                 }
                 assert!((own.delta_hoop_stretch - 1.0 - a).abs() < 1e-14);
             }
@@ -132,14 +143,21 @@ fn uniform_pressure_is_in_equilibrium() {
         let (trial, stencils, _) = trial(&method, elastic(), [stretch, stretch]);
         let own = by_particle(&trial, &stencils)[0].tau[0][0];
         let (p, [radius, height]) = match method.geometry {
-            Geometry::Moving => (own * (1.0_f64 + stretch).powi(-3), [2.9, 2.0].map(|x| x * (1.0 + stretch))),
+            Geometry::Moving => (
+                own * (1.0_f64 + stretch).powi(-3),
+                [2.9, 2.0].map(|x| x * (1.0 + stretch)),
+            ),
             Geometry::Given => (own, [2.9, 2.0]),
         };
         let mut sums = [0.0; 2];
         for (node, f_int) in trial.f_int.iter().enumerate() {
             let place = grid.node_place(node);
             if place[0] < 3 && place[0] > 0 {
-                assert!(f_int[0].abs() < 1e-12 * p * radius * radius, "{} {place:?} {f_int:?}", method.label());
+                assert!(
+                    f_int[0].abs() < 1e-12 * p * radius * radius,
+                    "{} {place:?} {f_int:?}",
+                    method.label()
+                );
             }
             if place[0] == 3 {
                 sums[0] += f_int[0];
@@ -147,12 +165,20 @@ fn uniform_pressure_is_in_equilibrium() {
             if place[1] == 2 {
                 sums[1] += f_int[1];
             } else if place[1] == 1 {
-                assert!(f_int[1].abs() < 1e-12 * p * radius * radius, "{} {place:?} {f_int:?}", method.label());
+                assert!(
+                    f_int[1].abs() < 1e-12 * p * radius * radius,
+                    "{} {place:?} {f_int:?}",
+                    method.label()
+                );
             }
         }
         let expected = [2.0 * PI * radius * height * p, PI * radius * radius * p];
         for (sum, expected) in std::iter::zip(sums, expected) {
-            assert!((sum - expected).abs() < 1e-12 * expected, "{}: {sums:?} {expected}", method.label());
+            assert!(
+                (sum - expected).abs() < 1e-12 * expected,
+                "{}: {sums:?} {expected}",
+                method.label()
+            );
         }
     }
 }
@@ -180,7 +206,11 @@ fn weight_is_that_of_rings() {
             }
             let column: f64 = (0..3).map(|row| f_ext[grid.node_index([k, row])][1]).sum();
             let expected = -3.0 * 2.0 * 2.0 * 2.0 * PI * ring;
-            assert!((column - expected).abs() < 1e-12 * expected.abs(), "{}: {column} {expected}", method.label());
+            assert!(
+                (column - expected).abs() < 1e-12 * expected.abs(),
+                "{}: {column} {expected}",
+                method.label()
+            );
         }
     }
 }

@@ -420,7 +420,8 @@ fn load_points<const D: usize>(case: &Case<D>) -> Vec<LoadPoint<D>> {
                     let count = count(fields::length(&way));
                     let part = way.map(|way| way / count as f64);
                     let edge = LoadPoint::along_edge(from, to, traction, count, load).into_iter();
-                    edge.map(|point| point.around(case.method.section, &part)).collect()
+                    edge.map(|point| point.around(case.method.section, &part))
+                        .collect()
                 } else {
                     let counts = way.map(|length| count(length.abs()));
                     LoadPoint::on_rectangle(from, to, traction, counts, load)

@@ -16,7 +16,10 @@ pub(super) fn section(tree: &Node, mut case: Case<2>, problems: &mut Problems) -
     let start = case.grid.lower()[0];
     if start < 0.0 {
         problems
-            .error(place_of(tree, "grid"), "the grid begins left of the axis of revolution, x = 0")
+            .error(
+                place_of(tree, "grid"),
+                "the grid begins left of the axis of revolution, x = 0",
+            )
             .help("let domain.x begin at 0 m, or further right for a body with a hole");
     }
     let inner = &mut case.boundaries.sides[0][0];
@@ -26,7 +29,11 @@ pub(super) fn section(tree: &Node, mut case: Case<2>, problems: &mut Problems) -
     refuse_parts(tree, &case, problems);
     for (index, stage) in case.stages.iter().enumerate() {
         let place = item(tree, "stages", index);
-        refuse_stage((&stage.kind, stage.consolidation.is_some()), place, problems);
+        refuse_stage(
+            (&stage.kind, stage.consolidation.is_some()),
+            place,
+            problems,
+        );
     }
     (problems.errors() == before).then_some(case)
 }
@@ -36,7 +43,10 @@ fn refuse_parts(tree: &Node, case: &Case<2>, problems: &mut Problems) {
     for (index, load) in case.loads.iter().enumerate() {
         if let LoadKind::Point { .. } = load.kind {
             problems
-                .error(item(tree, "loads", index), "a force at a point would be one along a whole circle")
+                .error(
+                    item(tree, "loads", index),
+                    "a force at a point would be one along a whole circle",
+                )
                 .help("state a pressure over an area");
         }
     }
@@ -49,24 +59,36 @@ fn refuse_parts(tree: &Node, case: &Case<2>, problems: &mut Problems) {
     }
     if !case.reinforcement.is_empty() {
         problems
-            .error(item(tree, "reinforcement", 0), "a bar would be a cone here: reinforcement goes with plane strain and space")
+            .error(
+                item(tree, "reinforcement", 0),
+                "a bar would be a cone here: reinforcement goes with plane strain and space",
+            )
             .help("compute the body in space, analysis = \"3d\"");
     }
     for (index, condition) in case.water.iter().enumerate() {
-        let sources = std::iter::once(&condition.source).chain(condition.bodies.iter().map(|own| &own.1));
+        let sources =
+            std::iter::once(&condition.source).chain(condition.bodies.iter().map(|own| &own.1));
         let seeps = |source: &PoreSource| matches!(source, PoreSource::Seepage(_));
         if sources.into_iter().any(seeps) {
             problems
-                .error(item(tree, "water", index), "seepage is computed in plane strain and in space")
+                .error(
+                    item(tree, "water", index),
+                    "seepage is computed in plane strain and in space",
+                )
                 .help("state the pressures by points in a file, or a table");
         }
     }
     for (index, material) in case.materials.iter().enumerate() {
         let over_length = (material.softening.as_ref()).is_some_and(|own| own.nonlocal.is_some());
         if over_length {
-            let place = tree.get("materials").and_then(|own| own.entries().get(index));
+            let place = tree
+                .get("materials")
+                .and_then(|own| own.entries().get(index));
             problems
-                .error(place.map(|own| own.node.place), "softening over a length goes with plane strain")
+                .error(
+                    place.map(|own| own.node.place),
+                    "softening over a length goes with plane strain",
+                )
                 .help("scale it by the width of its bands: remove `length`");
         }
     }
@@ -84,15 +106,24 @@ fn refuse_stage((kind, flows): (&StageKind, bool), place: Option<Place>, problem
         );
     }
     match kind {
-        StageKind::Gravity { horizontal: Some(share), .. } if *share != 0.0 => refuse(
+        StageKind::Gravity {
+            horizontal: Some(share),
+            ..
+        } if *share != 0.0 => refuse(
             "a horizontal force leaves no body of revolution",
             "compute a slice in plane strain, or the body in space",
         ),
         StageKind::Rigid(moves) => moves.iter().for_each(|own| refuse_move(own, &mut refuse)),
-        StageKind::Dynamic(own) if !own.bodies.is_empty() || own.ground_motion.is_some() || own.walls != StageWalls::default() => refuse(
-            "rigid bodies, sides and ground move in time in plane strain and in space alone",
-            "let the soil move alone, or compute the body in space",
-        ),
+        StageKind::Dynamic(own)
+            if !own.bodies.is_empty()
+                || own.ground_motion.is_some()
+                || own.walls != StageWalls::default() =>
+        {
+            refuse(
+                "rigid bodies, sides and ground move in time in plane strain and in space alone",
+                "let the soil move alone, or compute the body in space",
+            )
+        }
         _ => {}
     }
 }

@@ -205,11 +205,7 @@ pub(super) fn reinforcement(summary: &Summary) -> Vec<MemberView> {
 
 /// Unit of forces: per metre run in plane strain.
 fn force(summary: &Summary) -> &'static str {
-    if summary.size.is_whole() {
-        "N"
-    } else {
-        "N/m"
-    }
+    if summary.size.is_whole() { "N" } else { "N/m" }
 }
 
 /// The last stage that left water in the pores.

@@ -332,7 +332,9 @@ impl<'a, const D: usize> AcceptedStep<'a, D> {
 fn energy_table(per_metre: &str) -> Table {
     let moment = ["stage", "step", "time_[s]"].map(str::to_owned);
     let parts = EnergySummary::default().parts();
-    let parts = parts.iter().map(|(name, _)| format!("{name}_[J{per_metre}]"));
+    let parts = parts
+        .iter()
+        .map(|(name, _)| format!("{name}_[J{per_metre}]"));
     Table {
         name: "energy".to_owned(),
         header: moment.into_iter().chain(parts).collect(),

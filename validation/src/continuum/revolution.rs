@@ -1,0 +1,450 @@
+//! Bodies of revolution: a thick cylinder and a thick sphere that are opened, a cylinder in compression, and circular footings.
+
+use std::f64::consts::{PI, TAU};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+
+use igimp_assembly::{
+    AssemblyError, Constraints, Method, Particles, Section, SharedLaw, StepConditions, StepLoads,
+};
+use igimp_cases::CaseError;
+use igimp_geometry::seed::fill_polygon;
+use igimp_input::CaseFile;
+use igimp_material::{Elasticity, VonMises};
+use igimp_model::check::Band;
+use igimp_shape::Grid;
+use igimp_solver::{Accepted, Body, MarchSettings};
+use rayon::prelude::*;
+
+use crate::continuum::laboratory::{grid_of, run};
+use crate::exact::cylinder::ThickCylinder;
+use crate::exact::sphere::ThickSphere;
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::reference::interpolate;
+use crate::harness::study::{Level, RunRecord, Study};
+use crate::runs::Computed;
+
+/// What the book says of the study.
+const ABOUT: &str = "Bodies of revolution (theory, eqs. 130 to 130e). A thick cylinder and a thick sphere of nearly incompressible clay are opened to one and a half times their bores; without B-bar the sphere locks. A cylinder of soil with friction is pressed together under cell pressure. A circular footing on Tresca soil, rough and smooth, has its edge at five places within a cell; on the coarsest cells alone below `--full`.";
+const CYLINDER: Oracle = Oracle {
+    kind: OracleKind::Exact,
+    source: "expanding incompressible thick cylinder, Hencky elasticity",
+    locator: "p = ∫ min(4G ln(r/R), 2 s_u) dr/r with r² − R² = a² − a₀²",
+};
+const SPHERE: Oracle = Oracle {
+    kind: OracleKind::Exact,
+    source: "expanding incompressible thick sphere, Hencky elasticity",
+    locator: "p = 2 ∫ min(6G ln(r/R), 2 s_u) dr/r with r³ − R³ = a³ − a₀³",
+};
+const TRIAXIAL: Oracle = Oracle {
+    kind: OracleKind::Exact,
+    source: "Mohr–Coulomb in triaxial compression",
+    locator: "σ₁ = σ₃ (1 + sin φ)/(1 − sin φ) + 2 c cos φ/(1 − sin φ)",
+};
+const CIRCLE: Oracle = Oracle {
+    kind: OracleKind::Exact,
+    source: "Shield 1955 (smooth), Eason and Shield 1960 (rough)",
+    locator: "slip lines around a circle: N = 5.690 and 6.048",
+};
+
+/// Young's modulus over strength of the thick bodies is 300, and they are nearly incompressible.
+const SHEAR: f64 = 100.0;
+const POISSON: f64 = 0.4999;
+/// Radii of bore and outside \[length\].
+const RADII: [f64; 2] = [1.0, 2.0];
+/// The bore at the end \[length\].
+const OPENED: f64 = 1.5;
+/// Nodes up to this far beyond the wall of the bore are moved with it \[cells\].
+const WALL: f64 = 0.25;
+/// Corners of the polygon along a quarter of a circle.
+const ARC: usize = 200;
+/// Cells over the radius of footings: the edge at 0, ¼, ½, ¾ and 0.9 of a cell.
+const EDGES: [f64; 5] = [9.0, 9.25, 9.5, 9.75, 9.9];
+
+/// A thick body that is opened from within.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Thick {
+    Cylinder,
+    Sphere,
+}
+
+impl Thick {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Cylinder => "cylinder",
+            Self::Sphere => "sphere",
+        }
+    }
+
+    fn oracle(self) -> Oracle {
+        match self {
+            Self::Cylinder => CYLINDER,
+            Self::Sphere => SPHERE,
+        }
+    }
+
+    /// The pressure within at a radius of the bore, over the strength \[-\].
+    fn exact(self, bore: f64) -> f64 {
+        let ([inner, outer], shear, strength) = (RADII, SHEAR, 1.0);
+        match self {
+            Self::Cylinder => ThickCylinder {
+                inner,
+                outer,
+                shear,
+                strength,
+            }
+            .pressure(bore),
+            Self::Sphere => ThickSphere {
+                inner,
+                outer,
+                shear,
+                strength,
+            }
+            .pressure(bore),
+        }
+    }
+
+    /// The exponent n with which volumes go with the radius.
+    fn power(self) -> i32 {
+        match self {
+            Self::Cylinder => 2,
+            Self::Sphere => 3,
+        }
+    }
+
+    /// Distance of a place in the section from the axis or the middle.
+    fn distance(self, x: [f64; 2]) -> f64 {
+        match self {
+            Self::Cylinder => x[0],
+            Self::Sphere => x[0].hypot(x[1]),
+        }
+    }
+
+    /// The section: a strip of a cell, or a quarter of a ring.
+    fn polygon(self, cell: f64) -> Vec<[f64; 2]> {
+        let [inner, outer] = RADII;
+        if self == Self::Cylinder {
+            return vec![[inner, 0.0], [outer, 0.0], [outer, cell], [inner, cell]];
+        }
+        let at = |radius: f64, k: usize| {
+            let (sine, cosine) = (0.5 * PI * k as f64 / ARC as f64).sin_cos();
+            [cosine, sine].map(|own| if own < 1e-12 { 0.0 } else { radius * own })
+        };
+        let outside = (0..=ARC).map(|k| at(outer, k));
+        outside
+            .chain((0..=ARC).rev().map(|k| at(inner, k)))
+            .collect()
+    }
+
+    /// The exact motion of the nodes within the bore and next to its wall; between smooth ends.
+    fn driven(
+        self,
+        grid: &Grid<2>,
+        cell: f64,
+        [from, to]: [f64; 2],
+    ) -> Result<Constraints<2>, AssemblyError> {
+        let mut constraints = Constraints::free(grid);
+        constraints.fix_wall(grid, 0, false, 0)?;
+        let n = self.power();
+        let added = to.powi(n) - from.powi(n);
+        for node in 0..grid.node_count() {
+            let x = grid.node_position(node);
+            if x[1] == 0.0 || self == Self::Cylinder {
+                constraints.prescribe(node, 1, 0.0)?;
+            }
+            let r = self.distance(x);
+            if r > 0.0 && r <= from + WALL * cell {
+                let stretch = (r.powi(n) + added).powf(1.0 / f64::from(n)) / r - 1.0;
+                constraints.prescribe(node, 0, stretch * x[0])?;
+                if self == Self::Sphere {
+                    constraints.prescribe(node, 1, stretch * x[1])?;
+                }
+            }
+        }
+        Ok(constraints)
+    }
+
+    /// The pressure within that does the work of the reactions on the motion v = x/rⁿ, which keeps the volume: over a cell's
+    /// height `Σ R·v = 2π h p`, over half a sphere `2π p`.
+    fn pressure(self, accepted: &Accepted<'_, 2>, cell: f64) -> f64 {
+        let grid = &accepted.conditions.grid;
+        let mut work = 0.0;
+        for (node, reaction) in accepted.forces.reactions.iter().enumerate() {
+            let (x, u) = (grid.node_position(node), accepted.forces.u[node]);
+            let now = [x[0] + u[0], x[1] + u[1]];
+            let r = self.distance(now);
+            if r > 0.0 {
+                let along = match self {
+                    Self::Cylinder => reaction[0] * now[0],
+                    Self::Sphere => reaction[0] * now[0] + reaction[1] * now[1],
+                };
+                work += along / r.powi(self.power());
+            }
+        }
+        match self {
+            Self::Cylinder => work / (TAU * cell),
+            Self::Sphere => work / TAU,
+        }
+    }
+
+    /// Opens it on `cells` cells along the bore; the curve has the bore and the pressure over the strength.
+    fn opened(self, cells: usize, method: Method) -> Result<(RunRecord, Vec<[f64; 2]>), CaseError> {
+        let method = Method {
+            section: Section::Axisymmetric,
+            ..method
+        };
+        let cell = RADII[0] / cells as f64;
+        let reach = (3.0 / cell).ceil() as usize;
+        let rows = if self == Self::Cylinder { 1 } else { reach };
+        let grid = grid_of(cell, [reach, rows])?;
+        let mut seeds = fill_polygon(&grid, &self.polygon(cell), 3, 1.0, 0)?;
+        for seed in &mut seeds {
+            let centroid = seed.x[0] + seed.centroid[0] * seed.half_length[0];
+            seed.volume *= method.section.thickness(centroid);
+        }
+        let mut body = Body::new(Particles::new(&seeds)?);
+        let elasticity = Elasticity::new(2.0 * (1.0 + POISSON) * SHEAR, POISSON)?;
+        let law: SharedLaw = Arc::new(VonMises::from_undrained_strength(elasticity, 1.0)?);
+        let bore = |factor: f64| RADII[0] + factor * (OPENED - RADII[0]);
+        let load_path = |from: f64, to: f64| {
+            StepConditions::new(
+                grid.clone(),
+                self.driven(&grid, cell, [bore(from), bore(to)])?,
+                StepLoads::gravity([0.0; 2]),
+                vec![Arc::clone(&law)],
+            )
+        };
+        let mut curve = Vec::new();
+        let mut observe = |accepted: &Accepted<'_, 2>| {
+            curve.push([bore(accepted.report.to), self.pressure(accepted, cell)]);
+            ControlFlow::Continue(())
+        };
+        let variant = format!("{} {}, a₀/h = {cells}", method.label(), self.name());
+        let settings = MarchSettings::steps(100);
+        let (run, _) = run(
+            variant,
+            &mut body,
+            &method,
+            &settings,
+            &load_path,
+            &mut observe,
+        );
+        Ok((run, curve))
+    }
+}
+
+/// Checks thick bodies on so many cells along the bore; without B-bar as the control.
+fn thick(study: &mut Study, body: Thick, cells: usize, method: Method) -> Result<(), CaseError> {
+    let locks = method.label() == Method::igimp().label();
+    let (run, curve) = body.opened(cells, method)?;
+    if locks {
+        let run = study.run(run);
+        let beyond = curve.iter().filter(|[bore, _]| *bore >= 1.02);
+        let highest = beyond
+            .map(|[bore, p]| p / body.exact(*bore))
+            .fold(f64::NAN, f64::max);
+        let quantity = "largest p/p_exact beyond a = 1.02 a₀, must lock [-]";
+        study.control(
+            run,
+            quantity,
+            body.oracle().says(1.0),
+            Band::AtLeast(1.5),
+            highest,
+        );
+        return Ok(());
+    }
+    let run = study.run_to_end(run);
+    let share = if cells < 16 { 0.02 } else { 0.01 };
+    for bore in [1.1, 1.25, 1.5] {
+        let exact = body.exact(bore);
+        let quantity = format!("p/s_u at a = {bore} a₀ [-]");
+        let found = interpolate(&curve, bore);
+        study.check(
+            run,
+            quantity,
+            body.oracle().says(exact),
+            Band::Relative(share),
+            found,
+        );
+    }
+    Ok(())
+}
+
+/// A case file of a body of revolution.
+fn file(grid: &str, clay: &str, rest: &str) -> String {
+    format!(
+        "igimp = 1
+[case]
+title = \"Body of revolution\"
+analysis = \"axisymmetric\"
+gravity = \"0 m/s2\"
+[grid]
+{grid}
+[materials.soil]
+{clay}
+{rest}"
+    )
+}
+
+/// A cylinder of soil under cell pressure, pressed by a load on its top until it fails, on the given geometry.
+fn triaxial(study: &mut Study) -> Result<(), CaseError> {
+    let (cell_pressure, cohesion, friction) = (100.0_f64, 5.0, 30.0_f64.to_radians());
+    let strength = cell_pressure * (1.0 + friction.sin()) / (1.0 - friction.sin())
+        + 2.0 * cohesion * friction.cos() / (1.0 - friction.sin());
+    let text = file(
+        "cell = \"0.25 m\"\ndomain = { x = [\"0 m\", \"1.5 m\"], y = [\"0 m\", \"2.5 m\"] }",
+        "model = \"mohr-coulomb\"\nunit_weight = \"0 kN/m3\"\nyoung = \"50 MPa\"\npoisson = 0.3\ncohesion = \"5 kPa\"\nfriction_angle = \"30 deg\"\ndilation_angle = \"30 deg\"",
+        "[[bodies]]
+name = \"cylinder\"
+material = \"soil\"
+polygon = [[\"0 m\", \"0 m\"], [\"1 m\", \"0 m\"], [\"1 m\", \"2 m\"], [\"0 m\", \"2 m\"]]
+[boundaries]
+bottom = \"roller\"
+[[loads]]
+name = \"cell\"
+type = \"pressure\"
+from = [\"1 m\", \"0 m\"]
+to = [\"1 m\", \"2 m\"]
+pressure = \"100 kPa\"
+[[loads]]
+name = \"top\"
+type = \"pressure\"
+from = [\"0 m\", \"2 m\"]
+to = [\"1 m\", \"2 m\"]
+pressure = \"100 kPa\"
+[[stages]]
+name = \"consolidate\"
+type = \"load\"
+loads = [\"cell\", \"top\"]
+factor = 1
+steps = 2
+geometry = \"given\"
+[[stages]]
+name = \"shear\"
+type = \"load\"
+loads = [\"top\"]
+factor = 5
+steps = 20
+geometry = \"given\"
+[[curves]]
+name = \"strength\"
+x = { of = \"step\" }
+y = { of = \"top.factor\" }
+",
+    );
+    let computed = Computed::new(CaseFile::parse("triaxial", &text, &[])?.into_case())?;
+    let found = computed
+        .curve("strength")
+        .points(0, 1)
+        .iter()
+        .map(|[_, q]| *q)
+        .fold(0.0, f64::max);
+    let run = study.run(RunRecord::new(
+        "cylinder of soil with friction",
+        &computed.report,
+        computed.elapsed,
+    ));
+    study.check(
+        run,
+        "σ₁/σ₃ at failure [-]",
+        TRIAXIAL.says(strength / cell_pressure),
+        Band::Relative(0.002),
+        found,
+    );
+    Ok(())
+}
+
+/// The case file of a footing of radius 1 m on clay with E/c_u = 1000, on so many cells over the radius.
+fn footing(cells: f64, interface: &str) -> String {
+    let [wide, deep] = [3.5, 2.75].map(|size: f64| (size * cells).ceil());
+    let top = deep + (0.5 * cells).ceil();
+    let at = |count: f64| format!("\"{count}/{cells} m\"");
+    let (x, y, zero) = (at(wide), at(deep), "\"0 m\"");
+    file(
+        &format!(
+            "cell = \"1/{cells} m\"\ndomain = {{ x = [{zero}, {x}], y = [{zero}, {}] }}",
+            at(top)
+        ),
+        "model = \"tresca\"\nunit_weight = \"0 kN/m3\"\nyoung = \"50 MPa\"\npoisson = 0.49\ncu = \"50 kPa\"",
+        &format!(
+            "[[bodies]]
+name = \"soil\"
+material = \"soil\"
+points_per_cell = 9
+polygon = [[{zero}, {zero}], [{x}, {zero}], [{x}, {y}], [{zero}, {y}]]
+[boundaries]
+right = \"roller\"
+bottom = \"fixed\"
+[[rigid]]
+name = \"footing\"
+type = \"rectangle\"
+from = [\"-1 m\", {y}]
+to = [\"1 m\", {}]
+interface = \"{interface}\"
+rounding = 0
+[[stages]]
+name = \"push\"
+type = \"rigid\"
+geometry = \"given\"
+bodies = [{{ body = \"footing\", y = \"-0.1 m\" }}]
+steps = 30
+[[curves]]
+name = \"resistance\"
+x = {{ of = \"rigid.footing.settlement\", divide_by = [\"2 m\"] }}
+y = {{ of = \"rigid.footing.resistance\", divide_by = [{PI}, \"50 kPa\"] }}
+",
+            at(top)
+        ),
+    )
+}
+
+/// Checks circular footings.
+fn footings(study: &mut Study, level: Level) -> Result<(), CaseError> {
+    let edges = if level == Level::Full {
+        &EDGES[..]
+    } else {
+        &EDGES[2..3]
+    };
+    let both = edges
+        .iter()
+        .flat_map(|&cells| [(cells, "rough", 6.048), (cells, "smooth", 5.690)]);
+    let jobs: Vec<_> = both.collect();
+    let computed = (jobs.par_iter())
+        .map(|&(cells, interface, _)| {
+            Computed::new(CaseFile::parse("footing", &footing(cells, interface), &[])?.into_case())
+        })
+        .collect::<Result<Vec<_>, CaseError>>()?;
+    for (&(cells, interface, exact), own) in std::iter::zip(&jobs, &computed) {
+        let variant = format!("{interface} circle, R/h = {cells}");
+        let run = study.run_to_end(RunRecord::new(variant, &own.report, own.elapsed));
+        let curve = own.curve("resistance").points(0, 1);
+        let found = curve.last().map_or(f64::NAN, |[_, n]| *n);
+        study.check(
+            run,
+            "N [-]",
+            CIRCLE.says(exact),
+            Band::Relative(0.03),
+            found,
+        );
+    }
+    Ok(())
+}
+
+/// Runs the study.
+pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
+    let mut study = Study::new("revolution", ABOUT, out)?;
+    let meshes: &[usize] = match level {
+        Level::Quick => &[8],
+        Level::Default => &[8, 16],
+        Level::Full => &[8, 16, 32],
+    };
+    for &cells in meshes {
+        thick(&mut study, Thick::Cylinder, cells, Method::igimp_bbar())?;
+        thick(&mut study, Thick::Sphere, cells, Method::igimp_bbar())?;
+    }
+    thick(&mut study, Thick::Sphere, 8, Method::igimp())?;
+    triaxial(&mut study)?;
+    footings(&mut study, level)?;
+    Ok(study)
+}
