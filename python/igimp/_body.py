@@ -24,7 +24,12 @@ REGIMES = (
 
 
 # Shapes of a particle's entry in arrays that are handed over where something uses them, and zero else; None: as of x.
-OPTIONAL: dict[str, tuple[int, ...] | None] = {"internal": (4,), "velocity": None, "acceleration": None}
+OPTIONAL: dict[str, tuple[int, ...] | None] = {
+    "internal": (4,),
+    "velocity": None,
+    "acceleration": None,
+    "hoop_strain": (),
+}
 
 
 class Body:
@@ -45,6 +50,8 @@ class Body:
         Cauchy stress that the law answers, tension positive; effective where there is water [Pa].
     def_grad : ndarray (n, d, d)
         Deformation gradient [-].
+    hoop_strain : ndarray (n,)
+        Strain around the axis of a body of revolution, else zero [-].
     b_e : ndarray (n, 3, 3)
         Elastic left Cauchy-Green tensor [-].
     eps_p_eq : ndarray (n,)
@@ -56,9 +63,9 @@ class Body:
     centroid : ndarray (n, d)
         Centroid of its soil within the domain as seeded, from the middle, over half-lengths [-].
     volume0 : ndarray (n,)
-        Volume as seeded [m^3/m in plane strain, m^3 in space].
+        Volume as seeded [m^3/m in plane strain, m^3 of whole bodies].
     mass : ndarray (n,)
-        Mass [kg/m in plane strain, kg in space].
+        Mass [kg/m in plane strain, kg of whole bodies].
     pore_pressure, excess : ndarray (n,)
         Given pore pressure, and what soil made itself; compression positive [Pa].
     law : ndarray (n,)
@@ -77,6 +84,7 @@ class Body:
     acceleration: NDArray[np.float64]
     sigma: NDArray[np.float64]
     def_grad: NDArray[np.float64]
+    hoop_strain: NDArray[np.float64]
     b_e: NDArray[np.float64]
     eps_p_eq: NDArray[np.float64]
     internal: NDArray[np.float64]
@@ -96,7 +104,8 @@ class Body:
         self.__dict__.update(arrays)
         for name, shape in OPTIONAL.items():
             if name not in arrays:
-                self.__dict__[name] = np.zeros((len(self.x), *(shape or self.x.shape[1:])))
+                own = self.x.shape[1:] if shape is None else shape
+                self.__dict__[name] = np.zeros((len(self.x), *own))
         self.materials = materials
 
     @classmethod
@@ -114,8 +123,8 @@ class Body:
 
     @property
     def volume(self) -> NDArray[np.float64]:
-        """Volume now [m^3/m in plane strain, m^3 in space]."""
-        return self.volume0 * np.linalg.det(self.def_grad)
+        """Volume now [m^3/m in plane strain, m^3 of whole bodies]."""
+        return self.volume0 * np.linalg.det(self.def_grad) * (1 + self.hoop_strain)
 
     @property
     def speed(self) -> NDArray[np.float64]:

@@ -54,6 +54,7 @@ shipped! {
     "vertical_cut": "vertical cut in undrained clay under rising weight, held against limit analysis",
     "nailed_cut": "vertical cut held by soil nails: tension in the nails, factor of safety",
     "bearing_capacity": "rough strip footing on undrained clay, held against Prandtl's solution",
+    "circular_footing": "rough circular footing, a body of revolution, held against slip lines",
     "anisotropic_footing": "strip footing on clay whose strength goes with direction, held against its closed form",
     "dense_sand_footing": "strip footing on dense sand by Hardening Soil, pushed, relieved and pushed on",
     "two_layer_footing": "strip footing on stiff over soft clay, held against limit analysis",

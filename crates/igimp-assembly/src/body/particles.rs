@@ -311,6 +311,17 @@ impl<const D: usize> Particles<D> {
         )
     }
 
+    /// Deformation gradient of a particle in three directions, 3 × 3: beyond those of the plane the stretch around the axis, or
+    /// none \[-\].
+    pub fn whole_def_grad(&self, particle: usize) -> Tensor {
+        let mut whole = identity();
+        for (row, own) in std::iter::zip(&mut whole, &self.fields.def_grad[particle]) {
+            row[..D].copy_from_slice(own);
+        }
+        whole[2][2] += self.fields.hoop_strain[particle];
+        whole
+    }
+
     /// Total Cauchy stress σ of a particle, tension positive: what its law answers, less the pressure of the water in
     /// its pores \[force/length²\].
     pub fn total_stress(&self, particle: usize) -> Tensor {

@@ -65,6 +65,40 @@ fn friction_by_speed_that_makes_no_sense() {
 }
 
 #[test]
+fn bodies_of_revolution_that_are_none() {
+    let footing = igimp_input::shipped::find("circular_footing").unwrap().text;
+    let load = |kind: &str| format!("[output]\n[[loads]]\nname = \"load\"\ntype = {kind}");
+    let point = load("\"point\"\nat = [\"0.5 m\", \"2 m\"]\nforce = [\"0 kN/m\", \"-1 kN/m\"]");
+    let nail = "[output]\n[[reinforcement]]\nname = \"nail\"\ntype = \"nail\"\nhead = [\"1 m\", \"2 m\"]\nend = [\"2 m\", \"1 m\"]\nspacing = \"1 m\"\nstiffness = \"100 MN\"\ncapacity = \"100 kN\"\nbond = \"10 kN/m\"";
+    let rough = "interface = \"rough\" ";
+    insta::assert_snapshot!(messages(
+        ("circle.toml", footing),
+        &[
+            &[("x = [\"0 m\",", "x = [\"-0.21 m\",")],
+            &[("y = \"-0.1 m\"", "y = \"-0.1 m\", x = \"0.1 m\"")],
+            &[("y = \"-0.1 m\"", "y = \"-0.1 m\", free = [\"rotation\"]")],
+            &[("y = \"-0.1 m\"", "force_y = \"-10 kN/m\"")],
+            &[(rough, "interface = \"rough\"\nweight = \"5 kN/m\" ")],
+            &[(rough, "interface = \"rough\"\nforce_factor = 2 ")],
+            &[("[output]", &point)],
+            &[("[output]", nail)],
+            &[(
+                "cu = \"50 kPa\"",
+                "cu = \"50 kPa\"\nsoftening = { cu = { residual = 0.3, strain = 0.05 }, length = \"0.3 m\" }"
+            )],
+            &[(
+                "bodies = [{ body = \"footing\", y = \"-0.1 m\" }]",
+                "loads = [\"x\"]"
+            )],
+            &[(
+                "cell = \"0.105 m\"",
+                "cell = \"0.105 m\"\nsmall_cuts = { ghost_penalty = 0.01 }"
+            )],
+        ]
+    ));
+}
+
+#[test]
 fn bodies_that_make_no_sense() {
     let rock = "[[\"0 m\",\"0 m\"], [\"60 m\",\"0 m\"], [\"60 m\",\"2 m\"], [\"0 m\",\"2 m\"]]";
     insta::assert_snapshot!(messages(

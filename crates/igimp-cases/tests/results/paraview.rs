@@ -213,6 +213,7 @@ fn vtk_pyvista_and_meshio_read_what_is_written() {
     );
     let utilisation: Vec<f64> = (0..plane.len()).map(|k| k as f64 / 2500.0).collect();
     let everything = Extras {
+        axisymmetric: false,
         carried: &[],
         utilisation: Some(&utilisation),
         def_grad: true,

@@ -17,6 +17,23 @@ fn bearing_capacity_is_that_of_prandtl() {
     between(ran.end_of("load-settlement"), 4.9, 5.9);
 }
 
+/// GOAL: a body of revolution is computed from its file: on five cells over the radius a rough circle carries what slip lines give, as
+/// the force on the whole circle.
+/// ORACLE: N = 6.048 of Eason and Shield (1960).
+#[test]
+fn circular_footing_is_that_of_slip_lines() {
+    let ran = ran(
+        "circular_footing",
+        &["grid.cell=0.21 m", "stages.0.steps=15"],
+    );
+    assert!(ran.run.failure.is_none());
+    let n = ran.end_of("load-settlement");
+    assert!((n / 6.048 - 1.0).abs() < 0.05, "{n}");
+    let size = ran.run.summary.size;
+    let volume = std::f64::consts::PI * 3.57_f64.powi(2) * 2.835;
+    assert!(size.is_whole() && (size.volume / volume - 1.0).abs() < 1e-12);
+}
+
 /// GOAL: a footing on clay whose strength goes with direction carries the share of the isotropic load that slip lines give, and with the
 /// logarithm of the rate as much more as the strength grows; the angle of compression is resumed and printed.
 /// ORACLE: N = 1 + s_p/s_a and half the girth of the ellipse of Davis and Christian (1971), by quadrature; 5.142 of one strength. A push

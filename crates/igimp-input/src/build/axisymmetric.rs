@@ -40,21 +40,44 @@ pub(super) fn section(tree: &Node, mut case: Case<2>, problems: &mut Problems) -
 
 /// Refuses loads, water, soil and structures that a body of revolution has not.
 fn refuse_parts(tree: &Node, case: &Case<2>, problems: &mut Problems) {
+    let mut refuse = |place: Option<Place>, message: &str, help: &str| {
+        problems.error(place, message).help(help);
+    };
+    if case.method.small_cuts.ghost_penalty > 0.0 {
+        refuse(
+            place_of(tree, "grid"),
+            "the ghost penalty is one of plane strain and of space",
+            "set small_cuts.ghost_penalty to 0",
+        );
+    }
+    let whole = "forces are those of the whole circle already";
     for (index, load) in case.loads.iter().enumerate() {
-        if let LoadKind::Point { .. } = load.kind {
-            problems
-                .error(
-                    item(tree, "loads", index),
-                    "a force at a point would be one along a whole circle",
-                )
-                .help("state a pressure over an area");
+        let place = item(tree, "loads", index);
+        match load.kind {
+            LoadKind::Point { .. } => refuse(
+                place,
+                "a force at a point would be one along a whole circle",
+                "state a pressure over an area",
+            ),
+            LoadKind::RigidFooting {
+                reaction_factor, ..
+            } if reaction_factor != 1.0 => {
+                refuse(place, whole, "remove reaction_factor");
+            }
+            _ => {}
         }
     }
     for (index, part) in case.rigid.iter().enumerate() {
+        let place = item(tree, "rigid", index);
         if part.weight != 0.0 {
-            problems
-                .error(item(tree, "rigid", index), "the weight of a rigid body is stated per metre run, and a body of revolution has none")
-                .help("displace the body, and read its resistance");
+            refuse(
+                place,
+                "the weight of a rigid body is stated per metre run, and a body of revolution has none",
+                "displace the body, and read its resistance",
+            );
+        }
+        if part.force_factor != 1.0 {
+            refuse(place, whole, "remove force_factor");
         }
     }
     if !case.reinforcement.is_empty() {
@@ -115,9 +138,7 @@ fn refuse_stage((kind, flows): (&StageKind, bool), place: Option<Place>, problem
         ),
         StageKind::Rigid(moves) => moves.iter().for_each(|own| refuse_move(own, &mut refuse)),
         StageKind::Dynamic(own)
-            if !own.bodies.is_empty()
-                || own.ground_motion.is_some()
-                || own.walls != StageWalls::default() =>
+            if !own.bodies.is_empty() || own.ground_motion.is_some() || is_walled(&own.walls) =>
         {
             refuse(
                 "rigid bodies, sides and ground move in time in plane strain and in space alone",
@@ -155,4 +176,9 @@ fn place_of(tree: &Node, key: &str) -> Option<Place> {
 /// Where an item of a list is stated.
 fn item(tree: &Node, list: &str, index: usize) -> Option<Place> {
     tree.items_at(list).get(index).map(|own| own.place)
+}
+
+/// Whether anything lies beyond the sides of a grid in motion.
+fn is_walled(walls: &StageWalls) -> bool {
+    walls.tied || !walls.absorbing.is_empty() || !walls.free_field.is_empty()
 }

@@ -98,10 +98,8 @@ pub fn of_particles<const D: usize>(
         cell_data.push(DataArray::scalars(name.clone(), values.clone()));
     }
     if extras.def_grad {
-        cell_data.push(DataArray::tensors(
-            "deformation gradient [-]",
-            &particles.def_grad,
-        ));
+        let def_grad: Vec<Tensor> = (0..n).map(|k| particles.whole_def_grad(k)).collect();
+        cell_data.push(DataArray::tensors("deformation gradient [-]", &def_grad));
     }
     UnstructuredGrid {
         connectivity: (0..points.len()).collect(),

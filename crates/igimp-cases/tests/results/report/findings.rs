@@ -126,6 +126,7 @@ pub(crate) fn summary() -> Summary {
         title: case().title,
         method: "iGIMP, B-bar, finite strain".into(),
         size: ModelSize {
+            axisymmetric: false,
             dimensions: 2,
             particles: 10_240,
             cells: 5_280,
