@@ -477,6 +477,25 @@ mod tests {
         }
     }
 
+    // GOAL: a point that loads a face is of the cells that it may press.
+    // ORACLE: a point within a cell is of that alone, one on a line of both beside it, one on the side of the grid of that within.
+    #[test]
+    fn points_on_lines_are_of_both_cells() {
+        let axis = igimp_shape::Axis::uniform(0.0, 1.0, 3).unwrap();
+        let grid = Grid::<2>::new([axis.clone(), axis]);
+        for (x, expected) in [
+            ([0.5, 1.5], vec![3]),
+            ([1.0, 0.5], vec![0, 1]),
+            ([2.0, 1.0], vec![1, 2, 4, 5]),
+            ([0.0, 0.5], vec![0]),
+        ] {
+            let (force, load) = ([0.0; 2], 0);
+            let is_loaded = loaded_cells(&grid, &[LoadPoint { x, force, load }]);
+            let loaded: Vec<usize> = (0..9).filter(|&cell| is_loaded[cell]).collect();
+            assert_eq!(loaded, expected, "{x:?}");
+        }
+    }
+
     // GOAL: the share falls with ψ and does not jump, up to associated flow.
     // ORACLE: 1/β is linear in √(ψ/φ); between neighbours of a fine division of √(ψ/φ) β changes by no more
     // than its steepest slope, β² (1/β₁ − 1/β₀) at β₀, allows.

@@ -247,3 +247,32 @@ in_two_and_three_dimensions!(
     shares_add_up,
     ties_only_join
 );
+
+// GOAL: particles beyond the first block of those that are handled together see the grid as the first do.
+// CASE: 1296 particles, in blocks of 1024.
+// ORACLE: Σ x_i ⊗ ∇S_i = I and Σ x_i ⊗ ∇S̄_i = I, and the centroid of what a particle sees is near its own.
+#[test]
+fn particles_of_later_blocks_see_the_grid() {
+    let grid = crate::common::grid::<2>(20);
+    let body = crate::common::particles(&grid, 0.0, &mut crate::common::Random(29));
+    assert!(body.len() > 1024);
+    let law = laws().remove(0).1;
+    let conditions = conditions(&grid, &law);
+    for method in [Method::shared_strain(), Method::igimp_bbar()] {
+        let stencils = Stencils::build(&body, &method, &conditions).unwrap();
+        for particle in 0..body.len() {
+            let own = stencils.of(particle);
+            for a in 0..2 {
+                let place = |support: &Support<2>| grid.node_position(support.node)[a];
+                let x: f64 = own.iter().map(|own| own.value * place(own)).sum();
+                assert!((x - body.x[particle][a]).abs() < 1e-10, "{particle}: {x}");
+                for b in 0..2 {
+                    let expected = f64::from(u8::from(a == b));
+                    let sum: f64 = own.iter().map(|own| own.grad[b] * place(own)).sum();
+                    let bar: f64 = own.iter().map(|own| own.grad_bar[b] * place(own)).sum();
+                    assert!((sum - expected).abs() < 1e-10 && (bar - expected).abs() < 1e-10);
+                }
+            }
+        }
+    }
+}

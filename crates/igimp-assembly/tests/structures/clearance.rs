@@ -123,6 +123,14 @@ fn soil_in_a_notch_is_moved_off_both_sides() {
         assert!((distance - 0.5 * HALF).abs() < 1e-8, "{distance}");
         assert_eq!(soil.resolve_overlap(std::slice::from_ref(body)), 0);
     }
+    // Beside any side, left and below too.
+    let beside = 0.3 * HALF;
+    for x in [[-beside, 3.0], [3.0, -beside], [6.0 + beside, 1.0]] {
+        let mut soil = particles([x, [9.0, 9.0]].into_iter());
+        assert_eq!(soil.resolve_overlap(std::slice::from_ref(&notched)), 1);
+        let distance = notched.distance(&soil.x[0]);
+        assert!((distance - 0.5 * HALF).abs() < 1e-8, "{distance}");
+    }
     // Soil that stands deep in a body was not cut by its side when it was seeded.
     let mut deep = particles([[1.0, 1.0]].into_iter());
     assert_eq!(deep.resolve_overlap(&[notched]), 0);

@@ -497,6 +497,30 @@ fn all_by(grid: &Grid<2>, by: [f64; 2]) -> Vec<[f64; 2]> {
     u
 }
 
+// GOAL: a body goes and turns as its two nodes say.
+// CASE: a plate, its rotation stored times its size.
+// ORACLE: the angle and the way themselves.
+#[test]
+fn a_body_turns_by_its_rotation() {
+    let (grid, soil, body) = plate(&Interface::smooth(), 3.0);
+    let (_, law) = laws().remove(0);
+    let method = Method::igimp_bbar();
+    let conditions = conditions(&grid, &law, RigidMotion::held());
+    let stencils = Stencils::build(&soil, &method, &conditions).unwrap();
+    let structures = Structures {
+        bodies: std::slice::from_ref(&body),
+        ..Structures::default()
+    };
+    let system = System::with_structures(&soil, &structures, &stencils, &conditions, &method);
+    let mut u = vec![[0.0; 2]; grid.node_count()];
+    u.extend([[0.3, -0.2], [0.01 * body.surface.size(), 0.0]]);
+    let moved = system.unwrap().bodies_at(&u).unwrap().bodies.remove(0);
+    assert!((moved.pose.angle[0] - 0.01).abs() < 1e-15);
+    for (axis, way) in [0.3, -0.2].into_iter().enumerate() {
+        assert!((moved.pose.origin[axis] - body.pose.origin[axis] - way).abs() < 1e-14);
+    }
+}
+
 // GOAL: soil that left a rough side takes no shear along.
 // CASE: a rough plate that carried shear, and soil that goes down from it.
 // ORACLE: no traction across a gap.

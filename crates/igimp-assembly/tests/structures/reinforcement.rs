@@ -226,10 +226,64 @@ fn a_uniform_stretch_gives_the_force_of_a_bar() {
                 assert!((bar.state.strain - own).abs() < 1e-14);
                 assert_eq!(bar.state.is_at_limit, expected == TENSILE);
             }
+            // Its points go with the soil, and stay on a given geometry.
+            let goes = if method.geometry == Geometry::Given {
+                0.0
+            } else {
+                strain
+            };
+            for (now, then) in std::iter::zip(&after.stations, &straight.stations) {
+                let [x, y] = then.points[0];
+                let [to_x, to_y] = now.points[0];
+                assert!((to_x - x * (1.0 + goes)).abs() < 1e-12 && (to_y - y).abs() < 1e-12);
+            }
             // Within the body the forces of neighbouring bars cancel.
             let sum: Vec<f64> = (0..2).map(|a| force.iter().map(|f| f[a]).sum()).collect();
             assert!(sum.iter().all(|sum: &f64| sum.abs() < 1e-12), "{sum:?}");
         }
+    }
+}
+
+// GOAL: the work of a member is that of its tension, and what is elastic of it is told apart.
+// CASE: a straight member in a uniform stretch, before it yields and beyond.
+// ORACLE: F L ε of the step, and F L F/EA.
+#[test]
+fn work_is_that_of_the_tension() {
+    let scene = scene::<2>();
+    let method = Method {
+        geometry: Geometry::Given,
+        ..Method::igimp_bbar()
+    };
+    let mut member = scene.member.clone();
+    member.stations[0].points = vec![member.stations[0].position()];
+    let (from, to) = (member.stations[0].position(), member.stations[9].position());
+    let d = [to[0] - from[0], to[1] - from[1]];
+    let length = d[0].hypot(d[1]);
+    for strain in [0.02, 0.2] {
+        let u = stretched(&scene.grid, strain);
+        let stencils = Stencils::build(&scene.body, &method, &scene.conditions).unwrap();
+        let work = |members: &[Reinforcement<2>]| {
+            let structures = Structures {
+                members,
+                ..Structures::default()
+            };
+            let conditions = &scene.conditions;
+            let system =
+                System::with_structures(&scene.body, &structures, &stencils, conditions, &method);
+            let system = system.unwrap();
+            let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
+            system.work(&trial, &u).unwrap()
+        };
+        let (with, without) = (work(std::slice::from_ref(&member)), work(&[]));
+        let own = strain * (d[0] / length).powi(2);
+        let force = (STIFFNESS * own).min(TENSILE);
+        let expected = [force * length * own, force * length * force / STIFFNESS];
+        let found = [with.whole - without.whole, with.elastic - without.elastic];
+        for (found, expected) in std::iter::zip(found, expected) {
+            assert!((found - expected).abs() < 1e-11, "{found} {expected}");
+        }
+        let lost = expected[0] - expected[1];
+        assert!((with.in_reinforcement - lost).abs() < 1e-12, "{lost}");
     }
 }
 

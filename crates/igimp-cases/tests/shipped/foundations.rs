@@ -147,6 +147,42 @@ fn dense_sand_footing_remembers_and_scales() {
     }
 }
 
+/// GOAL: a body of revolution that moves far goes on where it was stopped, on other threads, to the bit; its strain around the axis is kept.
+/// ORACLE: the run that was not stopped; volumes of nearly incompressible clay.
+#[test]
+fn circular_footing_resumes_on_other_threads() {
+    let overrides = [
+        "grid.cell=0.21 m",
+        "stages.0.steps=12",
+        "stages.0.geometry=moving",
+        "stages.0.bodies=[{ body = \"footing\", y = \"-0.12 m\" }]",
+        "curves=[]",
+        "output.figures=[]",
+    ];
+    let case = file("circular_footing", &overrides);
+    let (whole, stopped) = (folder("circle-whole"), folder("circle-stopped"));
+    let run = run_into((&case, case.case()), &whole, Start::Afresh, None);
+    assert_done(&run.summary);
+    run_into((&case, case.case()), &stopped, Start::Afresh, Some(5));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build();
+    let resume = || run_into((&case, case.case()), &stopped, Start::Resume, None);
+    assert_done(&pool.unwrap().install(resume).summary);
+    assert_equal(
+        &everything(&whole),
+        &everything(&stopped),
+        "resumed on three threads",
+    );
+    let particles = &run.body.particles;
+    let most = particles
+        .hoop_strain
+        .iter()
+        .fold(0.0, |most: f64, own| most.max(own.abs()));
+    assert!(most > 0.01, "{most}");
+    let volume = |of: &dyn Fn(usize) -> f64| (0..particles.len()).map(of).sum::<f64>();
+    let ratio = volume(&|k| particles.volume(k)) / volume(&|k| particles.volume0[k]);
+    assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
+}
+
 /// GOAL: strengths by direction and rate are refused where they have no meaning, and go on where a run was stopped, to the bit.
 #[test]
 fn anisotropic_footing_resumes_and_refuses() {

@@ -293,9 +293,13 @@ mod tests {
     // ORACLE: force is pressure times area, before and now; what is left of a third of the area is twice the pressure.
     #[test]
     fn the_force_of_the_last_step_is_carried_to_the_area_at_hand() {
+        // Where the branches of eq. 46 meet.
+        let meet = 0.5 * STIFFNESS * PENALTY.smoothing * row(0.0, 1.0, closed(0.0, 0.0)).cell;
         for (pressure, tension) in [
             (3.0, Tension::None),
             (40.0, Tension::None),
+            (0.9 * meet, Tension::None),
+            (1.1 * meet, Tension::None),
             (3.0, Tension::Bonded),
             (-3.0, Tension::Bonded),
             (-3.0, Tension::Limit(50.0)),
