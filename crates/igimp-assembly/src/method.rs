@@ -176,13 +176,17 @@ impl Method {
         Self::with(Arc::new(Gimp), Locking::SharedStrain)
     }
 
-    /// The variant's name as the paper writes it, such as `iGIMP + B-bar`.
+    /// The variant's name as the paper writes it, such as `iGIMP + B-bar`; of a body of revolution that it is one.
     pub fn label(&self) -> String {
         let basis = if self.is_of_points() { "iMPM" } else { "iGIMP" };
+        let section = match self.section {
+            Section::PlaneStrain => "",
+            Section::Axisymmetric => ", axisymmetric",
+        };
         match self.locking {
-            Locking::None => basis.to_owned(),
-            Locking::BBar => format!("{basis} + B-bar"),
-            Locking::SharedStrain => format!("{basis} + shared strain"),
+            Locking::None => format!("{basis}{section}"),
+            Locking::BBar => format!("{basis} + B-bar{section}"),
+            Locking::SharedStrain => format!("{basis} + shared strain{section}"),
         }
     }
 

@@ -191,6 +191,7 @@ impl Thick {
 
     /// Opens it on `cells` cells along the bore; the curve has the bore and the pressure over the strength.
     fn opened(self, cells: usize, method: Method) -> Result<(RunRecord, Vec<[f64; 2]>), CaseError> {
+        let variant = format!("{} {}, a₀/h = {cells}", method.label(), self.name());
         let method = Method {
             section: Section::Axisymmetric,
             ..method
@@ -221,7 +222,6 @@ impl Thick {
             curve.push([bore(accepted.report.to), self.pressure(accepted, cell)]);
             ControlFlow::Continue(())
         };
-        let variant = format!("{} {}, a₀/h = {cells}", method.label(), self.name());
         let settings = MarchSettings::steps(100);
         let (run, _) = run(
             variant,

@@ -599,3 +599,27 @@ fn soil_that_comes_near_later_is_as_far_off_as_it_stands() {
         assert!((later.gap - 0.06).abs() < 1e-12, "{later:?}");
     }
 }
+
+// GOAL: an open gap closes by the motion of the soil from step to step on a given geometry, where faces cover more of a side than there
+// is of it too.
+// CASE: particles off their places, whose faces overlap, that rise towards a plate in two steps without being carried along.
+// ORACLE: the gap after two steps is that at the start less the way of both.
+#[test]
+fn open_gaps_close_from_step_to_step() {
+    let (grid, _, mut body) = plate(&Interface::smooth(), 0.1);
+    let soil = particles(&grid, 1.0, &mut Random(3));
+    let start = left_of((&grid, &soil), &body, &all_by(&grid, [0.0; 2]));
+    body.contact.knots.clone_from(&start);
+    for _ in 0..2 {
+        body.contact.knots = left_of((&grid, &soil), &body, &all_by(&grid, [0.0, 0.02]));
+    }
+    let both = std::iter::zip(&start, &body.contact.knots);
+    let open = both.filter(|(start, _)| start.area > 0.1 && start.gap > 0.05);
+    assert!(open.clone().count() > 2);
+    for (start, end) in open {
+        assert!(
+            (start.gap - 0.04 - end.gap).abs() < 1e-12,
+            "{start:?} {end:?}"
+        );
+    }
+}

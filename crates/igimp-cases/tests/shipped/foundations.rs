@@ -17,8 +17,8 @@ fn bearing_capacity_is_that_of_prandtl() {
     between(ran.end_of("load-settlement"), 4.9, 5.9);
 }
 
-/// GOAL: a body of revolution is computed from its file: on five cells over the radius a rough circle carries what slip lines give, as
-/// the force on the whole circle.
+/// GOAL: a body of revolution is computed from its file: on five cells over the radius, with the ground mid-cell, a rough circle carries
+/// what slip lines give, as the force on the whole circle.
 /// ORACLE: N = 6.048 of Eason and Shield (1960).
 #[test]
 fn circular_footing_is_that_of_slip_lines() {

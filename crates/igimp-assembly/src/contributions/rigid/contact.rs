@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::clearance::{Penetration, push_out};
 use super::face_clipping::tents_within;
 use super::interface::{Interface, Tension};
-use super::mortar_integrals::{Gathering, Sums, rolling_radius};
+use super::mortar_integrals::{Gathering, rolling_radius};
 use super::row::{Functional, Row};
 use super::{ContactNode, ContactState, NODES_PER_BODY, RigidBody};
 use crate::body::particles::Particles;
@@ -111,7 +111,8 @@ impl<'a, const D: usize> Contact<'a, D> {
             let is_laid =
                 before.area == 0.0 && is_loaded && mean(sums.gap) < LAID * mean(sums.cell);
             let bonds = interface.tension != Tension::None && !before.is_broken;
-            begin(&mut before, &sums, bonds || is_laid, rolls);
+            let gap = mean(sums.gap);
+            begin(&mut before, [area, gap], bonds || is_laid, rolls);
             let mut row = Row {
                 body: index,
                 knot,
@@ -222,16 +223,18 @@ impl<'a, const D: usize> Contact<'a, D> {
     }
 }
 
-/// Sets the gap that a knot begins a step with. Soil that comes near is as far off as it stands, and touches if it overlaps; from
+/// By so much more has to touch before more has come near: round-off \[-\].
+const ROUND_OFF: f64 = 1e-9;
+
+/// Sets the gap that a knot begins a step with, where an area of soil has this mean `gap`. Soil that comes near is as far off as it stands, and touches if it overlaps; from
 /// then on the gap follows its motion, unless the body `rolls` and the knot is open. Where soil `touches` it does at once.
-fn begin<const D: usize>(before: &mut ContactNode, sums: &Sums<D>, touches: bool, rolls: bool) {
-    let gap = sums.gap / sums.area;
+fn begin(before: &mut ContactNode, [area, gap]: [f64; 2], touches: bool, rolls: bool) {
     if before.area == 0.0 {
         before.gap = if touches { 0.0 } else { gap.max(0.0) };
         before.is_closed = before.gap == 0.0;
     } else if !before.is_closed && rolls {
         before.gap = gap.max(0.0);
-    } else if !before.is_closed && sums.area > before.area {
+    } else if !before.is_closed && area > (1.0 + ROUND_OFF) * before.area {
         // More of the soil around the knot has come near, the last of it from further off.
         before.gap = before.gap.max(gap);
     }
