@@ -103,7 +103,7 @@ fn gravity(own: &keys::Gravity) -> StageKind {
 }
 
 /// The geometry that the steps of a stage are computed on; types without the key move the particles.
-fn geometry(form: &StageForm) -> Geometry {
+pub(super) fn geometry(form: &StageForm) -> Geometry {
     let stated = match form {
         StageForm::Gravity(Ok(own)) => own.geometry.as_ref(),
         StageForm::Load(Ok(own)) => own.geometry.as_ref().ok(),

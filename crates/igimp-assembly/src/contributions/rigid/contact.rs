@@ -6,14 +6,14 @@ use std::collections::BTreeMap;
 use super::clearance::{Penetration, push_out};
 use super::face_clipping::tents_within;
 use super::interface::{Interface, Tension};
-use super::mortar_integrals::{Gathering, rolling_radius};
-use super::row::{Functional, Row};
+use super::mortar_integrals::{Gathering, Sums, rolling_radius};
+use super::row::{ADHESIVE_GAP, Functional, Row};
 use super::{ContactNode, ContactState, NODES_PER_BODY, RigidBody};
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::conditions::rigid_motion::{RigidMotion, rotations};
 use crate::contributions::nodal_forces::{AddBlock, NodalForces};
-use crate::method::{Geometry, Method, Section};
+use crate::method::{Geometry, Method};
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
 
@@ -59,8 +59,7 @@ impl<'a, const D: usize> Contact<'a, D> {
             first_node,
         };
         for body in 0..bodies.len() {
-            let of_step = (conditions, method.section);
-            contact.find_of(body, particles, stencils, of_step, unknowns);
+            contact.find_of(body, particles, stencils, (conditions, method), unknowns);
         }
         contact
     }
@@ -70,7 +69,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         index: usize,
         particles: &Particles<D>,
         stencils: &Stencils<D>,
-        (conditions, section): (&StepConditions<D>, Section),
+        (conditions, method): (&StepConditions<D>, &Method),
         unknowns: &Unknowns<D>,
     ) {
         let body = &self.bodies[index];
@@ -87,7 +86,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         let motion = conditions.motions.get(index);
         let is_loaded = conditions.time.is_none() && motion.is_some_and(RigidMotion::is_pushed);
         let rolls = rolling_radius(body, conditions).is_some();
-        let of_step = (conditions, section);
+        let of_step = (conditions, method.section);
         let knots = Gathering::new(body, node, particles, stencils, of_step, unknowns).sums();
         for (knot, sums) in knots {
             // No more of a side touches than there is of it.
@@ -111,8 +110,13 @@ impl<'a, const D: usize> Contact<'a, D> {
             let is_laid =
                 before.area == 0.0 && is_loaded && mean(sums.gap) < LAID * mean(sums.cell);
             let bonds = interface.tension != Tension::None && !before.is_broken;
-            let gap = mean(sums.gap);
-            begin(&mut before, [area, gap], bonds || is_laid, rolls);
+            // Particles that the ground cuts stand off a side by a share of their size, and go nowhere. A round body leaves the
+            // ground at a slant: small gaps beside its contact are gaps.
+            let is_drawn_at = method.geometry == Geometry::Given
+                && surface.radius().is_none()
+                && mean(sums.gap) < ADHESIVE_GAP * mean(sums.cell);
+            let touches = bonds || is_laid || is_drawn_at;
+            begin(&mut before, &sums, touches, rolls);
             let mut row = Row {
                 body: index,
                 knot,
@@ -223,18 +227,16 @@ impl<'a, const D: usize> Contact<'a, D> {
     }
 }
 
-/// By so much more has to touch before more has come near: round-off \[-\].
-const ROUND_OFF: f64 = 1e-9;
-
-/// Sets the gap that a knot begins a step with, where an area of soil has this mean `gap`. Soil that comes near is as far off as it stands, and touches if it overlaps; from
+/// Sets the gap that a knot begins a step with. Soil that comes near is as far off as it stands, and touches if it overlaps; from
 /// then on the gap follows its motion, unless the body `rolls` and the knot is open. Where soil `touches` it does at once.
-fn begin(before: &mut ContactNode, [area, gap]: [f64; 2], touches: bool, rolls: bool) {
+fn begin<const D: usize>(before: &mut ContactNode, sums: &Sums<D>, touches: bool, rolls: bool) {
+    let gap = sums.gap / sums.area;
     if before.area == 0.0 {
         before.gap = if touches { 0.0 } else { gap.max(0.0) };
         before.is_closed = before.gap == 0.0;
     } else if !before.is_closed && rolls {
         before.gap = gap.max(0.0);
-    } else if !before.is_closed && area > (1.0 + ROUND_OFF) * before.area {
+    } else if !before.is_closed && sums.area > before.area {
         // More of the soil around the knot has come near, the last of it from further off.
         before.gap = before.gap.max(gap);
     }

@@ -17,9 +17,9 @@ const ON_THE_LIMIT: f64 = 1e-12;
 /// eight-hundredth of the pressure at which it is stiff \[-\].
 const SEAT: f64 = 0.05;
 
-/// Soil that is no further off than so many cells still slips along an adhesive side at its limit: the smallest gap that a grid
-/// can tell from none, and as much as soil may go into a body \[-\].
-const ADHESIVE_GAP: f64 = 0.1;
+/// Soil that is no further off than so many cells still slips along an adhesive side at its limit, and touches straight sides from the
+/// start on a given geometry: the smallest gap that a grid can tell from none, and as much as soil may go into a body \[-\].
+pub(super) const ADHESIVE_GAP: f64 = 0.1;
 
 /// A linear function of nodal displacements.
 pub(crate) type Functional<const D: usize> = Vec<(usize, [f64; D])>;
