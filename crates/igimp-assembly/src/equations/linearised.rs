@@ -226,8 +226,8 @@ impl<const D: usize> Linearised<D> {
         })
     }
 
-    /// The radial forces of the stress around the axis on the supports of a particle of volume `volume`; none unless the
-    /// section is axisymmetric.
+    /// The radial forces of the stress around the axis on the supports of a particle of volume `volume` (theory, eq. 130d); none
+    /// unless the section is axisymmetric.
     #[inline]
     pub(crate) fn hoop_forces(
         &self,

@@ -1,5 +1,6 @@
 //! The grid and the variant of the method.
 
+pub(crate) mod axisymmetric;
 pub(crate) mod boundaries;
 pub(crate) mod lines;
 
@@ -12,6 +13,7 @@ use igimp_model::{AxisSpec, BodyPart, GridSpec, MixedCells};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::grid::{self as keys, Fit};
+use igimp_schema::schema::stages::{Geometry as GeometryKey, StageForm};
 use igimp_schema::source::Place;
 use igimp_schema::text::{count, number};
 use igimp_schema::tree::Node;
@@ -429,4 +431,22 @@ pub(super) fn method(own: &keys::Method) -> Option<Method> {
             ghost_penalty: *cuts.ghost_penalty,
         },
     })
+}
+/// The geometry that the steps of a stage are computed on; types without the key move the particles.
+pub(super) fn geometry_of(form: &StageForm) -> Geometry {
+    let stated = match form {
+        StageForm::Gravity(Ok(own)) => own.geometry.as_ref(),
+        StageForm::Load(Ok(own)) => own.geometry.as_ref().ok(),
+        StageForm::Displacement(Ok(own)) => own.geometry.as_ref().ok(),
+        StageForm::Rigid(Ok(own)) => own.geometry.as_ref().ok(),
+        StageForm::Construction(Ok(own)) => own.geometry.as_ref().ok(),
+        StageForm::Wait(Ok(own)) => own.geometry.as_ref().ok(),
+        StageForm::StrengthReduction(Ok(own)) => Some(&own.geometry),
+        StageForm::Dynamic(Ok(own)) => own.geometry.as_ref().ok(),
+        _ => None,
+    };
+    match stated.map(|own| **own) {
+        Some(GeometryKey::Given) => Geometry::Given,
+        Some(GeometryKey::Moving) | None => Geometry::Moving,
+    }
 }

@@ -3,7 +3,6 @@
 //! Every part is built as far as it can be, so that all problems are found at once.
 
 mod assemble;
-mod axisymmetric;
 mod bodies;
 mod context;
 mod derive;
@@ -91,7 +90,7 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
         Analysis::Space => space::build(tree, &names, file, problems).map(AnyCase::Space),
         Analysis::PlaneStrain => in_plane(tree, &names, file, problems).map(AnyCase::Plane),
         Analysis::Axisymmetric => in_plane(tree, &names, file, problems)
-            .and_then(|case| axisymmetric::section(tree, case, problems))
+            .and_then(|case| grid::axisymmetric::section(tree, case, problems))
             .map(AnyCase::Plane),
     }
 }

@@ -7,7 +7,6 @@ pub(crate) mod dynamic;
 pub(crate) mod ground_motion;
 pub(crate) mod safety;
 
-use igimp_assembly::Geometry;
 use igimp_model::{LoadKind, Stage, StageKind, StopWhen, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
@@ -19,6 +18,7 @@ use igimp_schema::tree::read::At;
 
 use super::ground::level::uneven;
 use crate::build::context::{About, Context};
+use crate::build::grid::geometry_of;
 use crate::build::things;
 use safety::{run_out, strength_reduction};
 
@@ -57,7 +57,7 @@ fn stage<const D: usize>(
         name: own.name.known()?,
         kind: kind?,
         steps: **common.steps.as_ref().ok()?,
-        geometry: geometry(&own.form),
+        geometry: geometry_of(&own.form),
         start_from: start_from.ok()?,
         reset_displacements: **common.reset_displacements.as_ref().ok()?,
         install: install?,
@@ -99,25 +99,6 @@ fn gravity(own: &keys::Gravity) -> StageKind {
         horizontal: share(&own.horizontal),
         across: share(&own.across),
         vertical: share(&own.vertical),
-    }
-}
-
-/// The geometry that the steps of a stage are computed on; types without the key move the particles.
-pub(super) fn geometry(form: &StageForm) -> Geometry {
-    let stated = match form {
-        StageForm::Gravity(Ok(own)) => own.geometry.as_ref(),
-        StageForm::Load(Ok(own)) => own.geometry.as_ref().ok(),
-        StageForm::Displacement(Ok(own)) => own.geometry.as_ref().ok(),
-        StageForm::Rigid(Ok(own)) => own.geometry.as_ref().ok(),
-        StageForm::Construction(Ok(own)) => own.geometry.as_ref().ok(),
-        StageForm::Wait(Ok(own)) => own.geometry.as_ref().ok(),
-        StageForm::StrengthReduction(Ok(own)) => Some(&own.geometry),
-        StageForm::Dynamic(Ok(own)) => own.geometry.as_ref().ok(),
-        _ => None,
-    };
-    match stated.map(|own| **own) {
-        Some(keys::Geometry::Given) => Geometry::Given,
-        Some(keys::Geometry::Moving) | None => Geometry::Moving,
     }
 }
 

@@ -9,6 +9,10 @@ use crate::fields::{deviatoric_stress, mean_pressure};
 use crate::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 
 /// Optional arrays beside the state of the particles.
+#[allow(
+    clippy::struct_excessive_bools,
+    reason = "each says of one group of arrays whether it is there"
+)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extras<'a> {
     /// Utilisation of the strength by particle \[-\].

@@ -15,8 +15,7 @@ use super::{Basis, Room, Sides, narrow};
 use crate::build::Thing;
 use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Site;
-use crate::build::grid::Frame;
-use crate::build::stages;
+use crate::build::grid::{Frame, geometry_of};
 use crate::geometry::{distinct, overlap, self_crossing};
 
 /// Corners of a circle where it is looked at as a polygon.
@@ -256,7 +255,7 @@ fn above_a_line(
     });
     let is_given = around.stages.iter().flatten().any(|stage| {
         let moves = stage.moves();
-        stages::geometry(&stage.form) == Geometry::Given
+        geometry_of(&stage.form) == Geometry::Given
             && moves
                 .iter()
                 .flatten()

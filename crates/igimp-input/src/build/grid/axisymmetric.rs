@@ -10,7 +10,7 @@ use igimp_schema::tree::Node;
 const COMPONENTS: [(usize, &str); 2] = [(0, "x"), (2, "rotation")];
 
 /// The case with an axisymmetric section, held at its axis; reports what a body of revolution has not.
-pub(super) fn section(tree: &Node, mut case: Case<2>, problems: &mut Problems) -> Option<Case<2>> {
+pub(crate) fn section(tree: &Node, mut case: Case<2>, problems: &mut Problems) -> Option<Case<2>> {
     let before = problems.errors();
     case.method.section = Section::Axisymmetric;
     let start = case.grid.lower()[0];
