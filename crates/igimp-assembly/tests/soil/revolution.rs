@@ -34,7 +34,7 @@ fn body(grid: &Grid<2>) -> Particles<2> {
         for k in 0..6 {
             let part = [k % 3, k / 3];
             let x: [f64; 2] = std::array::from_fn(|axis| {
-                lower[axis] + (2 * part[axis] + 1) as f64 * half_length[axis]
+                lower[axis] + f64::from(2 * part[axis] + 1) * half_length[axis]
             });
             let area = 4.0 * half_length[0] * half_length[1];
             seeds.push(ParticleSeed {

@@ -61,7 +61,7 @@ fn refuse_parts(tree: &Node, case: &Case<2>, problems: &mut Problems) {
             ),
             LoadKind::RigidFooting {
                 reaction_factor, ..
-            } if reaction_factor != 1.0 => {
+            } if reaction_factor.total_cmp(&1.0).is_ne() => {
                 refuse(place, whole, "remove reaction_factor");
             }
             _ => {}
@@ -76,7 +76,7 @@ fn refuse_parts(tree: &Node, case: &Case<2>, problems: &mut Problems) {
                 "displace the body, and read its resistance",
             );
         }
-        if part.force_factor != 1.0 {
+        if part.force_factor.total_cmp(&1.0).is_ne() {
             refuse(place, whole, "remove force_factor");
         }
     }
@@ -143,7 +143,7 @@ fn refuse_stage((kind, flows): (&StageKind, bool), place: Option<Place>, problem
             refuse(
                 "rigid bodies, sides and ground move in time in plane strain and in space alone",
                 "let the soil move alone, or compute the body in space",
-            )
+            );
         }
         _ => {}
     }
