@@ -14,6 +14,7 @@ use crate::equations::trial::Trial;
 use crate::error::AssemblyError;
 use crate::method::{DomainUpdate, Geometry, Kinematics, Method};
 use crate::small::{congruence, determinant, identity, multiply, rotation, transpose};
+use crate::step::hoops::Hoop;
 use crate::step::stencils::Stencils;
 
 impl<const D: usize> Particles<D> {
@@ -66,7 +67,11 @@ impl<const D: usize> Particles<D> {
                             x[axis] += step[axis];
                         }
                         *def_grad = multiply(&own.delta_def_grad, def_grad);
-                        *hoop_strain = (1.0 + *hoop_strain) * own.delta_hoop_stretch - 1.0;
+                        let (supports, hoops) = stencils.with_hoops(particle);
+                        if !hoops.is_empty() {
+                            let strain = Hoop::strain(supports, hoops, u).own;
+                            *hoop_strain = (1.0 + *hoop_strain) * (1.0 + strain) - 1.0;
+                        }
                         let ratio = volume_ratio(def_grad, *hoop_strain);
                         let update = method.domain_update;
                         *half_length = updated_half_length(update, half_length0, def_grad);

@@ -221,13 +221,13 @@ impl<const D: usize> System<'_, D> {
             stiffness => excess * excess / stiffness,
         };
         let dilation = || {
-            let hoops = self.stencils.hoops_of(particle);
-            let gradients = Gradients::of((supports, hoops), u);
+            let gradients = Gradients::of(self.stencils.with_hoops(particle), u);
             let mut mean = gradients.bar;
             for (a, row) in mean.iter_mut().enumerate() {
                 row[a] += 1.0;
             }
-            (determinant(&mean) * (1.0 + gradients.hoop.bar)).ln()
+            let around = gradients.hoop.map_or(1.0, |hoop| 1.0 + hoop.bar);
+            (determinant(&mean) * around).ln()
         };
         let mass = particles.mass[particle] + self.loads.pores.mass(particle);
         let kinetic = |v: &[f64; D]| 0.5 * mass * v.iter().map(|v| v * v).sum::<f64>();

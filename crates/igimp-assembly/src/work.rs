@@ -123,7 +123,7 @@ impl<const D: usize> System<'_, D> {
 
     /// The small strain of a step at a particle \[-\].
     fn strain_of_step(&self, particle: usize, u: &[[f64; D]]) -> Tensor {
-        let (supports, hoops) = (self.stencils.of(particle), self.stencils.hoops_of(particle));
+        let (supports, hoops) = self.stencils.with_hoops(particle);
         let mut strain = [[0.0; 3]; 3];
         Gradients::of((supports, hoops), u).add_small_strain(&mut strain);
         strain

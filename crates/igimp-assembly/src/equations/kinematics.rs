@@ -34,8 +34,6 @@ const LARGEST_STRAIN: f64 = 300.0;
 pub struct ParticleTrial<const D: usize> {
     /// ΔF, the deformation gradient of the step \[-\].
     pub delta_def_grad: [[f64; D]; D],
-    /// ΔF_θθ, the stretch of the step around the axis; 1 unless the section is axisymmetric \[-\].
-    pub delta_hoop_stretch: f64,
     /// Kirchhoff stress τ (Cauchy stress in small strain) that the law answers \[force/length²\], tension positive.
     pub tau: Tensor,
     /// Principal elastic Hencky strain after the return \[-\], extension positive.
@@ -57,7 +55,6 @@ impl<const D: usize> ParticleTrial<D> {
     pub(crate) fn at_rest() -> Self {
         Self {
             delta_def_grad: identity(),
-            delta_hoop_stretch: 1.0,
             tau: [[0.0; 3]; 3],
             eps_e: [0.0; 3],
             frame: identity(),
@@ -81,8 +78,6 @@ pub(crate) struct Linearisation<const D: usize> {
     pub(crate) push: [[f64; D]; D],
     /// ΔF_c⁻¹ of the cell-averaged gradient; the identity in small strain.
     pub(crate) push_bar: [[f64; D]; D],
-    /// 1/ΔF_θθ, and that of the cell-averaged stretch; 1 in small strain.
-    pub(crate) push_hoop: Hoop,
     /// Stress and tangent in spatial axes, those of the water in the pores included.
     pub(crate) lifted: Lifted<D>,
     /// What its plastic and its nonlocal strain are to each other, where strength sees that.
@@ -103,8 +98,6 @@ pub(crate) struct Straining<const D: usize> {
     /// As [`Linearisation::push`] and [`Linearisation::push_bar`].
     push: [[f64; D]; D],
     push_bar: [[f64; D]; D],
-    delta_hoop_stretch: f64,
-    push_hoop: Hoop,
     /// Logarithm of the ratio of volumes, where pore water asks for it.
     ln_volume: f64,
     strain: TrialStrain,
@@ -129,7 +122,7 @@ pub(crate) fn strained<const D: usize>(
     let gradients = Gradients::of((supports, hoops), u);
     let mut delta_def_grad = gradients.own;
     let mut delta_bar = gradients.bar;
-    let hoop = UNSTRETCHED.plus(1.0, gradients.hoop);
+    let around = gradients.hoop.map(|hoop| Hoop::UNSTRETCHED.plus(1.0, hoop));
     for a in 0..D {
         delta_def_grad[a][a] += 1.0;
         delta_bar[a][a] += 1.0;
@@ -137,29 +130,32 @@ pub(crate) fn strained<const D: usize>(
     let material = |source| AssemblyError::Material { particle, source };
     if method.geometry == Geometry::Moving {
         positive(particle, determinant(&delta_def_grad))?;
-        positive(particle, hoop.own)?;
+        if let Some(hoop) = around {
+            positive(particle, hoop.own)?;
+        }
     }
     let mut ln_volume = 0.0;
     Ok(match method.kinematics_of_step() {
         Kinematics::FiniteStrain => {
             let det = determinant(&delta_def_grad);
             let det_bar = positive(particle, determinant(&delta_bar))?;
-            let volume_bar = det_bar * positive(particle, hoop.bar)?;
-            let lambda = (volume_bar / (det * hoop.own)).cbrt();
-            if state.pores.asks_for_volume() {
-                ln_volume = volume_bar.ln();
+            let (mut ratio, mut ratio_bar) = (det, det_bar);
+            if let Some(hoop) = around {
+                ratio_bar *= positive(particle, hoop.bar)?;
+                ratio *= hoop.own;
             }
-            let stretch = (&delta_def_grad, hoop.own);
-            let b_trial = pushed_forward(state.b_e, stretch, lambda * lambda);
+            let lambda = (ratio_bar / ratio).cbrt();
+            if state.pores.asks_for_volume() {
+                ln_volume = ratio_bar.ln();
+            }
+            let mut b_trial = pushed_forward(state.b_e, &delta_def_grad, lambda * lambda);
+            if let Some(hoop) = around {
+                b_trial[2][2] *= hoop.own * hoop.own;
+            }
             Straining {
                 delta_def_grad,
                 push: inverse(&delta_def_grad, det),
                 push_bar: inverse(&delta_bar, det_bar),
-                delta_hoop_stretch: hoop.own,
-                push_hoop: Hoop {
-                    own: hoop.own.recip(),
-                    bar: hoop.bar.recip(),
-                },
                 ln_volume,
                 strain: TrialStrain::finite::<D>(&b_trial).map_err(material)?,
             }
@@ -172,8 +168,6 @@ pub(crate) fn strained<const D: usize>(
                 delta_def_grad,
                 push: identity(),
                 push_bar: identity(),
-                delta_hoop_stretch: hoop.own,
-                push_hoop: UNSTRETCHED,
                 ln_volume,
                 strain: TrialStrain::small::<D>(&strain).map_err(material)?,
             }
@@ -201,7 +195,6 @@ pub(crate) fn answered<const D: usize>(
     }
     *trial = ParticleTrial {
         delta_def_grad: straining.delta_def_grad,
-        delta_hoop_stretch: straining.delta_hoop_stretch,
         tau: lifted.tau,
         eps_e: lifted.eps_e,
         frame: lifted.frame,
@@ -213,7 +206,6 @@ pub(crate) fn answered<const D: usize>(
     let mut linearisation = Linearisation {
         push: straining.push,
         push_bar: straining.push_bar,
-        push_hoop: straining.push_hoop,
         lifted,
         nonlocal: None,
     };
@@ -224,17 +216,14 @@ pub(crate) fn answered<const D: usize>(
     Ok(linearisation)
 }
 
-/// No stretch around the axis.
-const UNSTRETCHED: Hoop = Hoop { own: 1.0, bar: 1.0 };
-
 /// Gradients of nodal step displacements at a particle \[-\].
 pub(crate) struct Gradients<const D: usize> {
     /// Its own.
     pub(crate) own: [[f64; D]; D],
     /// The cell-averaged one.
     pub(crate) bar: [[f64; D]; D],
-    /// Strain around the axis u_r/r, both of them; zero unless the section is axisymmetric.
-    pub(crate) hoop: Hoop,
+    /// Strain around the axis u_r/r, both of them; none unless the section is axisymmetric.
+    pub(crate) hoop: Option<Hoop>,
 }
 
 impl<const D: usize> Gradients<D> {
@@ -252,10 +241,7 @@ impl<const D: usize> Gradients<D> {
                 }
             }
         }
-        let around = supports.iter().zip(hoops);
-        let hoop = around.fold(Hoop::default(), |sum, (support, hoop)| {
-            sum.plus(u[support.node][0], *hoop)
-        });
+        let hoop = (!hoops.is_empty()).then(|| Hoop::strain(supports, hoops, u));
         Self { own, bar, hoop }
     }
 
@@ -263,32 +249,35 @@ impl<const D: usize> Gradients<D> {
     #[inline]
     pub(crate) fn dilation(&self) -> f64 {
         let in_plane = (0..D).fold(0.0, |sum, a| sum + self.bar[a][a]);
-        in_plane + self.hoop.bar
+        self.hoop.map_or(in_plane, |hoop| in_plane + hoop.bar)
     }
 
     /// Adds the small strain of the step, with the cell-averaged dilatation (theory, eqs. 9 and 130c) \[-\].
     #[inline]
     pub(crate) fn add_small_strain(&self, strain: &mut Tensor) {
         let Self { own, bar, hoop } = self;
-        let mut difference = hoop.bar - hoop.own;
+        let mut difference = 0.0;
         for a in 0..D {
             difference += bar[a][a] - own[a][a];
             for b in 0..D {
                 strain[a][b] += 0.5 * (own[a][b] + own[b][a]);
             }
         }
-        strain[2][2] += hoop.own;
+        if let Some(hoop) = hoop {
+            strain[2][2] += hoop.own;
+            difference += hoop.bar - hoop.own;
+        }
         for a in 0..3 {
             strain[a][a] += difference / 3.0;
         }
     }
 }
 
-/// The trial tensor λ² ΔF b ΔFᵀ, with λ² ΔF_θθ² b_zz out of plane.
+/// The trial tensor λ² ΔF b ΔFᵀ, with λ² b_zz out of plane.
 #[inline]
 fn pushed_forward<const D: usize>(
     b: &Tensor,
-    (delta_def_grad, hoop): (&[[f64; D]; D], f64),
+    delta_def_grad: &[[f64; D]; D],
     lambda2: f64,
 ) -> Tensor {
     let mut in_plane = [[0.0; D]; D];
@@ -303,7 +292,7 @@ fn pushed_forward<const D: usize>(
                 * if a < D && c < D {
                     pushed[a][c]
                 } else {
-                    hoop * hoop * b[a][c]
+                    b[a][c]
                 };
         }
     }

@@ -34,7 +34,7 @@ use igimp_shape::Support;
 use crate::equations::kinematics::Linearisation;
 use crate::method::Kinematics;
 use crate::small::transpose_apply;
-use crate::step::hoops::Hoop;
+use crate::step::hoops::{Around, Hoop};
 
 /// Numbers that are worked on together.
 const LANES: usize = 4;
@@ -176,17 +176,15 @@ impl<const D: usize> Linearised<D> {
     #[inline]
     pub(crate) fn push(
         &mut self,
-        (supports, hoops): (&[Support<D>], &[Hoop]),
+        (supports, around): (&[Support<D>], Option<Around<'_>>),
         own: &Linearisation<D>,
     ) {
         self.g.clear();
         self.g_bar.clear();
         self.hoops.clear();
-        let pushed = |hoop: &Hoop| Hoop {
-            own: own.push_hoop.own * hoop.own,
-            bar: own.push_hoop.bar * hoop.bar,
-        };
-        self.hoops.extend(hoops.iter().map(pushed));
+        if let Some(Around { hoops, push }) = around {
+            self.hoops.extend(hoops.iter().map(|hoop| hoop.times(push)));
+        }
         let g = |support: &Support<D>| transpose_apply(&own.push, &support.grad);
         let g_bar = |support: &Support<D>| transpose_apply(&own.push_bar, &support.grad_bar);
         self.g.extend(supports.iter().map(g));
@@ -260,6 +258,7 @@ impl<const D: usize> Linearised<D> {
     }
 
     /// Adds to the factors of the rows what stretching around the axis does, and sets those of its columns.
+    #[inline(never)]
     fn add_hoops(&mut self, moduli: &Moduli<D>, hoop: &HoopModuli<D>) {
         for factors in &mut self.around {
             factors.clear();
@@ -391,16 +390,22 @@ impl<const D: usize> Linearised<D> {
                 column[k] = sum;
             }
         }
-        if let Some(hoop) = self.hoops.get(j) {
-            let [around, around_bar] = &self.around;
-            let radial = self.columns[..lanes].iter_mut();
-            for (column, (own, bar)) in radial.zip(around.iter().zip(around_bar)) {
-                for lane in 0..LANES {
-                    column[lane] += own[lane] * hoop.own + bar[lane] * hoop.bar;
-                }
-            }
+        if !self.hoops.is_empty() {
+            self.add_radial_column(j);
         }
         let columns = self.columns.as_flattened();
         std::array::from_fn(|c| &columns[c * LANES * lanes..][..LANES * lanes])
+    }
+
+    /// Adds to the radial column of a support what stretching around the axis does.
+    #[inline(never)]
+    fn add_radial_column(&mut self, j: usize) {
+        let (hoop, [around, around_bar]) = (self.hoops[j], &self.around);
+        let radial = self.columns[..self.lanes].iter_mut();
+        for (column, (own, bar)) in radial.zip(around.iter().zip(around_bar)) {
+            for lane in 0..LANES {
+                column[lane] += own[lane] * hoop.own + bar[lane] * hoop.bar;
+            }
+        }
     }
 }

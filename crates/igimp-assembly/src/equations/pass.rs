@@ -26,6 +26,7 @@ use crate::equations::scatter::water::scatter_in_space;
 use crate::equations::system::System;
 use crate::error::AssemblyError;
 use crate::method::Kinematics;
+use crate::step::hoops::{Around, Hoop};
 use crate::step::strips::split;
 
 /// Scratch of one task.
@@ -133,14 +134,14 @@ impl<const D: usize> System<'_, D> {
         let mut end_of_patch = 0;
         for (slot, (&particle, trial)) in order.iter().zip(strip.particles).enumerate() {
             let particle = particle as usize;
-            let supports = self.stencils.of(particle);
+            let (supports, hoops) = self.stencils.with_hoops(particle);
             let answer = answers.get(particle).and_then(Option::as_ref);
             let own = self
-                .evaluate_with(particle, u, kind, answer, trial)
+                .evaluate_with((particle, supports, hoops), u, kind, answer, trial)
                 .map_err(|error| (particle, error))?;
             let volume = self.reference_volume(particle);
-            let hoops = self.stencils.hoops_of(particle);
-            scratch.linearised.push((supports, hoops), &own);
+            let around = self.around((supports, hoops), u);
+            scratch.linearised.push((supports, around), &own);
             let forces = scratch.linearised.forces(&own, volume);
             for (support, force) in supports.iter().zip(forces) {
                 let sum = &mut strip.f_int[support.node - strip.first_node];
@@ -148,9 +149,11 @@ impl<const D: usize> System<'_, D> {
                     sum[axis] += force[axis];
                 }
             }
-            let forces = scratch.linearised.hoop_forces(&own, volume);
-            for (support, force) in supports.iter().zip(forces) {
-                strip.f_int[support.node - strip.first_node][0] += force;
+            if around.is_some() {
+                let forces = scratch.linearised.hoop_forces(&own, volume);
+                for (support, force) in supports.iter().zip(forces) {
+                    strip.f_int[support.node - strip.first_node][0] += force;
+                }
             }
             let water = self.beside.consolidation.of_particle(particle, supports, u);
             if let Some(water) = &water {
@@ -203,14 +206,15 @@ impl<const D: usize> System<'_, D> {
         kind: TangentKind,
         trial: &mut ParticleTrial<D>,
     ) -> Result<Linearisation<D>, AssemblyError> {
-        self.evaluate_with(particle, u, kind, None, trial)
+        let (supports, hoops) = self.stencils.with_hoops(particle);
+        self.evaluate_with((particle, supports, hoops), u, kind, None, trial)
     }
 
     /// The same where the answer of its law may be known.
     #[inline]
     fn evaluate_with(
         &self,
-        particle: usize,
+        (particle, supports, hoops): (usize, &[Support<D>], &[Hoop]),
         u: &[[f64; D]],
         kind: TangentKind,
         known: Option<&ReturnMap>,
@@ -218,14 +222,13 @@ impl<const D: usize> System<'_, D> {
     ) -> Result<Linearisation<D>, AssemblyError> {
         let material = |source| AssemblyError::Material { particle, source };
         let kinematics = self.method.kinematics_of_step();
-        let supports = self.stencils.of(particle);
         let rise = (self.nonlocal).rise(self.particles.law[particle], supports, u);
         let context = PointContext {
             duration: self.conditions.duration(),
             nonlocal_rise: rise.unwrap_or(0.0),
         };
         let ask = |law: &dyn ConstitutiveModel| {
-            let (state, straining) = self.strain_particle(particle, u)?;
+            let (state, straining) = self.strain_particle((particle, supports, hoops), u)?;
             let history = self.particles.history(particle);
             let answer = match known {
                 Some(answer) => *answer,
@@ -233,15 +236,17 @@ impl<const D: usize> System<'_, D> {
                     .return_map(straining.principal(), &history, &context)
                     .map_err(material)?,
             };
-            let own = answered(state, straining, law, &answer, (kind, kinematics), trial)?;
-            let elastic = match kind {
-                TangentKind::Elastic => 1.0,
-                TangentKind::Consistent => 0.0,
-                TangentKind::Regularised { elastic } => elastic,
-            };
-            let nonlocal =
-                rise.map(|_| SpatialRates::of(&answer.nonlocal, &own.lifted.frame, elastic));
-            Ok(Linearisation { nonlocal, ..own })
+            let mut own = answered(state, straining, law, &answer, (kind, kinematics), trial)?;
+            if rise.is_some() {
+                let elastic = match kind {
+                    TangentKind::Elastic => 1.0,
+                    TangentKind::Consistent => 0.0,
+                    TangentKind::Regularised { elastic } => elastic,
+                };
+                let rates = SpatialRates::of(&answer.nonlocal, &own.lifted.frame, elastic);
+                own.nonlocal = Some(rates);
+            }
+            Ok(own)
         };
         let laws = &self.conditions.laws;
         let asked = self.particles.ask_law(particle, laws, ask);
@@ -270,7 +275,7 @@ impl<const D: usize> System<'_, D> {
     #[inline]
     pub(crate) fn strain_particle(
         &self,
-        particle: usize,
+        (particle, supports, hoops): (usize, &[Support<D>], &[Hoop]),
         u: &[[f64; D]],
     ) -> Result<(ParticleState<'_>, Straining<D>), AssemblyError> {
         let unknown = self.beside.consolidation.pressure(particle, u);
@@ -284,8 +289,29 @@ impl<const D: usize> System<'_, D> {
                 (particle, unknown),
             ),
         };
-        let supports = (self.stencils.of(particle), self.stencils.hoops_of(particle));
-        Ok((state, strained(state, supports, u, self.method)?))
+        let reach = (supports, hoops);
+        Ok((state, strained(state, reach, u, self.method)?))
+    }
+
+    /// How the supports of a particle stretch it around the axis at nodal step displacements `u`; none unless the section is
+    /// axisymmetric.
+    #[inline]
+    pub(crate) fn around<'h>(
+        &self,
+        (supports, hoops): (&[Support<D>], &'h [Hoop]),
+        u: &[[f64; D]],
+    ) -> Option<Around<'h>> {
+        if hoops.is_empty() {
+            return None;
+        }
+        let push = match self.method.kinematics_of_step() {
+            Kinematics::FiniteStrain => {
+                let strain = Hoop::strain(supports, hoops, u);
+                Hoop::UNSTRETCHED.plus(1.0, strain).reciprocal()
+            }
+            Kinematics::SmallStrain => Hoop::UNSTRETCHED,
+        };
+        Some(Around { hoops, push })
     }
 
     /// The stored values of the columns of some nodes.

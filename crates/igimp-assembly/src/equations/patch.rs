@@ -449,7 +449,7 @@ mod tests {
             let supports = stencils.of(particle);
             let own = system.evaluate_particle(particle, &u, kind, &mut trial);
             let own = own.unwrap();
-            linearised.push((supports, &[]), &own);
+            linearised.push((supports, None), &own);
             let volume = system.reference_volume(particle);
             linearised.linearise_particle(&own, volume, method.kinematics);
             for (j, column) in supports.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! How nodes stretch a body of revolution around its axis, x = 0 (theory, eqs. 130 to 130b).
 
-use igimp_shape::{CellPart, Grid};
+use igimp_shape::{CellPart, Grid, Support};
 
 /// How much a support stretches a particle around the axis, for a radial displacement of one \[1/length\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,6 +12,22 @@ pub(crate) struct Hoop {
 }
 
 impl Hoop {
+    /// A stretch of nothing.
+    pub(crate) const UNSTRETCHED: Self = Self { own: 1.0, bar: 1.0 };
+
+    /// Strain around the axis u_r/r of nodal displacements `u` \[-\].
+    #[inline(never)]
+    pub(crate) fn strain<const D: usize>(
+        supports: &[Support<D>],
+        hoops: &[Self],
+        u: &[[f64; D]],
+    ) -> Self {
+        let around = supports.iter().zip(hoops);
+        around.fold(Self::default(), |sum, (support, hoop)| {
+            sum.plus(u[support.node][0], *hoop)
+        })
+    }
+
     /// This and `factor` times another.
     #[inline]
     pub(crate) fn plus(self, factor: f64, other: Self) -> Self {
@@ -20,6 +36,31 @@ impl Hoop {
             bar: self.bar + factor * other.bar,
         }
     }
+
+    /// This times another, each by each.
+    pub(crate) fn times(self, other: Self) -> Self {
+        Self {
+            own: self.own * other.own,
+            bar: self.bar * other.bar,
+        }
+    }
+
+    /// One over each.
+    pub(crate) fn reciprocal(self) -> Self {
+        Self {
+            own: self.own.recip(),
+            bar: self.bar.recip(),
+        }
+    }
+}
+
+/// How the supports of a particle stretch it around the axis.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Around<'a> {
+    /// By support.
+    pub(crate) hoops: &'a [Hoop],
+    /// 1/ΔF_θθ, and that of the cell-averaged stretch; 1 in small strain.
+    pub(crate) push: Hoop,
 }
 
 /// The extent of a particle's part in a cell along the radius.

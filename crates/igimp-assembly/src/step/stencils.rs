@@ -104,10 +104,10 @@ impl<const D: usize> Stencils<D> {
         self.supports.of(particle)
     }
 
-    /// How the supports of a particle stretch it around the axis, one by one; none unless the section is axisymmetric.
+    /// The supports of a particle, and how each stretches it around the axis: none unless the section is axisymmetric.
     #[inline]
-    pub(crate) fn hoops_of(&self, particle: usize) -> &[Hoop] {
-        self.supports.hoops_of(particle)
+    pub(crate) fn with_hoops(&self, particle: usize) -> (&[Support<D>], &[Hoop]) {
+        self.supports.with_hoops(particle)
     }
 
     /// The particles in the order in which sums run: by the first node of their supports.

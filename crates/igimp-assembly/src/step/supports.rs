@@ -80,15 +80,18 @@ impl<const D: usize> Supports<D> {
         &chunk.all[start as usize..(start + count) as usize]
     }
 
-    /// The stretch around the axis by support of one particle; none unless the section is axisymmetric.
+    /// The supports of one particle, and the stretch around the axis by each; none unless the section is axisymmetric.
     #[inline]
-    pub(crate) fn hoops_of(&self, particle: usize) -> &[Hoop] {
+    pub(crate) fn with_hoops(&self, particle: usize) -> (&[Support<D>], &[Hoop]) {
         let chunk = &self.chunks[particle / CHUNK];
-        if chunk.hoops.is_empty() {
-            return &[];
-        }
         let (start, count) = chunk.places[particle % CHUNK];
-        &chunk.hoops[start as usize..(start + count) as usize]
+        let all = start as usize..(start + count) as usize;
+        let hoops = if chunk.hoops.is_empty() {
+            &[][..]
+        } else {
+            &chunk.hoops[all.clone()]
+        };
+        (&chunk.all[all], hoops)
     }
 
     /// By law, moments of mass that shared gradients do not see (theory, eq. 8f). Empty where there are none.
@@ -125,15 +128,11 @@ impl<const D: usize> Supports<D> {
     /// Replaces the nodes of one particle by the nodes that they move with, and adds up supports
     /// that come together.
     pub(crate) fn tie(&mut self, grid: &Grid<D>, particle: usize, ties: &Ties) {
-        let mut own = carried(self.of(particle), ties);
+        let (supports, hoops) = self.with_hoops(particle);
+        let mut own = carried(supports, ties);
         own.sort_by_key(|support| support.node);
         let count = merge_equal_nodes(&mut own);
-        let hoops = carried_hoops(
-            self.of(particle),
-            self.hoops_of(particle),
-            ties,
-            &own[..count],
-        );
+        let hoops = carried_hoops(supports, hoops, ties, &own[..count]);
         let chunk = &mut self.chunks[particle / CHUNK];
         let (start, room) = &mut chunk.places[particle % CHUNK];
         if count > *room as usize {

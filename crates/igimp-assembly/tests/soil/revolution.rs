@@ -124,7 +124,6 @@ fn a_uniform_stretch_is_exact() {
                         method.label()
                     );
                 }
-                assert!((own.delta_hoop_stretch - 1.0 - a).abs() < 1e-14);
             }
         }
     }

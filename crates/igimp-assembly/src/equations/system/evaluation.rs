@@ -171,6 +171,7 @@ impl<const D: usize> System<'_, D> {
 
     /// The volume that a particle's stress is multiplied by: V_0 with Kirchhoff stress in finite
     /// strain, V at the step's start with Cauchy stress in small strain.
+    #[inline]
     pub(crate) fn reference_volume(&self, particle: usize) -> f64 {
         match self.method.kinematics {
             Kinematics::FiniteStrain => self.particles.volume0[particle],

@@ -57,13 +57,13 @@ impl<const D: usize> System<'_, D> {
         let mut trial = ParticleTrial::at_rest();
         let mut linearised = Linearised::default();
         for particle in 0..self.particles.len() {
-            let supports = self.stencils.of(particle);
+            let (supports, hoops) = self.stencils.with_hoops(particle);
             if !supports.iter().any(|support| moves(support.node)) {
                 continue;
             }
             let own = self.evaluate_particle(particle, u, kind, &mut trial)?;
             let volume = self.reference_volume(particle);
-            linearised.push((supports, self.stencils.hoops_of(particle)), &own);
+            linearised.push((supports, self.around((supports, hoops), u)), &own);
             self.add_scalars_of_motion(particle, (&own, &linearised), u, &mut force);
             let kinematics = self.method.kinematics_of_step();
             linearised.linearise_particle(&own, volume, kinematics);
