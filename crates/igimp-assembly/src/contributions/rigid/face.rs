@@ -11,7 +11,11 @@ const GAUSS: f64 = 0.577_350_269_189_625_8;
 /// A line with a smaller sine to a side of a domain does not meet it \[-\].
 const ALONG: f64 = 1e-9;
 
+/// A place this much of a length beyond an end is still at it: round-off \[-\].
+const ROUND_OFF: f64 = 1e-9;
+
 /// The face of a particle, parallel to a side of the body.
+#[derive(Clone)]
 pub(crate) struct Face<const D: usize> {
     /// Its middle \[length\].
     pub(crate) middle: [f64; D],
@@ -22,8 +26,10 @@ pub(crate) struct Face<const D: usize> {
     pub(crate) facing: [f64; D],
     /// The directions in which it is laid out: one in the plane, two in space.
     pub(crate) along: [[f64; D]; 2],
-    /// In the plane half of its length \[length\].
-    half: f64,
+    /// Half of its length in these directions \[length\].
+    half: [f64; 2],
+    /// Half of the particle's thickness along the normal \[length\].
+    thickness: f64,
     /// From the surface to the face \[length\].
     pub(crate) gap: f64,
     /// Centre and half-lengths of the domain of its particle \[length\].
@@ -72,12 +78,25 @@ impl<const D: usize> Face<D> {
             middle: std::array::from_fn(|a| centre[a] - thickness * normal[a]),
             gap,
             domain: [*centre, *half_length],
-            half: reach(&along[0]),
+            half: along.map(|tangent| reach(&tangent)),
+            thickness,
             along,
             side,
             normal,
             facing: nearest.normal,
         })
+    }
+
+    /// Whether its particle ends before a face at a gap begins.
+    pub(crate) fn may_hide(&self, gap: f64) -> bool {
+        self.gap + 2.0 * self.thickness <= (1.0 + ROUND_OFF) * gap
+    }
+
+    /// Whether its particle lies between the side and a point of another face of that side (theory, eq. 45f).
+    pub(crate) fn hides(&self, other: &Self, x: &[f64; D]) -> bool {
+        let arm = minus(x, &self.middle);
+        let mut tangents = std::iter::zip(&self.along, self.half).take(D - 1);
+        self.may_hide(other.gap) && tangents.all(|(tangent, half)| dot(&arm, tangent).abs() < half)
     }
 
     /// A point of its plane in space.
@@ -119,7 +138,7 @@ impl<const D: usize> Face<D> {
         grid: &Grid<D>,
     ) -> Vec<FacePoint<D>> {
         let (surface, pose) = (&*body.surface, &body.pose);
-        let (tangent, half) = (self.along[0], self.half);
+        let (tangent, half) = (self.along[0], self.half[0]);
         let mut cuts = vec![-half, half];
         for axis in (0..D).filter(|&axis| tangent[axis].abs() > 1e-6) {
             let lines = grid.axes[axis].nodes().iter();
@@ -198,6 +217,29 @@ mod tests {
             let gap = face.gap_along(&middle, radius, &x);
             assert!((gap - expected).abs() < 1e-12, "{gap} {expected}");
             assert!(gap > face.gap - 1e-12, "{gap} {}", face.gap);
+        }
+    }
+
+    // GOAL: soil behind other soil does not face a side.
+    // CASE: level rows of particles below a straight side; the first is a slice of 0.2, 0.5 and 0.7 of the thickness of those behind.
+    // ORACLE: the sketch: the row behind faces the side through slices up to half of its thickness, and is hidden below the slice alone.
+    #[test]
+    fn a_thin_particle_hides_what_is_behind_it() {
+        let corners = [[-1.0, 0.0], [1.0, 0.0], [1.0, 1.0], [-1.0, 1.0]];
+        let surface = Surface::polygon(&corners, 0.0, 0.1).unwrap();
+        let body = RigidBody::new(surface, vec![Interface::rough(); 4], [0.0; 2]);
+        let half = 0.1;
+        for (share, faces) in [(0.2, true), (0.5, true), (0.7, false)] {
+            let slice = share * half;
+            let front = [0.0, -slice];
+            let front = Face::of(&body, 0, &front, &[half, slice]).unwrap();
+            assert!(front.gap.abs() < 1e-15);
+            let behind = Face::of(&body, 0, &[0.0, -2.0 * slice - half], &[half; 2]);
+            assert_eq!(behind.is_some(), faces, "{share}");
+            let Some(behind) = behind else { continue };
+            assert!(front.may_hide(behind.gap) && !behind.may_hide(front.gap));
+            let beside = [half + 0.01, behind.middle[1]];
+            assert!(front.hides(&behind, &behind.middle) && !front.hides(&behind, &beside));
         }
     }
 }

@@ -45,6 +45,8 @@ pub(crate) struct Gathering<'a, const D: usize> {
     section: Section,
     unknowns: &'a Unknowns<D>,
     knots: BTreeMap<usize, Sums<D>>,
+    /// By side, faces of particles so thin that others face the side through them.
+    thin: Vec<Vec<Face<D>>>,
 }
 
 /// A face with what the soil behind it is like.
@@ -72,6 +74,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
             section,
             unknowns,
             knots: BTreeMap::new(),
+            thin: Vec::new(),
         }
     }
 
@@ -79,43 +82,64 @@ impl<'a, const D: usize> Gathering<'a, D> {
     pub(crate) fn sums(mut self) -> BTreeMap<usize, Sums<D>> {
         let (body, particles) = (self.body, self.particles);
         let (surface, pose) = (&*body.surface, &body.pose);
-        let (lower, upper) = surface.bounds();
         let places: Vec<[f64; D]> = if let Some(space) = surface.space() {
             space.outer.iter().map(|x| pose.into_space(x)).collect()
         } else {
             let knots = surface.knots().into_iter();
             knots.map(|(knot, _)| pose.into_space(&knot)).collect()
         };
-        for particle in 0..particles.len() {
-            let (x, half) = (&particles.x[particle], &particles.half_length[particle]);
-            let margin = 2.0 * half.iter().sum::<f64>();
-            let own = pose.into_body(x);
-            if (0..D).any(|a| own[a] < lower[a] - margin || own[a] > upper[a] + margin) {
-                continue;
-            }
-            for side in 0..surface.side_count() {
-                let Some(face) = Face::of(body, side, x, half) else {
-                    continue;
-                };
-                let law = particles.law[particle];
-                let soil = Soil {
-                    face: &face,
-                    young: particles.young(particle, &self.conditions.laws),
-                    adhesion: body.interfaces[side].adhesion(law, particles.ratios[particle]),
-                };
-                match surface.space() {
-                    Some(space) => self.add_pieces(&soil, half, space, &places),
-                    None => self.add_points(&soil, &places),
+        let faces = self.faces();
+        self.thin = thin(&faces, surface.side_count());
+        for (particle, face) in &faces {
+            let law = particles.law[*particle];
+            let ratios = particles.ratios[*particle];
+            let soil = Soil {
+                face,
+                young: particles.young(*particle, &self.conditions.laws),
+                adhesion: body.interfaces[face.side].adhesion(law, ratios),
+            };
+            match surface.space() {
+                Some(space) => {
+                    self.add_pieces(&soil, &particles.half_length[*particle], space, &places);
                 }
+                None => self.add_points(&soil, &places),
             }
         }
         self.knots
+    }
+
+    /// The faces that particles turn to sides of the body, by particle.
+    fn faces(&self) -> Vec<(usize, Face<D>)> {
+        let (body, particles) = (self.body, self.particles);
+        let (lower, upper) = body.surface.bounds();
+        let mut faces = Vec::new();
+        for particle in 0..particles.len() {
+            let (x, half) = (&particles.x[particle], &particles.half_length[particle]);
+            let margin = 2.0 * half.iter().sum::<f64>();
+            let own = body.pose.into_body(x);
+            if (0..D).any(|a| own[a] < lower[a] - margin || own[a] > upper[a] + margin) {
+                continue;
+            }
+            let sides = 0..body.surface.side_count();
+            let own = sides.filter_map(|side| Face::of(body, side, x, half));
+            faces.extend(own.map(|face| (particle, face)));
+        }
+        faces
+    }
+
+    /// Whether a point of a face sees its side.
+    fn sees(&self, face: &Face<D>, x: &[f64; D]) -> bool {
+        let mut thin = self.thin[face.side].iter();
+        !thin.any(|other| other.hides(face, x))
     }
 
     /// Adds a face of the plane point by point.
     fn add_points(&mut self, soil: &Soil<'_, D>, places: &[[f64; D]]) {
         let grid = &self.conditions.grid;
         for point in soil.face.points(self.body, places, grid) {
+            if !self.sees(soil.face, &point.x) {
+                continue;
+            }
             let Some(mut own) = soil_at(grid, self.stencils, self.unknowns, &point.x) else {
                 continue;
             };
@@ -165,6 +189,9 @@ impl<'a, const D: usize> Gathering<'a, D> {
         };
         let mut sums: Vec<(f64, SoilPoint<D>)> = (0..3).map(|_| (0.0, none())).collect();
         for (x, area, shares) in &piece.points {
+            if !self.sees(face, x) {
+                continue;
+            }
             let Some(own) = soil_at(grid, self.stencils, self.unknowns, x) else {
                 continue;
             };
@@ -233,6 +260,21 @@ impl<'a, const D: usize> Gathering<'a, D> {
             add(slip, weight, tangent, shares, of_body(tangent));
         }
     }
+}
+
+/// By side the faces whose particles end before the face of another begins.
+fn thin<const D: usize>(faces: &[(usize, Face<D>)], sides: usize) -> Vec<Vec<Face<D>>> {
+    let mut furthest = vec![0.0_f64; sides];
+    for (_, face) in faces {
+        furthest[face.side] = furthest[face.side].max(face.gap);
+    }
+    let mut thin = vec![Vec::new(); sides];
+    for (_, face) in faces {
+        if face.may_hide(furthest[face.side]) {
+            thin[face.side].push(face.clone());
+        }
+    }
+    thin
 }
 
 /// The radius of a body that may roll in a step \[length\]: it is round, and the step takes time. Other points of its surface
