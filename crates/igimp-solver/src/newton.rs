@@ -219,13 +219,11 @@ fn equilibrium<const D: usize>(
     history: &mut ResidualHistory,
 ) -> Result<(StepReport, NodalForces<D>), StepFailure> {
     let &Attempt {
-        method,
-        conditions,
-        settings,
-        ..
+        method, settings, ..
     } = attempt;
-    let grid = &conditions.grid;
     let clock = Instant::now();
+    let conditions = &*attempt.conditions.clear_of(&body.rigid)?;
+    let grid = &conditions.grid;
     let stencils = Stencils::build_under(&body.particles, method, conditions, &body.load_points)?;
     let structures = body.structures();
     let system =

@@ -12,6 +12,7 @@ mod inertia;
 mod interface;
 mod mortar_integrals;
 mod pose;
+mod rollers;
 mod row;
 mod state;
 

@@ -40,7 +40,7 @@ pub(super) fn warn(
             "soil on both sides of it shares nodes of the grid there, and sticks together through it: eight cells deep a wedge of 30° \
              carries 70 to 90 % too much, one of 60° 10 to 15 %",
         )
-        .help("smaller cells there, or a blunter body");
+        .help("half of it on a plane of symmetry, smaller cells there, or a blunter body");
 }
 
 /// The angle within a polygon at a corner \[rad\].

@@ -274,7 +274,7 @@ fn above_a_line(
             ),
         )
         .help(
-            "on the given geometry it may carry a fifth too much there, or next to nothing: so thin a slice of soil moves with the cell below",
+            "on the given geometry it carries up to a fifth too much there: so thin a slice of soil moves with the cell below",
         )
         .help("write fit = \"layers\" in [grid], or let a line lie there");
 }
