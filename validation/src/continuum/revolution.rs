@@ -1,4 +1,5 @@
-//! Bodies of revolution: a thick cylinder and a thick sphere that are opened, a cylinder in compression, and circular footings.
+//! Bodies of revolution: a thick cylinder and a thick sphere that are opened, a cylinder in compression, the factor of safety of
+//! one under pressure, and circular footings.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
@@ -26,7 +27,7 @@ use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::Computed;
 
 /// What the book says of the study.
-const ABOUT: &str = "Bodies of revolution (theory, eqs. 130 to 130e). A thick cylinder and a thick sphere of nearly incompressible clay are opened to one and a half times their bores; without B-bar the sphere locks. A cylinder of soil with friction is pressed together under cell pressure. A circular footing on Tresca soil, rough and smooth, has its edge at five places within a cell; on the coarsest cells alone below `--full`.";
+const ABOUT: &str = "Bodies of revolution (theory, eqs. 130 to 130e). A thick cylinder and a thick sphere of nearly incompressible clay are opened to one and a half times their bores; without B-bar the sphere locks. A cylinder of soil with friction is pressed together under cell pressure. The factor of safety of a thick cylinder under pressure from within is searched for, of clay and of soil with friction and three angles of dilation. A circular footing on Tresca soil, rough and smooth, has its edge at five places within a cell; on the coarsest cells alone below `--full`, where circles stand on clay that grows stronger with depth too.";
 const CYLINDER: Oracle = Oracle {
     kind: OracleKind::Exact,
     source: "expanding incompressible thick cylinder, Hencky elasticity",
@@ -48,6 +49,17 @@ const CIRCLE: Oracle = Oracle {
     locator: "slip lines around a circle: N = 5.690 and 6.048",
 };
 
+const GROWTH: Oracle = Oracle {
+    kind: OracleKind::LimitAnalysis,
+    source: "kinematic limit analysis of a circle, six-node triangles",
+    locator: "q/c₀ from above, less the 0.6 % by which it is above the exact values without growth",
+};
+const COLLAPSE: Oracle = Oracle {
+    kind: OracleKind::Exact,
+    source: "thick cylinder at collapse, Tresca and Mohr–Coulomb",
+    locator: "p = 2 c ln(b/a); p = c cot φ [(b/a)^(1 − 1/N) − 1], N = (1 + sin φ)/(1 − sin φ); both with c/F and tan φ/F",
+};
+
 /// Young's modulus over strength of the thick bodies is 300, and they are nearly incompressible.
 const SHEAR: f64 = 100.0;
 const POISSON: f64 = 0.4999;
@@ -59,6 +71,8 @@ const OPENED: f64 = 1.5;
 const WALL: f64 = 0.25;
 /// Corners of the polygon along a quarter of a circle.
 const ARC: usize = 200;
+/// Growth of strength over a diameter, over that at the surface, with q/c₀ of rough and of smooth circles \[-\].
+const GROWING: [(f64, [f64; 2]); 2] = [(2.0, [7.634, 6.724]), (6.0, [9.777, 8.271])];
 /// Cells over the radius of footings: the edge at 0, ¼, ½, ¾ and 0.9 of a cell.
 const EDGES: [f64; 5] = [9.0, 9.25, 9.5, 9.75, 9.9];
 
@@ -356,20 +370,124 @@ y = { of = \"rigid.platen.resistance\", divide_by = [3.141592653589793, \"100 kP
     Ok(())
 }
 
-/// The case file of a footing of radius 1 m on clay with E/c_u = 1000, on so many cells over the radius.
-fn footing(cells: f64, interface: &str) -> String {
-    let [wide, deep] = [3.5, 2.75].map(|size: f64| (size * cells).ceil());
-    let top = deep + (0.5 * cells).ceil();
-    let at = |count: f64| format!("\"{count}/{cells} m\"");
-    let (x, y, zero) = (at(wide), at(deep), "\"0 m\"");
-    file(
-        &format!(
-            "cell = \"1/{cells} m\"\ndomain = {{ x = [{zero}, {x}], y = [{zero}, {}] }}",
-            at(top)
-        ),
-        "model = \"tresca\"\nunit_weight = \"0 kN/m3\"\nyoung = \"50 MPa\"\npoisson = 0.49\ncu = \"50 kPa\"",
-        &format!(
+/// The pressure within a thick cylinder that soil with cohesion and friction \[rad\] carries, over the cohesion \[-\].
+fn carried(friction: f64) -> f64 {
+    let ratio = RADII[1] / RADII[0];
+    if friction == 0.0 {
+        return 2.0 * ratio.ln();
+    }
+    let passive = (1.0 + friction.sin()) / (1.0 - friction.sin());
+    (ratio.powf(1.0 - 1.0 / passive) - 1.0) / friction.tan()
+}
+
+/// The factor by which the strength of that soil exceeds what half of its cohesion as pressure asks for, by bisection.
+fn exact_factor(friction: f64) -> f64 {
+    let (mut lower, mut upper) = (1.0, 10.0);
+    for _ in 0..60 {
+        let factor: f64 = 0.5 * (lower + upper);
+        if carried((friction.tan() / factor).atan()) / factor > 0.5 {
+            lower = factor;
+        } else {
+            upper = factor;
+        }
+    }
+    lower
+}
+
+/// Searches for the factor of safety of a thick cylinder under pressure from within.
+fn safety(study: &mut Study) -> Result<(), CaseError> {
+    let clay = "model = \"tresca\"\npoisson = 0.49\ncu = \"50 kPa\"";
+    let sand =
+        "model = \"mohr-coulomb\"\npoisson = 0.3\ncohesion = \"50 kPa\"\nfriction = \"30 deg\"";
+    let soils = [
+        ("clay", clay.to_owned(), 0.0),
+        ("ψ = φ", format!("{sand}\ndilation = \"30 deg\""), 30.0_f64),
+        ("ψ = φ/2", format!("{sand}\ndilation = \"15 deg\""), 30.0),
+        ("ψ = 0", format!("{sand}\ndilation = \"0 deg\""), 30.0),
+    ];
+    for (name, law, friction) in soils {
+        let text = file(
+            "cell = \"1/8 m\"\ndomain = { x = [\"0 m\", \"18/8 m\"], y = [\"0 m\", \"1/8 m\"] }",
+            &format!("{law}\nunit_weight = \"0 kN/m3\"\nyoung = \"50 MPa\""),
             "[[bodies]]
+name = \"cylinder\"
+material = \"soil\"
+points_per_cell = 9
+polygon = [[\"1 m\", \"0 m\"], [\"2 m\", \"0 m\"], [\"2 m\", \"1/8 m\"], [\"1 m\", \"1/8 m\"]]
+[boundaries]
+bottom = \"roller\"
+top = \"roller\"
+[[loads]]
+name = \"bore\"
+type = \"pressure\"
+from = [\"1 m\", \"0 m\"]
+to = [\"1 m\", \"1/8 m\"]
+pressure = \"25 kPa\"
+[[stages]]
+name = \"pressure\"
+type = \"load\"
+loads = [\"bore\"]
+factor = 1
+steps = 4
+geometry = \"given\"
+[[stages]]
+name = \"safety\"
+type = \"strength-reduction\"
+",
+        );
+        let computed = Computed::<2>::new(CaseFile::parse("safety", &text, &[])?.into_case())?;
+        let bracket = computed
+            .safety()
+            .and_then(|own| Some([own.stable?, own.failed?]));
+        let found = bracket.map_or(f64::NAN, |[stable, failed]| 0.5 * (stable + failed));
+        let variant = format!("factor of safety of a thick cylinder, {name}");
+        let run = study.run_to_end(RunRecord::new(variant, &computed.report, computed.elapsed));
+        let exact = COLLAPSE.says(exact_factor(friction.to_radians()));
+        study.check(run, "F [-]", exact, Band::Relative(0.01), found);
+    }
+    Ok(())
+}
+
+/// A circular footing of radius 1 m on clay with E/c_u = 1000 at the surface.
+struct Footing {
+    /// Cells over its radius.
+    cells: f64,
+    interface: &'static str,
+    /// Growth of strength over a diameter, over that at the surface \[-\].
+    growth: f64,
+    /// Its resistance over area and strength at the surface \[-\].
+    exact: f64,
+}
+
+impl Footing {
+    /// Its case file.
+    fn file(&self) -> String {
+        let Self {
+            cells,
+            interface,
+            growth,
+            ..
+        } = *self;
+        let [wide, deep] = [3.5, 2.75].map(|size: f64| (size * cells).ceil());
+        let top = deep + (0.5 * cells).ceil();
+        let at = |count: f64| format!("\"{count}/{cells} m\"");
+        let (x, y, zero) = (at(wide), at(deep), "\"0 m\"");
+        let strength = if growth == 0.0 {
+            "\"50 kPa\"".to_owned()
+        } else {
+            let gradient = 25.0 * growth;
+            format!("{{ at_surface = \"50 kPa\", gradient = \"{gradient} kPa/m\" }}")
+        };
+        file(
+            &format!(
+                "cell = \"1/{cells} m\"\ndomain = {{ x = [{zero}, {x}], y = [{zero}, {}] }}",
+                at(top)
+            ),
+            &format!(
+                "model = \"tresca\"\nunit_weight = \"0 kN/m3\"\nyoung = \"50 MPa\"\npoisson = 0.49\ncu = {strength}"
+            ),
+            &format!(
+                "[[bodies]]
 name = \"soil\"
 material = \"soil\"
 points_per_cell = 9
@@ -395,39 +513,61 @@ name = \"resistance\"
 x = {{ of = \"rigid.footing.settlement\", divide_by = [\"2 m\"] }}
 y = {{ of = \"rigid.footing.resistance\", divide_by = [{PI}, \"50 kPa\"] }}
 ",
-            at(top)
-        ),
-    )
+                at(top)
+            ),
+        )
+    }
 }
 
-/// Checks circular footings.
-fn footings(study: &mut Study, level: Level) -> Result<(), CaseError> {
+/// The footings of a level.
+fn footings_of(level: Level) -> Vec<Footing> {
+    let both = |cells: f64, growth: f64, exact: [f64; 2]| {
+        let of = move |(interface, exact)| Footing {
+            cells,
+            interface,
+            growth,
+            exact,
+        };
+        std::iter::zip(["rough", "smooth"], exact).map(of)
+    };
     let edges = if level == Level::Full {
         &EDGES[..]
     } else {
         &EDGES[2..3]
     };
-    let both = edges
+    let even = edges
         .iter()
-        .flat_map(|&cells| [(cells, "rough", 6.048), (cells, "smooth", 5.690)]);
-    let jobs: Vec<_> = both.collect();
-    let computed = (jobs.par_iter())
-        .map(|&(cells, interface, _)| {
-            Computed::new(CaseFile::parse("footing", &footing(cells, interface), &[])?.into_case())
-        })
+        .flat_map(|&cells| both(cells, 0.0, [6.048, 5.690]));
+    let growing = GROWING.iter().filter(|_| level == Level::Full);
+    let growing = growing.flat_map(|&(growth, exact)| both(EDGES[2], growth, exact));
+    even.chain(growing).collect()
+}
+
+/// Checks circular footings.
+fn footings(study: &mut Study, level: Level) -> Result<(), CaseError> {
+    let footings = footings_of(level);
+    let computed = (footings.par_iter())
+        .map(|own| Computed::new(CaseFile::parse("footing", &own.file(), &[])?.into_case()))
         .collect::<Result<Vec<_>, CaseError>>()?;
-    for (&(cells, interface, exact), own) in std::iter::zip(&jobs, &computed) {
-        let variant = format!("{interface} circle, R/h = {cells}");
-        let run = study.run_to_end(RunRecord::new(variant, &own.report, own.elapsed));
-        let curve = own.curve("resistance").points(0, 1);
+    for (own, computed) in std::iter::zip(&footings, &computed) {
+        let Footing {
+            cells,
+            interface,
+            growth,
+            exact,
+        } = *own;
+        let (ground, oracle) = if growth == 0.0 {
+            (String::new(), CIRCLE)
+        } else {
+            (format!(", kD/c₀ = {growth}"), GROWTH)
+        };
+        let variant = format!("{interface} circle, R/h = {cells}{ground}");
+        let run = RunRecord::new(variant, &computed.report, computed.elapsed);
+        let run = study.run_to_end(run);
+        let curve = computed.curve("resistance").points(0, 1);
         let found = curve.last().map_or(f64::NAN, |[_, n]| *n);
-        study.check(
-            run,
-            "N [-]",
-            CIRCLE.says(exact),
-            Band::Relative(0.04),
-            found,
-        );
+        let band = Band::Relative(0.04);
+        study.check(run, "N [-]", oracle.says(exact), band, found);
     }
     Ok(())
 }
@@ -446,6 +586,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     }
     thick(&mut study, Thick::Sphere, 8, Method::igimp())?;
     triaxial(&mut study)?;
+    safety(&mut study)?;
     footings(&mut study, level)?;
     Ok(study)
 }

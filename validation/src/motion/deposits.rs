@@ -6,7 +6,7 @@ use igimp_input::CaseFile;
 use igimp_model::check::Band;
 
 use crate::harness::oracle::{Oracle, OracleKind};
-use crate::harness::study::{RunRecord, Study};
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, shipped_case};
 
 const PARABOLA: Oracle = Oracle {
@@ -18,6 +18,11 @@ const COLUMNS: Oracle = Oracle {
     kind: OracleKind::Published,
     source: "Lube et al. 2005; Lajeunesse et al. 2005; arXiv 1512.05180",
     locator: "run-out over half width: 1.2 a, a, 3.25 a^0.96 for short columns, 1.9 a^⅔, a^⅔, 3.80 a^0.73 for tall ones; the band is their range",
+};
+const BEADS: Oracle = Oracle {
+    kind: OracleKind::Published,
+    source: "Kumar 2015 (thesis, Cambridge), chapter 4: explicit GIMP and grains",
+    locator: "run-out over the width 1.67 a, for grains and by the material point method below a = 1.7",
 };
 const EXPONENT: Oracle = Oracle {
     kind: OracleKind::Published,
@@ -67,20 +72,30 @@ materials = ["clay"]
 steps = 400
 "#;
 
-/// Where the domains of all but a share of the particles end along the first axis \[m\].
-fn front(particles: &Particles<2>, beyond: f64) -> f64 {
-    let mut ends: Vec<f64> = std::iter::zip(&particles.x, &particles.half_length)
-        .map(|(x, half)| x[0] + half[0])
+/// Where the domains of all but a share of the mass end along the first axis \[m\].
+pub(super) fn front(particles: &Particles<2>, beyond: f64) -> f64 {
+    let mut ends: Vec<[f64; 2]> = std::iter::zip(&particles.x, &particles.half_length)
+        .zip(&particles.mass)
+        .map(|((x, half), mass)| [x[0] + half[0], *mass])
         .collect();
-    ends.sort_by(f64::total_cmp);
-    let last = ((1.0 - beyond) * ends.len() as f64).floor() as usize;
-    ends[last.clamp(1, ends.len()) - 1]
+    ends.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let within = (1.0 - beyond) * ends.iter().map(|[_, mass]| mass).sum::<f64>();
+    let mut reached = 0.0;
+    let held = ends.iter().take_while(|[_, mass]| {
+        reached += mass;
+        reached <= within * (1.0 + 1e-9)
+    });
+    held.last().map_or(f64::NAN, |[end, _]| *end)
 }
 
 /// Holds the slump and the columns.
-pub(super) fn hold(study: &mut Study) -> Result<(), CaseError> {
+pub(super) fn hold(study: &mut Study, level: Level) -> Result<(), CaseError> {
     slump(study)?;
-    columns(study)
+    columns(study)?;
+    if level >= Level::Default {
+        beads(study)?;
+    }
+    Ok(())
 }
 
 fn slump(study: &mut Study) -> Result<(), CaseError> {
@@ -110,28 +125,51 @@ fn slump(study: &mut Study) -> Result<(), CaseError> {
     Ok(())
 }
 
+/// The shipped column, so many times as high as half of it is wide, on cells of 2 cm or of others.
+fn column(ratio: f64, cell: &str, duration: &str) -> Vec<String> {
+    let height = 10.0 * ratio;
+    let wide = (20.0 + 32.0 * ratio).ceil();
+    let top = height.ceil() + 4.0;
+    vec![
+        format!("grid.cell = {cell}"),
+        format!("grid.domain = {{ x = [\"0 m\", \"{wide} cm\"], y = [\"-2 cm\", \"{top} cm\"] }}"),
+        format!(
+            "bodies.column.polygon = [[\"0 cm\", \"0 cm\"], [\"10 cm\", \"0 cm\"], [\"10 cm\", \"{height} cm\"], [\"0 cm\", \"{height} cm\"]]"
+        ),
+        format!("boundaries.boxes.0.to = [\"{wide} cm\", \"0 cm\"]"),
+        format!("monitors.corner.point = [\"10 cm\", \"{height} cm\"]"),
+        format!("stages.0.duration = {duration}"),
+    ]
+}
+
+/// Columns of glass beads as another program of the method computed them, with its parameters.
+fn beads(study: &mut Study) -> Result<(), CaseError> {
+    for ratio in [0.4, 0.8, 1.5] {
+        let mut changes = column(ratio, "1 cm", "1 s");
+        let soil = [
+            ("unit_weight", "17.66 kN/m3"),
+            ("young", "1.98 MPa"),
+            ("poisson", "0.23"),
+            ("friction", "23.2 deg"),
+        ];
+        changes.extend(soil.map(|(key, value)| format!("materials.sand.{key} = {value}")));
+        let computed = Computed::<2>::new(shipped_case("column_collapse", changes)?)?;
+        let variant = format!("column of glass beads, a = {ratio}");
+        let run = RunRecord::new(variant, &computed.report, computed.elapsed);
+        let run = study.run_to_end(run);
+        let run_out = (front(computed.particles(), 0.01) - 0.1) / 0.1;
+        let quantity = "run-out over the width [-]";
+        let band = Band::Relative(0.2);
+        study.check(run, quantity, BEADS.says(1.67 * ratio), band, run_out);
+    }
+    Ok(())
+}
+
 fn columns(study: &mut Study) -> Result<(), CaseError> {
     let mut found = Vec::new();
     let mut last = 0;
     for aspect in [1_usize, 2, 3] {
-        let height = 10 * aspect;
-        let changes = vec![
-            "grid.cell = 2 cm".to_owned(),
-            format!(
-                "grid.domain = {{ x = [\"0 m\", \"{} cm\"], y = [\"-2 cm\", \"{} cm\"] }}",
-                20 + 32 * aspect,
-                height + 4
-            ),
-            format!(
-                "bodies.column.polygon = [[\"0 cm\", \"0 cm\"], [\"10 cm\", \"0 cm\"], [\"10 cm\", \"{height} cm\"], [\"0 cm\", \"{height} cm\"]]"
-            ),
-            format!(
-                "boundaries.boxes.0.to = [\"{} cm\", \"0 cm\"]",
-                20 + 32 * aspect
-            ),
-            format!("monitors.corner.point = [\"10 cm\", \"{height} cm\"]"),
-            "stages.0.duration = 1.2 s".to_owned(),
-        ];
+        let changes = column(aspect as f64, "2 cm", "1.2 s");
         let computed = Computed::<2>::new(shipped_case("column_collapse", changes)?)?;
         let variant = format!("column of sand, a = {aspect}, cells of 2 cm");
         let run = RunRecord::new(variant, &computed.report, computed.elapsed);

@@ -5,6 +5,7 @@ mod bar;
 mod deposits;
 mod disc;
 mod layers;
+mod revolution;
 mod rolling;
 
 use std::path::Path;
@@ -20,7 +21,7 @@ use crate::continuum::laboratory::run;
 use crate::harness::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
-const ABOUT: &str = "Motion in time by the schemes of the program: the first mode of a bar step by step, a disc that turns once, a block that slides and bodies that roll down an incline, waves in layers over rock that is shaken, and what clay and sand leave when they have spread and rest.";
+const ABOUT: &str = "Motion in time by the schemes of the program: the first mode of a bar step by step, a disc that turns once, a block that slides and bodies that roll down an incline, waves in layers over rock that is shaken, and what clay and sand leave when they have spread and rest, columns of revolution among them, and a cylinder that breathes.";
 /// Young's modulus and Poisson's ratio of bodies of unit density.
 const YOUNG: f64 = 100.0;
 const POISSON: f64 = 0.3;
@@ -118,6 +119,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     disc::hold(&mut study, level)?;
     layers::hold(&mut study)?;
     rolling::hold(&mut study, level)?;
-    deposits::hold(&mut study)?;
+    deposits::hold(&mut study, level)?;
+    revolution::hold(&mut study, level)?;
     Ok(study)
 }
