@@ -23,7 +23,7 @@ pub struct RigidPart<const D: usize> {
     pub stiffness: f64,
     /// Radius of its corners as a share of the cell \[-\]; a rounding carries nothing.
     pub rounding: f64,
-    /// Own weight of the whole body, which acts at the reference point with gravity \[N/m\], in space \[N\].
+    /// Own weight of the whole body, which acts at the reference point with gravity \[N/m\], of whole bodies \[N\].
     pub weight: f64,
     /// The whole body over the part that is modelled, 2 for half a body \[-\]: forces that stages state
     /// and that are reported are those of the whole body.
@@ -336,9 +336,9 @@ pub enum RigidQuantity {
     Settlement,
     /// Rotation about an axis \[rad\].
     Rotation(usize),
-    /// Force on the body from outside along an axis \[N/m\], in space \[N\].
+    /// Force on the body from outside along an axis \[N/m\], of whole bodies \[N\].
     Force(usize),
-    /// Downwards \[N/m\], in space \[N\].
+    /// Downwards \[N/m\], of whole bodies \[N\].
     Resistance,
     /// Moment on the body from outside about the reference point, about an axis \[N\], in space \[N m\].
     Moment(usize),

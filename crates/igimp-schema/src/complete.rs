@@ -9,9 +9,9 @@ use toml::de::DeValue;
 
 use super::diagnostic::Problems;
 use super::names::check_name;
-use super::schema::{MATERIALS_ALONE, MOST_THINGS, ROOT, SPACE, SYMBOLS};
+use super::schema::{MATERIALS_ALONE, MOST_THINGS, ROOT, SPACE, SYMBOLS, bodies_of};
 use super::source::{Place, Source};
-use super::spec::{Field, Kind, Presence, Struct, Variants};
+use super::spec::{Bodies, Field, Kind, Presence, Struct, Variants};
 use super::text::{clip, row};
 use super::tree::{Entry, Node, Value, from_value};
 use crate::names::suggest::nearest;
@@ -19,11 +19,10 @@ use value::check_value;
 
 /// The completed tree of a case file.
 pub fn complete(tree: &Node, sources: &[Source], problems: &mut Problems) -> Node {
-    let analysis = tree.get("case").and_then(|case| case.text_at("analysis"));
     let mut completer = Completer {
         sources,
         problems,
-        in_space: analysis == Some(SPACE),
+        bodies: bodies_of(tree),
     };
     completer.table(tree, &ROOT, None)
 }
@@ -33,7 +32,7 @@ pub fn complete_materials(tree: &Node, sources: &[Source], problems: &mut Proble
     let mut completer = Completer {
         sources,
         problems,
-        in_space: false,
+        bodies: Bodies::Plane,
     };
     completer.table(tree, &MATERIALS_ALONE, None)
 }
@@ -42,13 +41,13 @@ pub fn complete_materials(tree: &Node, sources: &[Source], problems: &mut Proble
 pub(crate) struct Completer<'a> {
     pub(crate) sources: &'a [Source],
     pub(crate) problems: &'a mut Problems,
-    /// Whether the analysis is one in space.
-    in_space: bool,
+    /// The bodies of the analysis.
+    bodies: Bodies,
 }
 
 /// That a key is one of the other analysis.
-fn of_other(in_space: bool, key: &str) -> String {
-    if in_space {
+fn of_other(bodies: Bodies, key: &str) -> String {
+    if bodies == Bodies::Space {
         format!("`{key}` is a key of analysis = \"plane-strain\"")
     } else {
         format!("`{key}` is a key of analysis = \"{SPACE}\"")
@@ -73,7 +72,7 @@ impl Completer<'_> {
             (Kind::Variants(of), Value::Table(_)) => self.variants(node, of, key),
             (Kind::Map(of, kind), Value::Table(_)) => self.map(node, of, kind),
             (Kind::Vector(of), Value::List(items)) => {
-                let axes = if self.in_space { 3 } else { 2 };
+                let axes = if self.bodies == Bodies::Space { 3 } else { 2 };
                 if items.len() != axes {
                     self.wrong_length(node, (axes, axes), items.len(), key);
                     return Node::invalid(node.place);
@@ -138,15 +137,15 @@ impl Completer<'_> {
 
     fn table(&mut self, node: &Node, of: &'static Struct, name: Option<&str>) -> Node {
         let mut entries = Vec::with_capacity(of.fields.len());
-        let in_space = self.in_space;
-        let applies = |field: &&Field| field.applies(in_space);
+        let bodies = self.bodies;
+        let applies = |field: &&Field| field.applies(bodies);
         let fields: Vec<_> = of.fields.iter().filter(applies).collect();
         let known: Vec<_> = fields.iter().map(|field| field.key).collect();
         let elsewhere = |key: &str| {
             of.fields
                 .iter()
                 .any(|field| field.key == key)
-                .then(|| of_other(in_space, key))
+                .then(|| of_other(bodies, key))
         };
         let meant = self.unknown_keys(node, &known, name, &elsewhere);
         self.fields(node, &fields, &meant, name.is_none(), &mut entries);
@@ -157,8 +156,8 @@ impl Completer<'_> {
     }
 
     fn variants(&mut self, node: &Node, of: &'static Variants, name: &str) -> Node {
-        let in_space = self.in_space;
-        let applies = |field: &&'static Field| field.applies(in_space);
+        let bodies = self.bodies;
+        let applies = |field: &&'static Field| field.applies(bodies);
         let before: Vec<_> = of.before.iter().filter(applies).collect();
         let mut entries = Vec::new();
         let names = || of.cases.iter().map(|case| case.name);
@@ -200,7 +199,7 @@ impl Completer<'_> {
         let elsewhere = |key: &str| {
             let known = |case| of.fields(case).any(|field| field.key == key);
             if found.is_some_and(known) {
-                return Some(of_other(in_space, key));
+                return Some(of_other(bodies, key));
             }
             let case =
                 (of.cases.iter()).find(|case| case.fields.iter().any(|field| field.key == key))?;

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::schema::{ROOT, SPACE};
-use super::spec::{Field, Kind, Presence, Struct, Variants};
+use super::schema::{ROOT, bodies_of};
+use super::spec::{Bodies, Field, Kind, Presence, Struct, Variants};
 use super::tree::Node;
 use crate::syntax::toml_text::{inline, key};
 
@@ -15,9 +15,7 @@ const WIDTH: usize = 80;
 /// The file with every default; it states the same case.
 pub fn explain(completed: &Node) -> String {
     let mut out = String::new();
-    let analysis = completed.get("case");
-    let analysis = analysis.and_then(|case| case.text_at("analysis"));
-    let in_space = analysis == Some(SPACE);
+    let bodies = bodies_of(completed);
     for field in ROOT.fields {
         let Some(node) = completed.get(field.key) else {
             continue;
@@ -25,7 +23,7 @@ pub fn explain(completed: &Node) -> String {
         match field.kind {
             Kind::Table(of) => {
                 let _ = writeln!(out, "\n# {}\n[{}]", of.doc, field.key);
-                table(&mut out, node, of, in_space);
+                table(&mut out, node, of, bodies);
             }
             Kind::Map(_, of) => {
                 for entry in node.entries() {
@@ -36,19 +34,19 @@ pub fn explain(completed: &Node) -> String {
                         doc_of(&entry.node, of),
                         field.key
                     );
-                    variants(&mut out, &entry.node, of, in_space);
+                    variants(&mut out, &entry.node, of, bodies);
                 }
             }
             Kind::List(Kind::Table(of), ..) => {
                 for item in node.items() {
                     let _ = writeln!(out, "\n# {}\n[[{}]]", of.doc, field.key);
-                    table(&mut out, item, of, in_space);
+                    table(&mut out, item, of, bodies);
                 }
             }
             Kind::List(Kind::Variants(of), ..) => {
                 for item in node.items() {
                     let _ = writeln!(out, "\n# {}\n[[{}]]", doc_of(item, of), field.key);
-                    variants(&mut out, item, of, in_space);
+                    variants(&mut out, item, of, bodies);
                 }
             }
             _ => line(&mut out, field, Some(node)),
@@ -66,14 +64,14 @@ fn doc_of(node: &Node, of: &Variants) -> &'static str {
     case.map_or(of.doc, |case| case.doc)
 }
 
-fn table(out: &mut String, node: &Node, of: &Struct, in_space: bool) {
-    for field in of.fields.iter().filter(|field| field.applies(in_space)) {
+fn table(out: &mut String, node: &Node, of: &Struct, bodies: Bodies) {
+    for field in of.fields.iter().filter(|field| field.applies(bodies)) {
         line(out, field, node.get(field.key));
     }
 }
 
-fn variants(out: &mut String, node: &Node, of: &'static Variants, in_space: bool) {
-    let applies = |field: &&Field| field.applies(in_space);
+fn variants(out: &mut String, node: &Node, of: &'static Variants, bodies: Bodies) {
+    let applies = |field: &&Field| field.applies(bodies);
     for field in of.before.iter().filter(applies) {
         line(out, field, node.get(field.key));
     }

@@ -177,6 +177,8 @@ fn rows(out: &mut String, fields: &mut dyn Iterator<Item = &'static Field>, long
             Scope::Any => field.doc.to_owned(),
             Scope::Plane => format!("in plane strain: {}", field.doc),
             Scope::Space => format!("in space: {}", field.doc),
+            Scope::PerMetre => format!("per metre run: {}", field.doc),
+            Scope::Whole => format!("of revolution and in space: {}", field.doc),
         };
         if let Kind::Choice(choices) = field.kind
             && choices.len() <= LONG

@@ -33,19 +33,36 @@ pub struct Field {
 pub enum Scope {
     /// All.
     Any,
-    /// Plane strain.
+    /// Those of a section: plane strain and bodies of revolution.
     Plane,
     /// Space.
+    Space,
+    /// Plane strain, whose forces are per metre run.
+    PerMetre,
+    /// Bodies of revolution and space, whose forces are those of whole bodies.
+    Whole,
+}
+
+/// The bodies that an analysis has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bodies {
+    /// Those of plane strain.
+    Plane,
+    /// Those of revolution.
+    Revolution,
+    /// Those in space.
     Space,
 }
 
 impl Field {
-    /// Whether an analysis in space, or else one in plane strain, knows the key.
-    pub fn applies(&self, in_space: bool) -> bool {
+    /// Whether an analysis of such bodies knows the key.
+    pub fn applies(&self, bodies: Bodies) -> bool {
         match self.scope {
             Scope::Any => true,
-            Scope::Plane => !in_space,
-            Scope::Space => in_space,
+            Scope::Plane => bodies != Bodies::Space,
+            Scope::Space => bodies == Bodies::Space,
+            Scope::PerMetre => bodies == Bodies::Plane,
+            Scope::Whole => bodies != Bodies::Plane,
         }
     }
 }
@@ -295,10 +312,26 @@ pub(crate) const fn optional(
     }
 }
 
-/// A key that only plane strain knows.
+/// A key that space does not know.
 pub(crate) const fn in_plane(field: Field) -> Field {
     Field {
         scope: Scope::Plane,
+        ..field
+    }
+}
+
+/// A key of plane strain, where forces are per metre run.
+pub(crate) const fn per_metre(field: Field) -> Field {
+    Field {
+        scope: Scope::PerMetre,
+        ..field
+    }
+}
+
+/// A key where forces are those of whole bodies.
+pub(crate) const fn whole(field: Field) -> Field {
+    Field {
+        scope: Scope::Whole,
         ..field
     }
 }

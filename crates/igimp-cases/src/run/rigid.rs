@@ -64,7 +64,7 @@ fn interface<const D: usize>(case: &Case<D>, of: &RigidInterface, laws: usize) -
     }
 }
 
-/// Own weight, with what pseudo-static acceleration adds to it, by component \[N/m\], in space \[N\].
+/// Own weight, with what pseudo-static acceleration adds to it, by component \[N/m\], of whole bodies \[N\].
 fn weight<const D: usize>(part: &RigidPart<D>, controls: &Controls) -> [f64; COMPONENTS] {
     let mut weight = [0.0; COMPONENTS];
     for (own, share) in std::iter::zip(&mut weight, controls.body_force::<D>()) {

@@ -30,6 +30,36 @@ fn circular_footing_is_that_of_slip_lines() {
     assert!(size.is_whole() && (size.volume / volume - 1.0).abs() < 1e-12);
 }
 
+/// GOAL: a force and a weight on a rigid body of revolution are those of the whole body.
+/// ORACLE: the settlement at which the body, displaced, has that resistance; a body that is laid on soil overlaps it by a thousandth of
+/// a cell at first.
+#[test]
+fn a_circle_under_load_settles_as_far_as_one_that_is_displaced() {
+    let curve = "curves=[{ name = \"w\", x = { of = \"rigid.footing.settlement\" }, y = { of = \"rigid.footing.resistance\" } }]";
+    let cell = 0.21;
+    let end = |overrides: &[&str]| {
+        let common = ["grid.cell=0.21 m", "output.figures=[]", curve];
+        let ran = ran("circular_footing", &[&common, overrides].concat());
+        assert!(ran.run.failure.is_none());
+        *ran.curve("w").last().unwrap()
+    };
+    let push = |motion: &str| format!("stages.0.bodies=[{{ body = \"footing\", {motion} }}]");
+    let [settlement, resistance] = end(&["stages.0.steps=4", &push("y = \"-3 mm\"")]);
+    assert!(resistance > 0.3 * 6.048 * 50e3 * std::f64::consts::PI);
+    let force = push(&format!("force_y = \"-{resistance} N\""));
+    let weight = format!("rigid.footing.weight={resistance} N");
+    let pulled = [
+        weight.as_str(),
+        "case.gravity=9.81 m/s2",
+        "materials.clay.unit_weight=0 kN/m3",
+        "stages=[{ name = \"weight\", type = \"gravity\", geometry = \"given\", steps = 4 }, { name = \"free\", type = \"rigid\", geometry = \"given\", bodies = [{ body = \"footing\", free = [\"y\"] }], steps = 4 }]",
+    ];
+    for loaded in [end(&["stages.0.steps=4", &force]), end(&pulled)] {
+        let ratio = (loaded[0] + 1e-3 * cell) / settlement;
+        assert!((ratio - 1.0).abs() < 1e-5, "{ratio}");
+    }
+}
+
 /// GOAL: a footing on clay whose strength goes with direction carries the share of the isotropic load that slip lines give, and with the
 /// logarithm of the rate as much more as the strength grows; the angle of compression is resumed and printed.
 /// ORACLE: N = 1 + s_p/s_a and half the girth of the ellipse of Davis and Christian (1971), by quadrature; 5.142 of one strength. A push

@@ -15,6 +15,8 @@ pub mod solids;
 pub mod stages;
 pub mod water;
 
+use crate::spec::Bodies;
+use crate::tree::Node;
 use bodies::{BODY, Body};
 use declare::{choices, table};
 use grid::{BOUNDARIES, Boundaries, GRID, Grid};
@@ -95,6 +97,16 @@ table! {
 
 /// Name of the analysis in space.
 pub const SPACE: &str = Analysis::Space.name();
+
+/// The bodies of the analysis of a case file.
+pub(crate) fn bodies_of(file: &Node) -> Bodies {
+    let case = file.get("case");
+    match case.and_then(|case| case.text_at("analysis")) {
+        Some(SPACE) => Bodies::Space,
+        Some(AXISYMMETRIC) => Bodies::Revolution,
+        _ => Bodies::Plane,
+    }
+}
 
 /// Name of the analysis of a body of revolution.
 pub const AXISYMMETRIC: &str = Analysis::Axisymmetric.name();

@@ -141,9 +141,9 @@ table! {
         "tension at which a side lets go for good";
     sides: each(table(SIDE: Side), 0, MOST_THINGS), default "[]", "sides that are unlike the others";
     weight: quantity(ForcePerLength, NotNegative), default "\"0 kN/m\"",
-        "own weight of the whole body, at its reference point; acts with gravity", in_plane,
+        "own weight of the whole body, at its reference point; acts with gravity", per_metre,
         quantity(Force, NotNegative), default "\"0 kN\"",
-            "own weight of the whole body, at its middle; acts with gravity", in_space;
+            "own weight of the whole body, at its middle; acts with gravity", whole;
     force_factor: number(Positive), default "1",
         "whole body over the part that is modelled, 2 for half a body: forces are those of the whole";
     from_start: flag, default "false",
@@ -181,15 +181,14 @@ table! {
     rotation_y: quantity(Angle, Any), optional "as before; held at first", "further rotation about y", in_space;
     rotation_z: quantity(Angle, Any), optional "as before; held at first", "further rotation about z", in_space;
     force_x: quantity(ForcePerLength, Any), optional "as before",
-        "force on it in x at the end of the stage", in_plane;
+        "force on it in x at the end of the stage", per_metre,
+        quantity(Force, Any), optional "as before", "force on it in x at the end of the stage", whole;
     force_y: quantity(ForcePerLength, Any), optional "as before",
-        "force on it in y at the end of the stage, negative downwards, beside its weight", in_plane;
+        "force on it in y at the end of the stage, negative downwards, beside its weight", per_metre,
+        quantity(Force, Any), optional "as before",
+            "force on it in y at the end of the stage; of revolution negative downwards, beside its weight", whole;
     moment: quantity(MomentPerLength, Any), optional "as before",
         "moment on it about its reference point at the end of the stage, anticlockwise", in_plane;
-    whole_force_x as "force_x": quantity(Force, Any), optional "as before",
-        "force on it in x at the end of the stage", in_space;
-    whole_force_y as "force_y": quantity(Force, Any), optional "as before",
-        "force on it in y at the end of the stage", in_space;
     force_z: quantity(Force, Any), optional "as before",
         "force on it in z at the end of the stage, negative downwards, beside its weight", in_space;
     moment_x: quantity(Moment, Any), optional "as before",

@@ -15,7 +15,6 @@ const ALONG: f64 = 1e-9;
 const ROUND_OFF: f64 = 1e-9;
 
 /// The face of a particle, parallel to a side of the body.
-#[derive(Clone)]
 pub(crate) struct Face<const D: usize> {
     /// Its middle \[length\].
     pub(crate) middle: [f64; D],
@@ -92,9 +91,9 @@ impl<const D: usize> Face<D> {
         self.gap + 2.0 * self.thickness <= (1.0 + ROUND_OFF) * gap
     }
 
-    /// Whether its particle lies between the side and a point of another face of that side (theory, eq. 45f).
-    pub(crate) fn hides(&self, other: &Self, x: &[f64; D]) -> bool {
-        let arm = minus(x, &self.middle);
+    /// Whether its particle lies between the side and the middle of another face of that side (theory, eq. 45f).
+    pub(crate) fn hides(&self, other: &Self) -> bool {
+        let arm = minus(&other.middle, &self.middle);
         let mut tangents = std::iter::zip(&self.along, self.half).take(D - 1);
         self.may_hide(other.gap) && tangents.all(|(tangent, half)| dot(&arm, tangent).abs() < half)
     }
@@ -238,8 +237,9 @@ mod tests {
             assert_eq!(behind.is_some(), faces, "{share}");
             let Some(behind) = behind else { continue };
             assert!(front.may_hide(behind.gap) && !behind.may_hide(front.gap));
-            let beside = [half + 0.01, behind.middle[1]];
-            assert!(front.hides(&behind, &behind.middle) && !front.hides(&behind, &beside));
+            let beside = [2.0 * half, -2.0 * slice - half];
+            let beside = Face::of(&body, 0, &beside, &[half; 2]).unwrap();
+            assert!(front.hides(&behind) && !front.hides(&beside));
         }
     }
 }

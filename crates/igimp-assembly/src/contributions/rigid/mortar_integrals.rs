@@ -26,12 +26,26 @@ pub(crate) struct Sums<const D: usize> {
     pub(crate) area: f64,
     /// The same over the thickness of the section.
     pub(crate) length: f64,
-    pub(crate) gap: f64,
+    /// Gap times area, of all faces, and of those that see the side with their area.
+    gap: f64,
+    seen_gap: f64,
+    seen_area: f64,
     pub(crate) young: f64,
     pub(crate) adhesion: f64,
     pub(crate) cell: f64,
     pub(crate) opening: BTreeMap<usize, [f64; D]>,
     pub(crate) slip: [BTreeMap<usize, [f64; D]>; 2],
+}
+
+impl<const D: usize> Sums<D> {
+    /// How far the soil around the knot is off: the mean over faces that see the side, over all where none does \[length\].
+    pub(crate) fn mean_gap(&self) -> f64 {
+        if self.seen_area > 0.0 {
+            self.seen_gap / self.seen_area
+        } else {
+            self.gap / self.area
+        }
+    }
 }
 
 /// The sums of a body while they are made.
@@ -45,8 +59,6 @@ pub(crate) struct Gathering<'a, const D: usize> {
     section: Section,
     unknowns: &'a Unknowns<D>,
     knots: BTreeMap<usize, Sums<D>>,
-    /// By side, faces of particles so thin that others face the side through them.
-    thin: Vec<Vec<Face<D>>>,
 }
 
 /// A face with what the soil behind it is like.
@@ -54,6 +66,8 @@ struct Soil<'f, const D: usize> {
     face: &'f Face<D>,
     young: f64,
     adhesion: f64,
+    /// Whether it sees its side.
+    sees: bool,
 }
 
 impl<'a, const D: usize> Gathering<'a, D> {
@@ -74,7 +88,6 @@ impl<'a, const D: usize> Gathering<'a, D> {
             section,
             unknowns,
             knots: BTreeMap::new(),
-            thin: Vec::new(),
         }
     }
 
@@ -89,7 +102,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
             knots.map(|(knot, _)| pose.into_space(&knot)).collect()
         };
         let faces = self.faces();
-        self.thin = thin(&faces, surface.side_count());
+        let thin = thin(&faces, surface.side_count());
         for (particle, face) in &faces {
             let law = particles.law[*particle];
             let ratios = particles.ratios[*particle];
@@ -97,6 +110,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
                 face,
                 young: particles.young(*particle, &self.conditions.laws),
                 adhesion: body.interfaces[face.side].adhesion(law, ratios),
+                sees: !thin[face.side].iter().any(|other| other.hides(face)),
             };
             match surface.space() {
                 Some(space) => {
@@ -127,19 +141,10 @@ impl<'a, const D: usize> Gathering<'a, D> {
         faces
     }
 
-    /// Whether a point of a face sees its side.
-    fn sees(&self, face: &Face<D>, x: &[f64; D]) -> bool {
-        let mut thin = self.thin[face.side].iter();
-        !thin.any(|other| other.hides(face, x))
-    }
-
     /// Adds a face of the plane point by point.
     fn add_points(&mut self, soil: &Soil<'_, D>, places: &[[f64; D]]) {
         let grid = &self.conditions.grid;
         for point in soil.face.points(self.body, places, grid) {
-            if !self.sees(soil.face, &point.x) {
-                continue;
-            }
             let Some(mut own) = soil_at(grid, self.stencils, self.unknowns, &point.x) else {
                 continue;
             };
@@ -189,9 +194,6 @@ impl<'a, const D: usize> Gathering<'a, D> {
         };
         let mut sums: Vec<(f64, SoilPoint<D>)> = (0..3).map(|_| (0.0, none())).collect();
         for (x, area, shares) in &piece.points {
-            if !self.sees(face, x) {
-                continue;
-            }
             let Some(own) = soil_at(grid, self.stencils, self.unknowns, x) else {
                 continue;
             };
@@ -250,6 +252,10 @@ impl<'a, const D: usize> Gathering<'a, D> {
         sums.length += length;
         sums.area += weight;
         sums.gap += weight * gap;
+        if soil.sees {
+            sums.seen_gap += weight * gap;
+            sums.seen_area += weight;
+        }
         sums.young += weight * soil.young;
         sums.adhesion += weight * soil.adhesion;
         sums.cell += weight * cell;
@@ -263,7 +269,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
 }
 
 /// By side the faces whose particles end before the face of another begins.
-fn thin<const D: usize>(faces: &[(usize, Face<D>)], sides: usize) -> Vec<Vec<Face<D>>> {
+fn thin<const D: usize>(faces: &[(usize, Face<D>)], sides: usize) -> Vec<Vec<&Face<D>>> {
     let mut furthest = vec![0.0_f64; sides];
     for (_, face) in faces {
         furthest[face.side] = furthest[face.side].max(face.gap);
@@ -271,7 +277,7 @@ fn thin<const D: usize>(faces: &[(usize, Face<D>)], sides: usize) -> Vec<Vec<Fac
     let mut thin = vec![Vec::new(); sides];
     for (_, face) in faces {
         if face.may_hide(furthest[face.side]) {
-            thin[face.side].push(face.clone());
+            thin[face.side].push(face);
         }
     }
     thin

@@ -69,13 +69,6 @@ fn refuse_parts(tree: &Node, case: &Case<2>, problems: &mut Problems) {
     }
     for (index, part) in case.rigid.iter().enumerate() {
         let place = item(tree, "rigid", index);
-        if part.weight != 0.0 {
-            refuse(
-                place,
-                "the weight of a rigid body is stated per metre run, and a body of revolution has none",
-                "displace the body, and read its resistance",
-            );
-        }
         if part.force_factor.total_cmp(&1.0).is_ne() {
             refuse(place, whole, "remove force_factor");
         }
@@ -149,22 +142,16 @@ fn refuse_stage((kind, flows): (&StageKind, bool), place: Option<Place>, problem
     }
 }
 
-/// Refuses a rigid body that does not go straight up or down, and forces on it.
+/// Refuses a rigid body that does not go straight up or down.
 fn refuse_move(own: &RigidMove, refuse: &mut impl FnMut(&str, &str)) {
     for (component, name) in COMPONENTS {
         match own.drives[component] {
             None | Some(RigidDrive::By(0.0)) => {}
             Some(_) => refuse(
                 &format!("a body of revolution keeps its axis: {name} is held"),
-                "move it along y alone",
+                "move or load it along y alone",
             ),
         }
-    }
-    if let Some(RigidDrive::Force(_)) = own.drives[1] {
-        refuse(
-            "a force on a rigid body is stated per metre run, and a body of revolution has none",
-            "displace the body, and read its resistance",
-        );
     }
 }
 

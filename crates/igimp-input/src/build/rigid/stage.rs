@@ -69,8 +69,8 @@ fn drives<const D: usize>(
         ]
     } else {
         &[
-            (Component::X, &own.x, "force_x", &own.whole_force_x),
-            (Component::Y, &own.y, "force_y", &own.whole_force_y),
+            (Component::X, &own.x, "force_x", &own.force_x),
+            (Component::Y, &own.y, "force_y", &own.force_y),
             (Component::Z, &own.z, "force_z", &own.force_z),
             (
                 Component::RotationX,
