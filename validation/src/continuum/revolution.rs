@@ -71,8 +71,10 @@ const OPENED: f64 = 1.5;
 const WALL: f64 = 0.25;
 /// Corners of the polygon along a quarter of a circle.
 const ARC: usize = 200;
-/// Growth of strength over a diameter, over that at the surface, with q/c₀ of rough and of smooth circles \[-\].
-const GROWING: [(f64, [f64; 2]); 2] = [(2.0, [7.634, 6.724]), (6.0, [9.777, 8.271])];
+/// Growth of strength over a diameter, over that at the surface, with cells over the radius, as mechanisms get shallow, and q/c₀ of rough
+/// and of smooth circles \[-\].
+const GROWING: [(f64, f64, [f64; 2]); 2] =
+    [(2.0, 9.5, [7.634, 6.724]), (6.0, 17.5, [9.777, 8.271])];
 /// Cells over the radius of footings: the edge at 0, ¼, ½, ¾ and 0.9 of a cell.
 const EDGES: [f64; 5] = [9.0, 9.25, 9.5, 9.75, 9.9];
 
@@ -539,7 +541,7 @@ fn footings_of(level: Level) -> Vec<Footing> {
         .iter()
         .flat_map(|&cells| both(cells, 0.0, [6.048, 5.690]));
     let growing = GROWING.iter().filter(|_| level == Level::Full);
-    let growing = growing.flat_map(|&(growth, exact)| both(EDGES[2], growth, exact));
+    let growing = growing.flat_map(|&(growth, cells, exact)| both(cells, growth, exact));
     even.chain(growing).collect()
 }
 

@@ -108,13 +108,13 @@ impl<'a, const D: usize> Contact<'a, D> {
             let mut before = body.contact.knots[knot];
             let interface = &body.interfaces[surface.side_of(knot)];
             let is_laid =
-                before.area == 0.0 && is_loaded && sums.mean_gap() < LAID * mean(sums.cell);
+                before.area == 0.0 && is_loaded && sums.gap_in_front() < LAID * mean(sums.cell);
             let bonds = interface.tension != Tension::None && !before.is_broken;
             // Particles that the ground cuts stand off a side by a share of their size, and go nowhere. A round body leaves the
             // ground at a slant: small gaps beside its contact are gaps.
             let is_drawn_at = method.geometry == Geometry::Given
                 && surface.radius().is_none()
-                && sums.mean_gap() < ADHESIVE_GAP * mean(sums.cell);
+                && sums.gap_in_front() < ADHESIVE_GAP * mean(sums.cell);
             let touches = bonds || is_laid || is_drawn_at;
             begin(&mut before, &sums, touches, rolls);
             let mut row = Row {
@@ -227,12 +227,16 @@ impl<'a, const D: usize> Contact<'a, D> {
     }
 }
 
-/// Sets the gap that a knot begins a step with. Soil that comes near is as far off as it stands, and touches if it overlaps; from
-/// then on the gap follows its motion, unless the body `rolls` and the knot is open. Where soil `touches` it does at once.
+/// Sets the gap that a knot begins a step with. Soil that comes near is as far off as what of it stands in front (theory, eq. 45f), and
+/// touches if it overlaps; from then on the gap follows its motion, unless the body `rolls` and the knot is open. Where soil `touches` it does at once.
 fn begin<const D: usize>(before: &mut ContactNode, sums: &Sums<D>, touches: bool, rolls: bool) {
     let gap = sums.mean_gap();
     if before.area == 0.0 {
-        before.gap = if touches { 0.0 } else { gap.max(0.0) };
+        before.gap = if touches {
+            0.0
+        } else {
+            sums.gap_in_front().max(0.0)
+        };
         before.is_closed = before.gap == 0.0;
     } else if !before.is_closed && rolls {
         before.gap = gap.max(0.0);

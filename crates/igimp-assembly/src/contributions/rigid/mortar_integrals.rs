@@ -38,12 +38,17 @@ pub(crate) struct Sums<const D: usize> {
 }
 
 impl<const D: usize> Sums<D> {
-    /// How far the soil around the knot is off: the mean over faces that see the side, over all where none does \[length\].
+    /// The mean gap of all soil around the knot \[length\].
     pub(crate) fn mean_gap(&self) -> f64 {
+        self.gap / self.area
+    }
+
+    /// The mean gap of soil that sees the side, of all where none does \[length\].
+    pub(crate) fn gap_in_front(&self) -> f64 {
         if self.seen_area > 0.0 {
             self.seen_gap / self.seen_area
         } else {
-            self.gap / self.area
+            self.mean_gap()
         }
     }
 }
