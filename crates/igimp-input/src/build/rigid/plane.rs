@@ -208,7 +208,8 @@ fn thickness(shape: &RigidShape) -> f64 {
 /// Corners up to which every pair is looked at for the thickness of a body.
 const MOST_PAIRED: usize = 100;
 
-/// Warns of a corner of a body that is narrower than two cells, in the box around the soil or less than a cell beyond it.
+/// Warns of a corner of a body that is narrower than two cells, in the box around the soil or less than a cell beyond it. A corner on a
+/// side of the grid has soil on one side alone (theory, eq. 45g).
 fn narrow_in_soil(own: &RigidBody<2>, part: &RigidPart<2>, site: &Site, problems: &mut Problems) {
     let (Some(frame), Some(RigidShape::Polygon(corners))) = (&site.frame, part.shape.in_plane())
     else {
@@ -226,8 +227,17 @@ fn narrow_in_soil(own: &RigidBody<2>, part: &RigidPart<2>, site: &Site, problems
             within[1][axis] = within[1][axis].max(corner[axis] + cell);
         }
     }
+    let is_on_side = |corner: &[f64; 2]| {
+        let mut axes = std::iter::zip(&frame.axes, corner);
+        axes.any(|(axis, x)| {
+            [axis.lower(), axis.upper()]
+                .iter()
+                .any(|end| (x - end).abs() <= site.round_off)
+        })
+    };
     let name = clip(&part.name, 40);
-    narrow::warn((&name, own.name.place), corners, cell, within, problems);
+    let site = (cell, within, &is_on_side as &dyn Fn(&[f64; 2]) -> bool);
+    narrow::warn((&name, own.name.place), corners, site, problems);
 }
 
 /// Warns of level ground below a body that is moved on the given geometry, where it is a thin slice of a cell.
