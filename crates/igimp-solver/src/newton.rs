@@ -222,7 +222,7 @@ fn equilibrium<const D: usize>(
         method, settings, ..
     } = attempt;
     let clock = Instant::now();
-    let conditions = &*attempt.conditions.clear_of(&body.rigid)?;
+    let conditions = &*attempt.conditions.without_rollers_at_tips(&body.rigid)?;
     let grid = &conditions.grid;
     let stencils = Stencils::build_under(&body.particles, method, conditions, &body.load_points)?;
     let structures = body.structures();

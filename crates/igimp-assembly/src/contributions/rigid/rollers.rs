@@ -21,7 +21,10 @@ impl<const D: usize> StepConditions<D> {
     ///
     /// # Errors
     /// None, as the nodes are those of the grid.
-    pub fn clear_of(&self, bodies: &[RigidBody<D>]) -> Result<Cow<'_, Self>, AssemblyError> {
+    pub fn without_rollers_at_tips(
+        &self,
+        bodies: &[RigidBody<D>],
+    ) -> Result<Cow<'_, Self>, AssemblyError> {
         let mut covered = Vec::new();
         for body in bodies {
             for normal in 0..D {
@@ -142,7 +145,7 @@ mod tests {
         let interfaces = vec![Interface::smooth(); surface.side_count()];
         let body = RigidBody::new(surface, interfaces, origin);
         let given = conditions(is_fixed);
-        let cleared = given.clear_of(&[body]).unwrap();
+        let cleared = given.without_rollers_at_tips(&[body]).unwrap();
         let grid = &given.grid;
         let is_freed = |node: usize, axis| {
             given.constraints.of(node, axis).is_some()
