@@ -8,16 +8,15 @@ use igimp_schema::text::{number, point};
 /// A corner is told of that is narrower than two cells over more than so many of them \[-\].
 const LONG: f64 = 1.5;
 
-/// Warns of the narrowest corner of a polygon, in cells of a size \[m\], that lies within a box \[m\] and not on a side of the grid.
+/// Warns of the narrowest corner of a polygon, in cells of a size \[m\], that meets soil on both of its sides.
 pub(super) fn warn(
     (name, place): (&str, Place),
     corners: &[[f64; 2]],
-    (cell, within, is_on_side): (f64, [[f64; 2]; 2], &dyn Fn(&[f64; 2]) -> bool),
+    (cell, meets_soil): (f64, impl Fn(&[f64; 2]) -> bool),
     problems: &mut Problems,
 ) {
     let narrowest = (0..corners.len())
-        .filter(|&k| (0..2).all(|d| within[0][d] <= corners[k][d] && corners[k][d] <= within[1][d]))
-        .filter(|&k| !is_on_side(&corners[k]))
+        .filter(|&k| meets_soil(&corners[k]))
         .map(|k| (corners[k], inner_angle(corners, k)))
         .min_by(|a, b| a.1.total_cmp(&b.1));
     let Some((corner, angle)) = narrowest else {

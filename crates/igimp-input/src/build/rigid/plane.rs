@@ -236,8 +236,14 @@ fn narrow_in_soil(own: &RigidBody<2>, part: &RigidPart<2>, site: &Site, problems
         })
     };
     let name = clip(&part.name, 40);
-    let site = (cell, within, &is_on_side as &dyn Fn(&[f64; 2]) -> bool);
-    narrow::warn((&name, own.name.place), corners, site, problems);
+    let is_near = |at: &[f64; 2]| (0..2).all(|d| within[0][d] <= at[d] && at[d] <= within[1][d]);
+    let meets_soil = |corner: &[f64; 2]| is_near(corner) && !is_on_side(corner);
+    narrow::warn(
+        (&name, own.name.place),
+        corners,
+        (cell, meets_soil),
+        problems,
+    );
 }
 
 /// Warns of level ground below a body that is moved on the given geometry, where it is a thin slice of a cell.
