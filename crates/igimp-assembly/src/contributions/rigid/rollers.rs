@@ -165,7 +165,7 @@ mod tests {
     }
 
     // GOAL: a roller on a plane of symmetry ends at the tip of a wedge.
-    // CASE: wedges with their tips at 2.5 or on a node, drawn whole or half, on a roller and on a side that is fixed.
+    // CASE: wedges with their tips at 2.5, drawn whole or half, on a roller and on a side that is fixed.
     // ORACLE: the sketch: nodes above the tip at which the wedge is narrower than two cells, as it is at their neighbours.
     #[test]
     fn the_roller_ends_at_the_tip() {
