@@ -13,8 +13,9 @@ use crate::error::AssemblyError;
 /// A body that reaches so many cells inwards is no tip: it is blunt below, or its soil has no share in nodes on the side.
 const WIDE: usize = 2;
 
-/// A node no further outside of a body than so much of a cell is covered: bodies of half models may end on their axis \[-\].
-const ROUND_OFF: f64 = 1e-6;
+/// A body covers a node that has it so much of a cell inwards: bodies of half models may end on their axis, and soil touches that below
+/// the point of a tip \[-\].
+const INWARDS: f64 = 1e-6;
 
 impl<const D: usize> StepConditions<D> {
     /// These without the rollers at nodes that narrow parts of bodies cover on a side of the grid.
@@ -62,18 +63,18 @@ impl<const D: usize> StepConditions<D> {
             let own = |a| self.constraints.of(node, a);
             (0..D).all(|a| own(a) == (a == normal).then_some(0.0))
         };
-        let covers = |place: [usize; D]| {
+        let inwards = if end == 0 { INWARDS } else { -INWARDS };
+        let is_within = |place: [usize; D], shift: f64| {
             let cell = grid.cell_size(place.map(|k| k.saturating_sub(1)))[normal];
-            body.distance(&grid.node_position(grid.node_index(place))) <= ROUND_OFF * cell
+            let mut x = grid.node_position(grid.node_index(place));
+            x[normal] += shift * cell;
+            body.distance(&x) < 0.0
         };
+        let covers = |place| is_within(place, inwards);
         let is_wide = |mut place: [usize; D]| {
             let last = grid.axes[normal].cell_count();
-            place[normal] = if end == 0 {
-                WIDE.min(last)
-            } else {
-                end.saturating_sub(WIDE)
-            };
-            covers(place)
+            place[normal] = end.abs_diff(WIDE.min(last));
+            is_within(place, -inwards)
         };
         let is_narrow = |place| {
             let mut beside = beside(grid, place, normal);
@@ -165,13 +166,14 @@ mod tests {
     }
 
     // GOAL: a roller on a plane of symmetry ends at the tip of a wedge.
-    // CASE: wedges with their tips at 2.5, drawn whole or half, on a roller and on a side that is fixed.
+    // CASE: wedges with their tips at 2.5 or on a node, drawn whole or half, on a roller and on a side that is fixed.
     // ORACLE: the sketch: nodes above the tip at which the wedge is narrower than two cells, as it is at their neighbours.
     #[test]
     fn the_roller_ends_at_the_tip() {
         for is_whole in [true, false] {
             let all = [3, 4, 5, 6, 7, 8];
             assert_eq!(freed(wedge(1.5, is_whole), [0.0, 2.5], false), all);
+            assert_eq!(freed(wedge(1.5, is_whole), [0.0, 2.0], false), all[..5]);
             assert_eq!(freed(wedge(6.0, is_whole), [0.0, 2.5], false), [3]);
             assert!(freed(wedge(1.5, is_whole), [0.0, 2.5], true).is_empty());
             assert!(freed(wedge(12.0, is_whole), [0.0, 2.5], false).is_empty());
