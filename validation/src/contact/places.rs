@@ -14,7 +14,7 @@ use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, corners};
 
 /// What the book says of the study.
-const ABOUT: &str = "Strips, pipes and an anchor in weightless Tresca soil with E/s_u = 1000, from case files that say nothing of the method, on ten cells, are pushed or pulled at small strain with their sides at five places of the grid within a cell. Every march has to reach its end. Loads within 4 % of limit analysis and spreads within 3 % are claimed, all is told.";
+const ABOUT: &str = "Strips, pipes and an anchor in weightless Tresca soil with E/s_u = 1000, from case files that say nothing of the method, on ten cells, are pushed or pulled at small strain with their sides at five places of the grid within a cell, and a strip with sharp edges on ground at eight. Every march has to reach its end. Loads within 4 % of limit analysis and spreads within 3 % are claimed, all is told.";
 const PRANDTL: Oracle = Oracle {
     kind: OracleKind::Exact,
     source: "Prandtl 1920",
@@ -35,8 +35,10 @@ const INDIFFERENT: Oracle = Oracle {
 const BEYOND: f64 = 0.04;
 /// By how much the loads of five places may differ where that is claimed \[-\].
 const SPREAD: f64 = 0.03;
-/// Where the left side of a body stands in its cell \[cells\].
+/// Where the left side of a body, or the ground, stands in its cell \[cells\].
 const PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 0.9];
+/// More places of the ground, where the soil above a line fills little of its cells \[cells\].
+const SLICES: [f64; 3] = [0.05, 0.1, 0.2];
 /// Size of a cell \[m\].
 const CELL: f64 = 0.1;
 /// Parts of an arc that stands for a circle in the outline of soil, just outside of it \[m\].
@@ -48,6 +50,8 @@ const ARC_RADIUS: f64 = 0.5003;
 enum Kind {
     /// A rough strip with its base so deep \[m\], and bare smooth sides.
     Strip { depth: f64 },
+    /// A rough strip with sharp edges, the ground at the place in its cell.
+    OnGround,
     /// A pipe so deep \[m\], and along it.
     Pipe { depth: f64, interface: &'static str },
     /// A plate so deep \[m\], its tension, and along it.
@@ -123,6 +127,16 @@ fn questions() -> Vec<Question> {
             Claim::Bounds,
             Level::Full,
         ),
+        Question {
+            oracle: PRANDTL,
+            ..question(
+                "strip, level of the ground",
+                Kind::OnGround,
+                [n_c; 2],
+                Claim::Bounds,
+                Level::Quick,
+            )
+        },
     ];
     all.extend(pipes());
     let breaks_away = anchor("none", "\"rough\"");
@@ -218,6 +232,16 @@ struct Site {
 }
 
 impl Kind {
+    /// What stands at places of its cell, and these \[cells\].
+    fn places(self) -> (&'static str, Vec<f64>) {
+        match self {
+            Self::OnGround => ("ground", [&PLACES[..], &SLICES].concat()),
+            Self::Strip { .. } | Self::Pipe { .. } | Self::Anchor { .. } => {
+                ("side", PLACES.to_vec())
+            }
+        }
+    }
+
     fn site(self, place: f64) -> Site {
         let site = |width: f64, top: f64, left: f64| Site {
             width,
@@ -226,6 +250,11 @@ impl Kind {
         };
         match self {
             Self::Strip { .. } => site(7.0, 3.5, 3.0),
+            Self::OnGround => Site {
+                width: 7.0,
+                top: 3.5 + place * CELL,
+                left: 3.0 + 0.75 * CELL,
+            },
             Self::Pipe { .. } => site(5.0, 2.0, 2.0),
             Self::Anchor { depth, .. } => site(2.0 * depth + 4.0, depth + 2.2, depth + 1.5),
         }
@@ -245,6 +274,7 @@ impl Kind {
                     around.extend([[right, top], [right, base], [left, base], [left, top]]);
                 }
             }
+            Self::OnGround => {}
             Self::Pipe { depth, .. } => {
                 let middle = [left + 0.5, top + 0.5 - depth];
                 let lip = ((top - middle[1]) / ARC_RADIUS).min(0.0).asin();
@@ -295,6 +325,13 @@ impl Kind {
                     -0.05 - 0.05 * depth,
                 )
             }
+            Self::OnGround => {
+                let body = rectangle(top, top + 2.0);
+                (
+                    format!("{body}\ninterface = \"rough\"\nrounding = 0"),
+                    -0.05,
+                )
+            }
             Self::Pipe { depth, interface } => {
                 let [x, y] = [left + 0.5, top + 0.5 - depth];
                 (
@@ -331,7 +368,7 @@ impl Kind {
             );
         }
         let Site { width, top, .. } = site;
-        let sky = top + 1.0;
+        let sky = CELL * ((top + 1.0) / CELL).round();
         format!(
             "igimp = 1
 [case]
@@ -368,7 +405,8 @@ y = {{ of = \"rigid.body.resistance\", divide_by = [\"1 m\", \"1 kPa\"] }}
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("contact-places", ABOUT, out)?;
     for question in questions().iter().filter(|own| own.level <= level) {
-        let computed = PLACES
+        let (part, places) = question.kind.places();
+        let computed = places
             .par_iter()
             .map(|&place| {
                 let text = question.kind.file(place);
@@ -377,8 +415,8 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             .collect::<Result<Vec<_>, CaseError>>()?;
         let mut loads = Vec::new();
         let mut last = 0;
-        for (place, own) in PLACES.iter().zip(&computed) {
-            let variant = format!("{}, side at {place} of its cell", question.name);
+        for (place, own) in places.iter().zip(&computed) {
+            let variant = format!("{}, {part} at {place} of its cell", question.name);
             last = study.run_to_end(RunRecord::new(variant, &own.report, own.elapsed));
             let load = own.curve("load").points(0, 1);
             let load = load.last().map_or(f64::NAN, |[_, load]| load.abs());

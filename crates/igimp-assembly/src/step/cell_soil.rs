@@ -7,12 +7,15 @@ use igimp_shape::{CellPart, Grid, Support, cell_parts};
 use rayon::prelude::*;
 
 use crate::body::particles::{CHUNK, Particles};
+use crate::conditions::StepConditions;
 use crate::conditions::loads::LoadPoint;
 use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
 use crate::method::{Geometry, Locking, Method};
 use crate::step::domain::{capped_half_length, merge_equal_nodes, off_grid};
 use crate::step::hoops::{Hoop, RadialPart, off_middle};
+use crate::step::small_cuts::followers;
+use crate::step::ties::Ties;
 
 /// A cell that is filled to less than this share holds a sliver of soil that reached over its face
 /// \[-\]. A choice: less leaves nodes with so little soil that they climb without end at a limit load, more takes weight
@@ -120,6 +123,50 @@ impl<const D: usize> CellSoil<D> {
             soil.find_soil(grid, particles, method, &loaded_cells(grid, points));
         }
         Ok(soil)
+    }
+
+    /// The soil of the cells where gradients are made of it: strain is shared, the geometry given, the section axisymmetric or a
+    /// face loaded.
+    ///
+    /// # Errors
+    /// As [`Self::build`].
+    pub(crate) fn where_it_counts(
+        particles: &Particles<D>,
+        method: &Method,
+        conditions: &StepConditions<D>,
+        points: &[LoadPoint<D>],
+    ) -> Result<Option<Self>, AssemblyError> {
+        let counts = method.locking == Locking::SharedStrain
+            || method.geometry == Geometry::Given
+            || method.section.is_axisymmetric()
+            || !points.is_empty();
+        counts
+            .then(|| {
+                Self::build(
+                    &conditions.grid,
+                    particles,
+                    method,
+                    &conditions.laws,
+                    points,
+                )
+            })
+            .transpose()
+    }
+
+    /// Lets cells that move with a neighbour share gradients at the place where that shares them (theory, eq. 63b).
+    pub(crate) fn follow(&mut self, grid: &Grid<D>, ties: &Ties) {
+        for (cell, leader) in followers(grid, ties) {
+            let [own, other] = [cell, leader].map(|place| grid.cell_index(place));
+            let (from, size) = (grid.cell_size(leader), grid.cell_size(cell));
+            self.shared_at[own] = std::array::from_fn(|axis| {
+                let nodes = grid.axes[axis].nodes();
+                let beyond = nodes[leader[axis]] - nodes[cell[axis]];
+                (beyond + self.shared_at[other][axis] * from[axis]) / size[axis]
+            });
+            if !self.hoop_at.is_empty() {
+                self.hoop_at[own] = self.hoop_at[other];
+            }
+        }
     }
 
     /// Finds slivers, and the centroid of the soil of the cells that share it: sums of volumes and first moments in

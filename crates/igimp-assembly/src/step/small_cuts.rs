@@ -53,7 +53,7 @@ pub(crate) fn extrapolations<const D: usize>(
             continue;
         }
         let mut nearest: Option<(f64, f64, Vec<Carrier>)> = None;
-        for cell in cells_around(grid, cut) {
+        for cell in cells_around(grid, cut, REACH) {
             let carriers = carried_beyond(grid, cell, cut);
             let is_firm = carriers.iter().all(|own| {
                 let then = left[own.node] + own.weight * shares[cut].volume;
@@ -86,15 +86,16 @@ pub(crate) fn extrapolations<const D: usize>(
     ties
 }
 
-/// The cells within reach of a node.
+/// The cells around a node, and those that are up to `reach` cells away from them.
 fn cells_around<const D: usize>(
     grid: &Grid<D>,
     node: usize,
+    reach: usize,
 ) -> impl Iterator<Item = [usize; D]> + '_ {
     let place = grid.node_place(node);
-    let lower: [usize; D] = place.map(|own| own.saturating_sub(REACH + 1));
+    let lower: [usize; D] = place.map(|own| own.saturating_sub(reach + 1));
     let count: [usize; D] = std::array::from_fn(|axis| {
-        (place[axis] + REACH + 1).min(grid.axes[axis].cell_count()) - lower[axis]
+        (place[axis] + reach + 1).min(grid.axes[axis].cell_count()) - lower[axis]
     });
     (0..count.iter().product()).map(move |mut index: usize| {
         std::array::from_fn(|axis| {
@@ -115,6 +116,41 @@ fn carried_beyond<const D: usize>(grid: &Grid<D>, cell: [usize; D], node: usize)
         .map(|(node, weight, _)| Carrier { node, weight })
         .filter(|own| own.weight.abs() > ROUND_OFF)
         .collect()
+}
+
+/// Cells of which every node is one of another cell or is extrapolated from it, each with that cell: their motion is its
+/// linear functions continued.
+pub(crate) fn followers<const D: usize>(
+    grid: &Grid<D>,
+    ties: &Ties,
+) -> BTreeMap<[usize; D], [usize; D]> {
+    let mut followers = BTreeMap::new();
+    for &tied in ties.keys() {
+        for cell in cells_around(grid, tied, 0) {
+            let moves_with = |leader: &[usize; D]| {
+                let of_leader: Vec<usize> = corners(grid, *leader).collect();
+                let goes_on = |node: usize| match ties.get(&node) {
+                    Some(carriers) => *carriers == carried_beyond(grid, *leader, node),
+                    None => of_leader.contains(&node),
+                };
+                of_leader.iter().all(|node| !ties.contains_key(node))
+                    && corners(grid, cell).all(goes_on)
+            };
+            if let Some(leader) = cells_around(grid, tied, REACH).find(moves_with) {
+                followers.insert(cell, leader);
+            }
+        }
+    }
+    followers
+}
+
+/// The nodes of a cell.
+fn corners<const D: usize>(grid: &Grid<D>, cell: [usize; D]) -> impl Iterator<Item = usize> + '_ {
+    (0..1_usize << D).map(move |corner| {
+        grid.node_index(std::array::from_fn(|axis| {
+            cell[axis] + (corner >> axis & 1)
+        }))
+    })
 }
 
 /// The master of every node that is a small cut: the nearest node that shares a particle with it, carries enough soil and has the

@@ -7,8 +7,8 @@ use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::conditions::loads::LoadPoint;
 use crate::error::AssemblyError;
-use crate::method::{Method, Remedy, SmallCuts};
-use crate::step::cell_soil::Moments;
+use crate::method::{Geometry, Method, Remedy, SmallCuts};
+use crate::step::cell_soil::{CellSoil, Moments};
 use crate::step::domain::bounds;
 use crate::step::hoops::Hoop;
 use crate::step::node_shares::{NodeShare, node_shares};
@@ -29,6 +29,8 @@ pub struct Stencils<const D: usize> {
     /// Whether other nodes move with a node.
     is_carrier: Vec<bool>,
     strips: Strips,
+    /// By law, moments of mass that shared gradients do not see (theory, eq. 8f).
+    moments: Vec<Moments<D>>,
 }
 
 impl<const D: usize> Stencils<D> {
@@ -61,14 +63,15 @@ impl<const D: usize> Stencils<D> {
         conditions: &StepConditions<D>,
         points: &[LoadPoint<D>],
     ) -> Result<Self, AssemblyError> {
-        let StepConditions { grid, laws, .. } = conditions;
+        let grid = &conditions.grid;
         conditions.validate(particles)?;
         let is_loaded = |point: &&LoadPoint<D>| {
             let factor = conditions.loads.factors.get(point.load);
             factor.is_some_and(|factor| *factor != 0.0)
         };
         let loaded: Vec<LoadPoint<D>> = points.iter().filter(is_loaded).copied().collect();
-        let mut supports = Supports::build(grid, particles, method, laws, &loaded)?;
+        let mut soil = CellSoil::where_it_counts(particles, method, conditions, &loaded)?;
+        let mut supports = Supports::build(grid, particles, method, soil.as_ref())?;
         let mut strips = Strips::build(grid, &supports);
         let mut shares = node_shares(grid, particles, &supports, &strips, method.section);
         let ties = ties(method, conditions, &supports, &shares);
@@ -84,8 +87,21 @@ impl<const D: usize> Stencils<D> {
                     shares[*node].mass += weight * share.mass;
                 }
             }
+            if let (Some(soil), Geometry::Given) = (&mut soil, method.geometry) {
+                soil.follow(grid, &ties);
+            }
+            let (mut own, mut hoops) = (Vec::new(), Vec::new());
             for particle in supports.touching(&tied) {
-                supports.tie(grid, particle, &ties);
+                match &soil {
+                    Some(soil) => soil.supports(
+                        grid,
+                        (particle, particles.law[particle]),
+                        &mut own,
+                        &mut hoops,
+                    ),
+                    None => own = supports.of(particle).to_vec(),
+                }
+                supports.tie(grid, particle, (&own, &hoops), &ties);
             }
             strips = Strips::build(grid, &supports);
         }
@@ -95,6 +111,7 @@ impl<const D: usize> Stencils<D> {
             ties,
             is_carrier,
             strips,
+            moments: soil.map_or(Vec::new(), |soil| soil.moments(grid, particles, method)),
         })
     }
 
@@ -153,7 +170,7 @@ impl<const D: usize> Stencils<D> {
 
     /// By law, moments of mass that shared gradients do not see (theory, eq. 8f).
     pub(crate) fn moments(&self) -> &[Moments<D>] {
-        self.supports.moments()
+        &self.moments
     }
 
     /// Tied nodes with the nodes that they move with.

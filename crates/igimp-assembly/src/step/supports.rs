@@ -4,11 +4,9 @@ use igimp_shape::{Grid, Scratch, Support, supports};
 use rayon::prelude::*;
 
 use crate::body::particles::{CHUNK, Particles};
-use crate::conditions::loads::LoadPoint;
 use crate::error::AssemblyError;
-use crate::laws::SharedLaw;
-use crate::method::{Geometry, Locking, Method};
-use crate::step::cell_soil::{CellSoil, Moments};
+use crate::method::{Locking, Method};
+use crate::step::cell_soil::CellSoil;
 use crate::step::domain::{bounds, capped_half_length, merge_equal_nodes, off_grid};
 use crate::step::hoops::Hoop;
 use crate::step::ties::{Ties, carried};
@@ -20,8 +18,6 @@ pub(crate) struct Supports<const D: usize> {
     len: usize,
     /// Largest distance, in nodes along one axis, between two nodes of one particle.
     reach: usize,
-    /// By law, moments of mass that shared gradients do not see (theory, eq. 8f).
-    moments: Vec<Moments<D>>,
 }
 
 /// The supports of `CHUNK` particles, or of the last few.
@@ -37,8 +33,8 @@ struct Chunk<const D: usize> {
 
 impl<const D: usize> Supports<D> {
     /// Evaluates the basis of a method at all particles. Here alone is decided of which gradients the
-    /// strain of a particle is made: without locking control ∇S̄ is replaced by ∇S; shared strain, a given geometry
-    /// and loaded faces take both from the cells (theory, eqs. 8a to 8e and 8h).
+    /// strain of a particle is made: without locking control ∇S̄ is replaced by ∇S; both are those of the cells where there is
+    /// `soil` (theory, eqs. 8a to 8e and 8h).
     ///
     /// # Errors
     /// [`AssemblyError::Shape`] names the first particle whose centre left the grid.
@@ -46,30 +42,16 @@ impl<const D: usize> Supports<D> {
         grid: &Grid<D>,
         particles: &Particles<D>,
         method: &Method,
-        laws: &[SharedLaw],
-        points: &[LoadPoint<D>],
+        soil: Option<&CellSoil<D>>,
     ) -> Result<Self, AssemblyError> {
         let len = particles.len();
-        let by_cells = method.locking == Locking::SharedStrain
-            || method.geometry == Geometry::Given
-            || method.section.is_axisymmetric()
-            || !points.is_empty();
-        let soil = by_cells
-            .then(|| CellSoil::build(grid, particles, method, laws, points))
-            .transpose()?;
         let chunks: Vec<Result<Chunk<D>, AssemblyError>> = (0..len.div_ceil(CHUNK))
             .into_par_iter()
-            .map(|chunk| Chunk::build(grid, particles, method, soil.as_ref(), chunk * CHUNK))
+            .map(|chunk| Chunk::build(grid, particles, method, soil, chunk * CHUNK))
             .collect();
         let chunks = chunks.into_iter().collect::<Result<Vec<_>, _>>()?;
         let reach = chunks.iter().map(|chunk| chunk.reach).max().unwrap_or(0);
-        let moments = soil.map(|soil| soil.moments(grid, particles, method));
-        Ok(Self {
-            chunks,
-            len,
-            reach,
-            moments: moments.unwrap_or_default(),
-        })
+        Ok(Self { chunks, len, reach })
     }
 
     /// The supports of one particle.
@@ -92,11 +74,6 @@ impl<const D: usize> Supports<D> {
             &chunk.hoops[all.clone()]
         };
         (&chunk.all[all], hoops)
-    }
-
-    /// By law, moments of mass that shared gradients do not see (theory, eq. 8f). Empty where there are none.
-    pub(crate) fn moments(&self) -> &[Moments<D>] {
-        &self.moments
     }
 
     /// Number of particles.
@@ -125,10 +102,15 @@ impl<const D: usize> Supports<D> {
         lists.concat()
     }
 
-    /// Replaces the nodes of one particle by the nodes that they move with, and adds up supports
-    /// that come together.
-    pub(crate) fn tie(&mut self, grid: &Grid<D>, particle: usize, ties: &Ties) {
-        let (supports, hoops) = self.with_hoops(particle);
+    /// Replaces the supports of one particle by those on the nodes that `supports` move with, which are its own or those of its
+    /// cells, and adds up supports that come together.
+    pub(crate) fn tie(
+        &mut self,
+        grid: &Grid<D>,
+        particle: usize,
+        (supports, hoops): (&[Support<D>], &[Hoop]),
+        ties: &Ties,
+    ) {
         let mut own = carried(supports, ties);
         own.sort_by_key(|support| support.node);
         let count = merge_equal_nodes(&mut own);

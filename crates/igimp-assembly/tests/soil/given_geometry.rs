@@ -7,7 +7,8 @@
 
 use crate::common::{Random, laws, particles};
 use igimp_assembly::{
-    Constraints, Geometry, Locking, Method, Particles, Stencils, StepConditions, StepLoads, System,
+    Constraints, Geometry, Locking, Method, Particles, Remedy, Stencils, StepConditions, StepLoads,
+    System,
 };
 use igimp_material::{Elasticity, MohrCoulomb, TangentKind};
 use igimp_shape::{Axis, Grid};
@@ -158,6 +159,34 @@ fn the_mean_of_a_cell_sees_no_hourglass() {
         assert!(strain(|s| s.grad_bar) < 1e-12);
         // A tenth of the particle's own is left, at most 2e-6 across a cell.
         assert!(strain(|s| s.grad) < 0.101 * 2e-6);
+    }
+}
+
+// GOAL: a thin layer that moves with the cells behind it takes its mean from them on a given geometry, and keeps its own on a moving one.
+// BODY: the block moved by a tenth of a cell along both axes, so that layers lie above it, beside it and at its corner.
+// ORACLE: bending of the top row of cells, u_x = x (y − 4.5), whose mean over a cell of that row has no ∂u_x/∂x; with the middle
+// of the layer it would be one in the layer, which holds a fifth of the topmost particles.
+#[test]
+fn a_layer_that_moves_with_the_cell_behind_shares_its_mean() {
+    let conditions = conditions(1);
+    let body = block(0.1);
+    let mut method = given(Locking::BBar);
+    (method.small_cuts.below, method.small_cuts.remedy) = (0.05, Remedy::Extrapolate);
+    for (geometry, expected) in [(Geometry::Given, 0.0), (Geometry::Moving, 0.2)] {
+        method.geometry = geometry;
+        let stencils = Stencils::build(&body, &method, &conditions).unwrap();
+        let stretch = |particle: usize| -> f64 {
+            let bending = |support: &igimp_shape::Support<2>| {
+                let [x, y] = conditions.grid.node_position(support.node);
+                support.grad_bar[0] * x * (y - 4.5)
+            };
+            stencils.of(particle).iter().map(bending).sum()
+        };
+        let top = (0..body.len()).filter(|&particle| body.x[particle][1] > 4.6);
+        for particle in top {
+            let found = stretch(particle);
+            assert!((found - expected).abs() < 1e-12, "{geometry:?}: {found}");
+        }
     }
 }
 

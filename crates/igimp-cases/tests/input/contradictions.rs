@@ -65,24 +65,6 @@ fn friction_by_speed_that_makes_no_sense() {
 }
 
 #[test]
-fn ground_a_slice_above_a_line() {
-    let footing = igimp_input::shipped::find("circular_footing").unwrap().text;
-    insta::assert_snapshot!(messages(
-        ("circle.toml", footing),
-        &[
-            &[(
-                "y = [\"0 m\", \"3.36 m\"]",
-                "y = [\"-0.0105 m\", \"3.3495 m\"]"
-            )],
-            &[(
-                "y = [\"0 m\", \"3.36 m\"]",
-                "y = [\"-0.0525 m\", \"3.3075 m\"]"
-            )],
-        ]
-    ));
-}
-
-#[test]
 fn bodies_of_revolution_that_are_none() {
     let footing = igimp_input::shipped::find("circular_footing").unwrap().text;
     let load = |kind: &str| format!("[output]\n[[loads]]\nname = \"load\"\ntype = {kind}");

@@ -2,29 +2,23 @@
 
 use std::sync::Arc;
 
-use igimp_assembly::Geometry;
 use igimp_geometry::polygon::area_and_centroid;
 use igimp_model::{Load, LoadKind, RigidPart, RigidShape};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::rigid::{RigidBody, RigidShape as Form};
 use igimp_schema::schema::stages::Stage;
-use igimp_schema::text::{clip, number, point};
+use igimp_schema::text::{clip, point};
 use igimp_schema::tree::read::At;
 
 use super::{Basis, Room, Sides, narrow};
 use crate::build::Thing;
 use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Site;
-use crate::build::grid::{Frame, geometry_of};
+use crate::build::grid::Frame;
 use crate::geometry::{distinct, overlap, self_crossing};
 
 /// Corners of a circle where it is looked at as a polygon.
 const POINTS_OF_CIRCLE: usize = 90;
-
-/// Ground that fills less than so much of the cell at its surface is told of \[-\].
-const THIN: f64 = 0.3;
-/// Places in cells that are the same \[-\].
-const SAME: f64 = 1e-6;
 
 /// What rigid bodies are held against.
 pub(crate) struct Around<'a> {
@@ -65,7 +59,6 @@ impl Room<2> for Around<'_> {
     fn check(&self, own: &RigidBody<2>, part: &RigidPart<2>, problems: &mut Problems) {
         beside_soil(own, part, self, problems);
         narrow_in_soil(own, part, self.site, problems);
-        above_a_line(own, part, self, problems);
     }
 
     fn followed(&self) -> (bool, &'static str) {
@@ -244,55 +237,6 @@ fn narrow_in_soil(own: &RigidBody<2>, part: &RigidPart<2>, site: &Site, problems
         (cell, meets_soil),
         problems,
     );
-}
-
-/// Warns of level ground below a body that is moved on the given geometry, where it is a thin slice of a cell.
-fn above_a_line(
-    own: &RigidBody<2>,
-    part: &RigidPart<2>,
-    around: &Around<'_>,
-    problems: &mut Problems,
-) {
-    let Some(frame) = &around.site.frame else {
-        return;
-    };
-    let (lower, upper) = part.bounds();
-    let (level, round_off) = (lower[1], around.site.round_off);
-    let place = frame.axes[1].place(level);
-    let slice = place - (place + SAME).floor();
-    let is_level = |pair: [&[f64; 2]; 2]| {
-        pair.iter().all(|at| (at[1] - level).abs() <= round_off)
-            && pair[0][0].min(pair[1][0]) < upper[0]
-            && pair[0][0].max(pair[1][0]) > lower[0]
-    };
-    let bears = (around.site.polygons.iter()).any(|polygon| {
-        let next = polygon.iter().cycle().skip(1);
-        polygon.iter().zip(next).any(|(a, b)| is_level([a, b]))
-    });
-    let is_given = around.stages.iter().flatten().any(|stage| {
-        let moves = stage.moves();
-        geometry_of(&stage.form) == Geometry::Given
-            && moves
-                .iter()
-                .flatten()
-                .any(|own| own.body.value == part.name)
-    });
-    if slice <= SAME || slice >= THIN || !bears || !is_given {
-        return;
-    }
-    problems
-        .warning(
-            own.name.place,
-            format!(
-                "the ground below the rigid body `{}` lies {} of a cell above a line of the grid",
-                clip(&part.name, 40),
-                number(slice)
-            ),
-        )
-        .help(
-            "on the given geometry it carries up to a fifth too much there: so thin a slice of soil moves with the cell below",
-        )
-        .help("write fit = \"layers\" in [grid], or let a line lie there");
 }
 
 /// Refuses a body that overlaps soil as it starts, or that is placed while it is there.
