@@ -8,14 +8,15 @@ use rayon::prelude::*;
 use crate::body::particles::{CHUNK, ParticleFields, Particles, volume_ratio};
 use crate::contributions::consolidation::PoresAfter;
 use crate::contributions::inertia::Motion;
-use crate::contributions::rigid::{RigidBody, seeded_too_close};
+use crate::contributions::rigid::seeded_too_close;
 use crate::equations::kinematics::ParticleTrial;
 use crate::equations::trial::Trial;
 use crate::error::AssemblyError;
 use crate::method::{DomainUpdate, Geometry, Kinematics, Method};
-use crate::small::{congruence, determinant, identity, multiply, rotation, transpose};
 use crate::step::hoops::Hoop;
 use crate::step::stencils::Stencils;
+use igimp_rigid::RigidBody;
+use igimp_shape::matrices::{congruence, determinant, identity, multiply, rotation, transpose};
 
 impl<const D: usize> Particles<D> {
     /// Accepts a converged trial: x, F, b_e, σ, l_p and history become those at nodal step

@@ -12,7 +12,7 @@ use crate::equations::system::System;
 use crate::equations::trial::Trial;
 use crate::error::AssemblyError;
 use crate::method::Kinematics;
-use crate::small::determinant;
+use igimp_shape::matrices::determinant;
 
 /// The energy of a step \[force·length\]. Work of loads and of supports is what comes in; the other terms are where it goes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

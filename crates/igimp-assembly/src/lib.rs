@@ -16,7 +16,6 @@ mod equations;
 mod error;
 mod laws;
 mod method;
-mod small;
 mod step;
 pub(crate) mod work;
 
@@ -36,10 +35,7 @@ pub use conditions::water::{PoreSite, PoreState, PoreWater, Water};
 pub use contributions::consolidation::{PoresAfter, WaterMoved};
 pub use contributions::inertia::Motion;
 pub use contributions::reinforcement::{Hold, Reinforcement, Segment, SegmentState, Station};
-pub use contributions::rigid::{
-    AcceptedContact, CarryingTriangle, ContactNode, ContactState, Interface, Penalty, Penetration,
-    Pose, RigidBody, RigidInertia, Shear, Surface, SurfaceError, SurfaceTriangle, Tension,
-};
+pub use contributions::rigid::{AcceptedContact, Penetration};
 pub use contributions::walls::TieForce;
 pub use energy::StepEnergy;
 pub use equations::kinematics::ParticleTrial;
@@ -47,6 +43,10 @@ pub use equations::residual::OutOfBalance;
 pub use equations::system::{Structures, System};
 pub use equations::trial::Trial;
 pub use error::AssemblyError;
+pub use igimp_rigid::{
+    ContactNode, ContactState, Interface, Penalty, Pose, RigidBody, RigidInertia, Shear, Tension,
+};
+pub use igimp_surface::{CarryingTriangle, Surface, SurfaceError, SurfaceTriangle};
 pub use laws::SharedLaw;
 pub use method::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, Section, SmallCuts};
 pub use step::stencils::Stencils;

@@ -10,6 +10,7 @@
 //! | one direction of the grid | [`Axis`] |
 //! | tensor product of axes, node and cell numbering | [`Grid`] |
 //! | weights of one direction: linear (iMPM) and GIMP | [`Basis`], [`Linear`], [`Gimp`], [`NodeWeight`] |
+//! | small dense matrices as plain arrays | [`matrices`] |
 //! | tensor product of weights | [`supports`], [`Support`], [`Scratch`] |
 //! | what can go wrong | [`ShapeError`] |
 //!
@@ -51,6 +52,7 @@ mod axis;
 mod basis;
 mod error;
 mod grid;
+pub mod matrices;
 mod parts;
 mod support;
 

@@ -3,7 +3,7 @@
 use igimp_material::{INTERNAL_VARIABLES, Ratios, Regime};
 
 use crate::error::AssemblyError;
-use crate::small::determinant;
+use igimp_shape::matrices::determinant;
 
 /// The numbers of a column, particle after particle.
 #[derive(Clone, Debug, PartialEq)]

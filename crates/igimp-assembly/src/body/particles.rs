@@ -12,7 +12,7 @@ use crate::body::columns::{
 };
 use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
-use crate::small::{determinant, identity};
+use igimp_shape::matrices::{determinant, identity};
 
 /// Particles that are handled together: fixed, so that results do not depend on the number of
 /// threads.

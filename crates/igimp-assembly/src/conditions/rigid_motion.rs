@@ -53,8 +53,3 @@ impl<const D: usize> RigidMotion<D> {
             })
     }
 }
-
-/// Number of rotations in space of dimension D: 1 in the plane, 3 in space.
-pub(crate) const fn rotations(dimension: usize) -> usize {
-    dimension * (dimension - 1) / 2
-}

@@ -9,12 +9,13 @@ use crate::contributions::loads::nodal_drag;
 use crate::contributions::nodal_forces::NodalForces;
 use crate::contributions::pore_water::Pores;
 use crate::contributions::reinforcement::{Members, Reinforcement};
-use crate::contributions::rigid::{Contact, RigidBody};
+use crate::contributions::rigid::Contact;
 use crate::contributions::walls::WallForces;
 use crate::error::AssemblyError;
 use crate::method::Method;
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
+use igimp_rigid::RigidBody;
 
 /// The forces at nodes beside those of particles and of acceleration.
 #[derive(Debug)]

@@ -16,10 +16,10 @@ use crate::body::particles::Particles;
 use crate::conditions::time_step::{TimeScheme, TimeStep, Weights};
 use crate::contributions::nodal_forces::AddBlock;
 use crate::contributions::nodal_mass::{NodalMass, add_scaled, mask, product};
-use crate::contributions::rigid::{NODES_PER_BODY, RigidBody};
 use crate::error::AssemblyError;
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
+use igimp_rigid::{NODES_PER_BODY, RigidBody};
 
 /// Inertia of one step.
 #[derive(Debug)]

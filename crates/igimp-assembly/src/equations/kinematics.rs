@@ -23,8 +23,8 @@ use crate::contributions::nonlocal::SpatialRates;
 use crate::contributions::pore_water::PoreResponse;
 use crate::error::AssemblyError;
 use crate::method::{Geometry, Kinematics, Method};
-use crate::small::{congruence, determinant, identity, inverse};
 use crate::step::hoops::Hoop;
+use igimp_shape::matrices::{congruence, determinant, identity, inverse};
 
 /// An elastic Hencky strain beyond this makes b_e = exp(2 ε_e) leave the floating-point numbers \[-\].
 const LARGEST_STRAIN: f64 = 300.0;

@@ -33,8 +33,8 @@ use igimp_shape::Support;
 
 use crate::equations::kinematics::Linearisation;
 use crate::method::Kinematics;
-use crate::small::transpose_apply;
 use crate::step::hoops::{Around, Hoop};
+use igimp_shape::matrices::transpose_apply;
 
 /// Numbers that are worked on together.
 const LANES: usize = 4;

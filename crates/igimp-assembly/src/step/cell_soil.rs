@@ -12,9 +12,9 @@ use crate::conditions::loads::LoadPoint;
 use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
 use crate::method::{Geometry, Locking, Method};
+use crate::step::continuation::followers;
 use crate::step::domain::{capped_half_length, merge_equal_nodes, off_grid};
 use crate::step::hoops::{Hoop, RadialPart, off_middle};
-use crate::step::small_cuts::followers;
 use crate::step::ties::Ties;
 
 /// A cell that is filled to less than this share holds a sliver of soil that reached over its face

@@ -11,12 +11,12 @@ use crate::contributions::consolidation::{
     Consolidation, Leak, NONE, PressureSupport, Seeping, Share,
 };
 use crate::contributions::pore_water::Pores;
-use crate::contributions::rigid::RigidBody;
 use crate::error::AssemblyError;
 use crate::method::{Kinematics, Method};
 use crate::step::domain::{capped_half_length, off_grid};
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
+use igimp_rigid::RigidBody;
 
 /// By how much water leaves more easily where a face or a drain is open than it comes there across a cell \[-\].
 const OPEN: f64 = 1e3;

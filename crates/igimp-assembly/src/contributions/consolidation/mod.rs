@@ -14,11 +14,11 @@ use igimp_shape::Support;
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::contributions::nodal_forces::{AddBlock, NodalForces};
-use crate::small::{determinant, identity, inverse, transpose_apply};
 use crate::step::stencils::Stencils;
 use after::Share;
 pub use after::{PoresAfter, WaterMoved};
 pub(crate) use gathering::least_side;
+use igimp_shape::matrices::{determinant, identity, inverse, transpose_apply};
 
 /// Marks a node of the grid without a pressure, and a particle that water does not flow through.
 const NONE: u32 = u32::MAX;

@@ -3,9 +3,9 @@
 
 use thiserror::Error;
 
-use super::RigidBody;
 use crate::body::particles::Particles;
 use crate::error::padded;
+use igimp_rigid::RigidBody;
 use igimp_surface::vectors::{minus, norm};
 
 /// The centre of a particle stands at least so far off a body, in half-lengths as seeded \[-\]. A choice: an undeformed domain

@@ -4,18 +4,19 @@
 use std::collections::BTreeMap;
 
 use super::clearance::{Penetration, push_out};
-use super::face_clipping::tents_within;
-use super::interface::{Interface, Tension};
 use super::mortar_integrals::{Gathering, Sums, rolling_radius};
 use super::row::{ADHESIVE_GAP, Functional, Row};
-use super::{ContactNode, ContactState, NODES_PER_BODY, RigidBody};
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
-use crate::conditions::rigid_motion::{RigidMotion, rotations};
+use crate::conditions::rigid_motion::RigidMotion;
 use crate::contributions::nodal_forces::{AddBlock, NodalForces};
 use crate::method::{Geometry, Method};
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
+use igimp_rigid::{
+    ContactNode, ContactState, Interface, NODES_PER_BODY, RigidBody, Tension, rotations,
+    tents_within,
+};
 
 /// A knot of space that soil covers by a smaller share of the largest one has none: round-off beyond a plane of
 /// symmetry \[-\].

@@ -5,15 +5,13 @@ use std::collections::BTreeMap;
 
 use igimp_shape::Grid;
 
-use super::RigidBody;
-use super::face::Face;
-use super::face_clipping::{Piece, pieces};
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::error::padded;
 use crate::method::Section;
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
+use igimp_rigid::{Face, Piece, RigidBody, pieces};
 use igimp_surface::Space;
 use igimp_surface::vectors::cross;
 

@@ -6,9 +6,9 @@ use std::ops::Range;
 
 use igimp_shape::Grid;
 
-use super::RigidBody;
 use crate::conditions::StepConditions;
 use crate::error::AssemblyError;
+use igimp_rigid::RigidBody;
 
 /// A body that reaches so many cells inwards is no tip: it is blunt below, or its soil has no share in nodes on the side.
 const WIDE: usize = 2;

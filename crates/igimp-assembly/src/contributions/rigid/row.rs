@@ -1,9 +1,8 @@
 //! Contact at one knot of a surface: the mean gap and the mean slip around it as linear functions of
 //! the step's displacements, and what they cause.
 
-use super::interface::{Shear, Tension};
-use super::{ContactNode, Interface, Penalty};
 use crate::contributions::nodal_forces::AddBlock;
+use igimp_rigid::{ContactNode, Interface, Penalty, Shear, Tension};
 
 /// Traction grows at most so much from step to step where soil covers less and less of a knot \[-\]. A choice: without a bound
 /// the last bit of soil at a knot would carry all of its force; what is cut off is out of balance in one step, and found by it.

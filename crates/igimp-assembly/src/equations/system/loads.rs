@@ -2,13 +2,13 @@
 
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
-use crate::conditions::rigid_motion::{Drive, RigidMotion, rotations};
+use crate::conditions::rigid_motion::{Drive, RigidMotion};
 use crate::contributions::loads::{add_unbalanced_forces, add_variation_of_weight, weight};
 use crate::contributions::pore_water::Pores;
-use crate::contributions::rigid::{NODES_PER_BODY, RigidBody};
 use crate::error::AssemblyError;
 use crate::method::Method;
 use crate::step::stencils::Stencils;
+use igimp_rigid::{NODES_PER_BODY, RigidBody, rotations};
 
 /// What acts on a step from outside.
 #[derive(Debug)]

@@ -20,7 +20,6 @@ use crate::contributions::inertia::Inertia;
 use crate::contributions::loads::add_force_of_points;
 use crate::contributions::nonlocal::{NonlocalStrain, strain_nodes};
 use crate::contributions::reinforcement::Reinforcement;
-use crate::contributions::rigid::{NODES_PER_BODY, RigidBody};
 use crate::equations::blocks::BlockTable;
 use crate::equations::damping::StiffnessDamping;
 use crate::equations::residual::force_of_round_off;
@@ -29,6 +28,7 @@ use crate::error::AssemblyError;
 use crate::method::Method;
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
+use igimp_rigid::{NODES_PER_BODY, RigidBody};
 
 /// What stands in the soil and on it as a step begins; by default nothing.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! Small dense matrices as plain arrays: what kinematics needs for D = 1, 2, 3.
 
 /// The identity.
-pub(crate) fn identity<const D: usize>() -> [[f64; D]; D] {
+pub fn identity<const D: usize>() -> [[f64; D]; D] {
     let mut out = [[0.0; D]; D];
     for a in 0..D {
         out[a][a] = 1.0;
@@ -10,7 +10,7 @@ pub(crate) fn identity<const D: usize>() -> [[f64; D]; D] {
 }
 
 /// The product `a b`.
-pub(crate) fn multiply<const D: usize>(a: &[[f64; D]; D], b: &[[f64; D]; D]) -> [[f64; D]; D] {
+pub fn multiply<const D: usize>(a: &[[f64; D]; D], b: &[[f64; D]; D]) -> [[f64; D]; D] {
     let mut out = [[0.0; D]; D];
     for i in 0..D {
         for j in 0..D {
@@ -23,12 +23,12 @@ pub(crate) fn multiply<const D: usize>(a: &[[f64; D]; D], b: &[[f64; D]; D]) -> 
 }
 
 /// The congruence `a b aᵀ`.
-pub(crate) fn congruence<const D: usize>(a: &[[f64; D]; D], b: &[[f64; D]; D]) -> [[f64; D]; D] {
+pub fn congruence<const D: usize>(a: &[[f64; D]; D], b: &[[f64; D]; D]) -> [[f64; D]; D] {
     multiply(&multiply(a, b), &transpose(a))
 }
 
 /// The transpose.
-pub(crate) fn transpose<const D: usize>(a: &[[f64; D]; D]) -> [[f64; D]; D] {
+pub fn transpose<const D: usize>(a: &[[f64; D]; D]) -> [[f64; D]; D] {
     let mut out = [[0.0; D]; D];
     for i in 0..D {
         for j in 0..D {
@@ -40,7 +40,7 @@ pub(crate) fn transpose<const D: usize>(a: &[[f64; D]; D]) -> [[f64; D]; D] {
 
 /// The product `aᵀ v`.
 #[inline]
-pub(crate) fn transpose_apply<const D: usize>(a: &[[f64; D]; D], v: &[f64; D]) -> [f64; D] {
+pub fn transpose_apply<const D: usize>(a: &[[f64; D]; D], v: &[f64; D]) -> [f64; D] {
     let mut out = [0.0; D];
     for i in 0..D {
         for j in 0..D {
@@ -51,7 +51,7 @@ pub(crate) fn transpose_apply<const D: usize>(a: &[[f64; D]; D], v: &[f64; D]) -
 }
 
 /// The determinant.
-pub(crate) fn determinant<const D: usize>(a: &[[f64; D]; D]) -> f64 {
+pub fn determinant<const D: usize>(a: &[[f64; D]; D]) -> f64 {
     match D {
         1 => a[0][0],
         2 => a[0][0] * a[1][1] - a[0][1] * a[1][0],
@@ -61,7 +61,7 @@ pub(crate) fn determinant<const D: usize>(a: &[[f64; D]; D]) -> f64 {
 }
 
 /// The inverse, given the determinant.
-pub(crate) fn inverse<const D: usize>(a: &[[f64; D]; D], determinant: f64) -> [[f64; D]; D] {
+pub fn inverse<const D: usize>(a: &[[f64; D]; D], determinant: f64) -> [[f64; D]; D] {
     let mut out = [[0.0; D]; D];
     match D {
         1 => out[0][0] = 1.0 / determinant,
@@ -91,7 +91,7 @@ fn cofactor3<const D: usize>(a: &[[f64; D]; D], row: usize, column: usize) -> f6
 
 /// The rotation R of the polar decomposition F = R U, by Newton's iteration R ← (R + R⁻ᵀ)/2
 /// (Higham 1986), which converges quadratically for det F > 0.
-pub(crate) fn rotation<const D: usize>(f: &[[f64; D]; D]) -> [[f64; D]; D] {
+pub fn rotation<const D: usize>(f: &[[f64; D]; D]) -> [[f64; D]; D] {
     let mut r = *f;
     for _ in 0..60 {
         let inverse_transpose = transpose(&inverse(&r, determinant(&r)));

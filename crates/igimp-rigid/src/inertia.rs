@@ -1,8 +1,7 @@
 //! Mass and velocity of a rigid body (theory, eq. 67).
 
-use super::{NODES_PER_BODY, RigidBody};
-use crate::conditions::rigid_motion::rotations;
-use crate::small::congruence;
+use crate::{NODES_PER_BODY, RigidBody, rotations};
+use igimp_shape::matrices::congruence;
 
 /// Mass of a rigid body, whose centre is its reference point, and its velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +47,7 @@ impl<const D: usize> RigidBody<D> {
     }
 
     /// The mass on the nodes that stand for its motion: of its displacement, and of its rotation in lengths \[mass\].
-    pub(crate) fn nodal_mass(&self) -> [[[f64; D]; D]; NODES_PER_BODY] {
+    pub fn nodal_mass(&self) -> [[[f64; D]; D]; NODES_PER_BODY] {
         let mut displacement = [[0.0; D]; D];
         let mut rotation = [[0.0; D]; D];
         let moments = self.moments_in_space();
@@ -81,11 +80,7 @@ impl<const D: usize> RigidBody<D> {
     }
 
     /// A vector and a rotation vector of the body on these nodes, the latter times its size.
-    pub(crate) fn nodal(
-        &self,
-        vector: &[f64; D],
-        rotation: &[f64; 3],
-    ) -> [[f64; D]; NODES_PER_BODY] {
+    pub fn nodal(&self, vector: &[f64; D], rotation: &[f64; 3]) -> [[f64; D]; NODES_PER_BODY] {
         let mut turned = [0.0; D];
         for (k, own) in turned.iter_mut().enumerate().take(rotations(D)) {
             *own = rotation[k] * self.surface.size();
@@ -95,7 +90,7 @@ impl<const D: usize> RigidBody<D> {
 
     /// The moment −ω × I ω of a turning body at the start of a step, as a force at the distance of its size \[force\]; none in the
     /// plane.
-    pub(crate) fn gyroscopic_force(&self) -> [f64; D] {
+    pub fn gyroscopic_force(&self) -> [f64; D] {
         let mut force = [0.0; D];
         if D == 3 {
             let (spin, moments) = (self.motion.spin, self.moments_in_space());
@@ -119,7 +114,7 @@ impl<const D: usize> RigidBody<D> {
     }
 
     /// Takes over how its nodes move at the end of a step: velocities \[length/time\] and accelerations \[length/time²\].
-    pub(crate) fn accelerate(
+    pub fn accelerate(
         &mut self,
         velocity: &[[f64; D]; NODES_PER_BODY],
         acceleration: &[[f64; D]; NODES_PER_BODY],

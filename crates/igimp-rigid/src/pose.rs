@@ -1,6 +1,6 @@
 //! Where a rigid body stands.
 
-use crate::small::{identity, multiply, transpose_apply};
+use igimp_shape::matrices::{identity, multiply, transpose_apply};
 
 /// Place and direction of a rigid body.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use igimp_shape::Grid;
 
-use super::RigidBody;
+use crate::RigidBody;
 use igimp_surface::vectors::{dot, minus, norm};
 
 /// Abscissa of the two-point rule of Gauss on (−1, 1).
@@ -15,39 +15,41 @@ const ALONG: f64 = 1e-9;
 const ROUND_OFF: f64 = 1e-9;
 
 /// The face of a particle, parallel to a side of the body.
-pub(crate) struct Face<const D: usize> {
+pub struct Face<const D: usize> {
     /// Its middle \[length\].
-    pub(crate) middle: [f64; D],
-    /// The side, and its normal in space.
-    pub(crate) side: usize,
-    pub(crate) normal: [f64; D],
+    pub middle: [f64; D],
+    /// The side of the body.
+    pub side: usize,
+    /// The normal of the side in space.
+    pub normal: [f64; D],
     /// The same in the frame of the body.
-    pub(crate) facing: [f64; D],
+    pub facing: [f64; D],
     /// The directions in which it is laid out: one in the plane, two in space.
-    pub(crate) along: [[f64; D]; 2],
+    pub along: [[f64; D]; 2],
     /// Half of its length in these directions \[length\].
     half: [f64; 2],
     /// Half of the particle's thickness along the normal \[length\].
     thickness: f64,
     /// From the surface to the face \[length\].
-    pub(crate) gap: f64,
+    pub gap: f64,
     /// Centre and half-lengths of the domain of its particle \[length\].
     domain: [[f64; D]; 2],
 }
 
 /// A point of integration on a face.
-pub(crate) struct FacePoint<const D: usize> {
-    pub(crate) x: [f64; D],
+pub struct FacePoint<const D: usize> {
+    /// Its place in space \[length\].
+    pub x: [f64; D],
     /// Area that it stands for \[length^(D-1)\].
-    pub(crate) area: f64,
+    pub area: f64,
     /// Knots of the surface, with their shares.
-    pub(crate) knots: [(usize, f64); D],
+    pub knots: [(usize, f64); D],
 }
 
 impl<const D: usize> Face<D> {
     /// The face of the particle with centre and half-lengths \[length\] that looks at a side of a body;
     /// none if its centre stands below the side or further off than the particle is thick (theory, eq. 45b).
-    pub(crate) fn of(
+    pub fn of(
         body: &RigidBody<D>,
         side: usize,
         centre: &[f64; D],
@@ -87,26 +89,26 @@ impl<const D: usize> Face<D> {
     }
 
     /// Whether its particle ends before a face at a gap begins.
-    pub(crate) fn may_hide(&self, gap: f64) -> bool {
+    pub fn may_hide(&self, gap: f64) -> bool {
         self.gap + 2.0 * self.thickness <= (1.0 + ROUND_OFF) * gap
     }
 
     /// Whether its particle lies between the side and the middle of another face of that side (theory, eq. 45f).
-    pub(crate) fn hides(&self, other: &Self) -> bool {
+    pub fn hides(&self, other: &Self) -> bool {
         let arm = minus(&other.middle, &self.middle);
         let mut tangents = std::iter::zip(&self.along, self.half).take(D - 1);
         self.may_hide(other.gap) && tangents.all(|(tangent, half)| dot(&arm, tangent).abs() < half)
     }
 
     /// A point of its plane in space.
-    pub(crate) fn at(&self, place: &[f64; 2]) -> [f64; D] {
+    pub fn at(&self, place: &[f64; 2]) -> [f64; D] {
         let [s, t] = place;
         std::array::from_fn(|a| self.middle[a] + s * self.along[0][a] + t * self.along[1][a])
     }
 
     /// From a body that is round with this radius to the domain, along the line from its middle through a point of the face
     /// \[length\] (theory, eq. 45e). A face that is along no side of the domain touches it at a corner; elsewhere soil is further off.
-    pub(crate) fn gap_along(&self, middle: &[f64; D], radius: f64, x: &[f64; D]) -> f64 {
+    pub fn gap_along(&self, middle: &[f64; D], radius: f64, x: &[f64; D]) -> f64 {
         let [centre, half] = &self.domain;
         let corner = |axis: usize, sign: f64| centre[axis] + sign * half[axis];
         let arm = minus(x, middle);
@@ -130,7 +132,7 @@ impl<const D: usize> Face<D> {
 
     /// Its points of integration in the plane: two between any two lines of the grid and knots of the surface that
     /// cut it. Beyond the end of a side there are none. `knots` are those of the surface in space \[length\].
-    pub(crate) fn points(
+    pub fn points(
         &self,
         body: &RigidBody<D>,
         knots: &[[f64; D]],
@@ -197,7 +199,8 @@ fn tangents<const D: usize>(normal: &[f64; D]) -> [[f64; D]; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Interface, Surface};
+    use crate::Interface;
+    use igimp_surface::Surface;
 
     // GOAL: a body that rolls sees level ground where it is.
     // CASE: a circle of radius 1 that stands 0.02 above ground, and particles of the uppermost layer beside its lowest point.

@@ -2,8 +2,8 @@
 
 use igimp_shape::Grid;
 
-use super::RigidBody;
-use super::face::Face;
+use crate::RigidBody;
+use crate::face::Face;
 use igimp_surface::Space;
 use igimp_surface::vectors::{cross_size, dot, minus, norm};
 
@@ -29,16 +29,16 @@ const LEAST: f64 = 1e-12;
 type Flat = [f64; 2];
 
 /// A piece of a face: it lies in one cell, above one facet.
-pub(crate) struct Piece<const D: usize> {
+pub struct Piece<const D: usize> {
     /// The corners of the facet, as points of the surface.
-    pub(crate) corners: [usize; D],
+    pub corners: [usize; D],
     /// Points of integration in space \[length\], with their area \[length²\] and the shares of the corners.
-    pub(crate) points: Vec<([f64; D], f64, [f64; 3])>,
+    pub points: Vec<([f64; D], f64, [f64; 3])>,
 }
 
 /// The face of a particle with these half-lengths \[length\] as seen from the body, in pieces. `places` are
 /// those of the points of the surface in space \[length\].
-pub(crate) fn pieces<const D: usize>(
+pub fn pieces<const D: usize>(
     face: &Face<D>,
     half_length: &[f64; D],
     body: &RigidBody<D>,
@@ -94,7 +94,7 @@ pub(crate) fn pieces<const D: usize>(
 
 /// The area of what belongs to each knot \[length²\], as far as it lies within the grid: on a plane of symmetry half
 /// of a knot has no soil.
-pub(crate) fn tents_within<const D: usize>(
+pub fn tents_within<const D: usize>(
     body: &RigidBody<D>,
     space: &Space<D>,
     grid: &Grid<D>,

@@ -50,7 +50,7 @@ impl Interface {
     }
 
     /// Adhesion where soil of a law touches, at the ratios of that soil to its law \[stress\].
-    pub(crate) fn adhesion(&self, law: usize, ratios: Ratios) -> f64 {
+    pub fn adhesion(&self, law: usize, ratios: Ratios) -> f64 {
         let Shear::Limited {
             adhesion, varies, ..
         } = &self.shear
@@ -67,7 +67,7 @@ impl Interface {
 
     /// Whether its tangent is symmetric: friction that slips follows the pressure and is followed by
     /// nothing.
-    pub(crate) fn is_symmetric(&self) -> bool {
+    pub fn is_symmetric(&self) -> bool {
         !matches!(self.shear, Shear::Limited { friction, .. } if friction > 0.0)
     }
 }

@@ -9,7 +9,7 @@ pub struct ContactState {
 
 impl ContactState {
     /// Nothing touches.
-    pub(crate) fn none(knots: usize) -> Self {
+    pub fn none(knots: usize) -> Self {
         Self {
             knots: vec![ContactNode::default(); knots],
         }

@@ -1,0 +1,84 @@
+//! Rigid bodies beside soil: a surface with an interface on each of its sides, a pose, a mass, what contact has left
+//! behind, and the faces that particles turn to them. Nothing here knows of stress in soil or of equilibrium.
+
+mod face;
+mod face_clipping;
+mod inertia;
+mod interface;
+mod pose;
+mod state;
+
+use std::sync::Arc;
+
+use igimp_surface::Surface;
+
+pub use face::{Face, FacePoint};
+pub use face_clipping::{Piece, pieces, tents_within};
+pub use inertia::RigidInertia;
+pub use interface::{Interface, Penalty, Shear, Tension};
+pub use pose::Pose;
+pub use state::{ContactNode, ContactState};
+
+/// Nodes that stand for the motion of a body behind the nodes of the grid: one for its displacement, one
+/// for its rotation.
+pub const NODES_PER_BODY: usize = 2;
+
+/// A rigid body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidBody<const D: usize> {
+    /// What messages call it.
+    pub name: String,
+    /// Its surface, in the frame of the body.
+    pub surface: Arc<Surface<D>>,
+    /// What its sides are like, in the order of the sides of the surface.
+    pub interfaces: Vec<Interface>,
+    /// Stiffness of contact.
+    pub penalty: Penalty,
+    /// Where it stands.
+    pub pose: Pose<D>,
+    /// Its mass, and how it moves.
+    pub motion: RigidInertia<D>,
+    /// What contact has left behind; written in `commit` alone.
+    pub contact: ContactState,
+}
+
+impl<const D: usize> RigidBody<D> {
+    /// A body that has touched nothing yet, with its reference point at `origin` \[length\], where the
+    /// frame of its surface begins too.
+    ///
+    /// # Panics
+    /// If there is not one interface for each side.
+    pub fn new(surface: Surface<D>, interfaces: Vec<Interface>, origin: [f64; D]) -> Self {
+        assert_eq!(
+            surface.side_count(),
+            interfaces.len(),
+            "every side has an interface"
+        );
+        Self {
+            name: "unnamed".to_owned(),
+            contact: ContactState::none(surface.knot_count()),
+            surface: Arc::new(surface),
+            interfaces,
+            penalty: Penalty::default(),
+            pose: Pose::at(origin),
+            motion: RigidInertia::default(),
+        }
+    }
+
+    /// Signed distance of a point \[length\] in space to the surface, negative within the body, and the
+    /// direction in which it grows.
+    pub fn nearest(&self, x: &[f64; D]) -> (f64, [f64; D]) {
+        let (distance, normal) = self.surface.distance(&self.pose.into_body(x));
+        (distance, self.pose.direction(&normal))
+    }
+
+    /// Signed distance of a point \[length\] in space to the surface, negative within the body.
+    pub fn distance(&self, x: &[f64; D]) -> f64 {
+        self.nearest(x).0
+    }
+}
+
+/// Number of rotations in space of dimension D: 1 in the plane, 3 in space.
+pub const fn rotations(dimension: usize) -> usize {
+    dimension * (dimension - 1) / 2
+}
