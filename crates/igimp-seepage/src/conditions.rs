@@ -1,5 +1,7 @@
 //! What a flow is given: soils, heads, flows, and what is asked of it.
 
+use std::f64::consts::TAU;
+
 use crate::curve::{Curve, Pores};
 
 /// Permeability of a soil.
@@ -131,6 +133,8 @@ pub struct Conditions<const D: usize> {
     pub regions: Vec<Named<D, InGround>>,
     /// Sections whose discharge is asked for: boxes without extent along one axis.
     pub sections: Vec<(String, Extent<D>)>,
+    /// Whether x is the radius of a body of revolution, whose flows are those of the whole circle; in the plane alone.
+    pub axisymmetric: bool,
     /// Whether all pores are full, and heads may be below the ground: no free surface.
     pub confined: bool,
     /// Height over which relative permeability falls \[m\]; none: that of the tallest cell.
@@ -147,9 +151,20 @@ impl<const D: usize> Conditions<D> {
             faces: Vec::new(),
             regions: Vec::new(),
             sections: Vec::new(),
+            axisymmetric: false,
             confined: false,
             width: None,
             floor: 1e-3,
         }
     }
+
+    /// The thickness of the ground at a radius.
+    pub(crate) fn thickness(&self, radius: f64) -> f64 {
+        thickness(self.axisymmetric, radius)
+    }
+}
+
+/// The thickness of the ground at a radius, $`2πr`$ around an axis \[m\], or one (theory, eq. 130g).
+pub(crate) fn thickness(axisymmetric: bool, radius: f64) -> f64 {
+    if axisymmetric { TAU * radius } else { 1.0 }
 }

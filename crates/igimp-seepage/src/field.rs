@@ -54,6 +54,8 @@ pub struct Seepage<const D: usize> {
     pub unknowns: usize,
     /// Whether all pores were taken to be full.
     pub confined: bool,
+    /// Whether x is the radius of a body of revolution.
+    pub axisymmetric: bool,
 }
 
 impl<const D: usize> Seepage<D> {
@@ -91,6 +93,7 @@ impl<const D: usize> Seepage<D> {
             residual: largest / inflow.max(outflow).max(f64::MIN_POSITIVE),
             unknowns: heads.len(),
             confined: relative.confined,
+            axisymmetric: system.conditions.axisymmetric,
             grid,
         }
     }

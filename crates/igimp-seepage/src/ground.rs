@@ -297,7 +297,7 @@ fn subdivide<const D: usize>(
                     let (soil, region) = acting(conditions, &part.centroid, body.soil);
                     cell.points.push(Point {
                         x: part.centroid,
-                        volume: part.volume,
+                        volume: part.volume * conditions.thickness(part.centroid[0]),
                         soil,
                         body_soil: body.soil,
                         region,
@@ -315,8 +315,11 @@ fn subdivide<const D: usize>(
             let (soil, _) = acting(conditions, &x, own.soil);
             let filling = Filling { soil, ..own };
             let is_cut = own.volume < WHOLE * size;
-            cell.facets
-                .extend(bodies.facets([from, to], &filling, is_cut));
+            let mut facets = bodies.facets([from, to], &filling, is_cut);
+            for facet in &mut facets {
+                facet.area *= conditions.thickness(facet.x[0]);
+            }
+            cell.facets.extend(facets);
         }
     }
 }

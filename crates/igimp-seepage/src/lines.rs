@@ -3,6 +3,7 @@
 use igimp_shape::Grid;
 
 use crate::basis::{Basis, nodes_of};
+use crate::conditions::thickness;
 use crate::field::Seepage;
 use crate::ground::ends_of;
 
@@ -68,6 +69,7 @@ impl<const D: usize> Seepage<D> {
             residual: self.residual,
             unknowns: self.unknowns,
             confined: self.confined,
+            axisymmetric: self.axisymmetric,
             grid,
         }
     }
@@ -189,7 +191,8 @@ impl Seepage<2> {
                         let cell = self.grid.cell_index(place);
                         let mut ends = [[0, 1].map(|d| 0.5 * (lower[d] + upper[d])); 2];
                         (ends[0][other], ends[1][other]) = (lower[other], upper[other]);
-                        let width = self.filled[cell] * (upper[other] - lower[other]);
+                        let thick = thickness(self.axisymmetric, 0.5 * (lower[0] + upper[0]));
+                        let width = self.filled[cell] * (upper[other] - lower[other]) * thick;
                         (ends, self.velocities[cell][axis].abs() * width)
                     })
                     .collect();

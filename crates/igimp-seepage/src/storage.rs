@@ -53,8 +53,12 @@ impl Storage {
             let corners = &system.corners[cell][..1 << D];
             if let Some(soil) = own.whole {
                 let volume: f64 = system.grid.cell_size(own.place).iter().product();
-                for &unknown in corners {
-                    *volumes.entry((unknown, soil)).or_insert(0.0) += volume / corners.len() as f64;
+                for (k, &unknown) in corners.iter().enumerate() {
+                    // A third into the cell from its corner the thickness is the mean of it by the values of the node.
+                    let [near, far] = [ends[k & 1][0], ends[1 - (k & 1)][0]];
+                    let thick = system.conditions.thickness((2.0 * near + far) / 3.0);
+                    let own = volume / corners.len() as f64 * thick;
+                    *volumes.entry((unknown, soil)).or_insert(0.0) += own;
                 }
                 continue;
             }

@@ -208,7 +208,11 @@ impl<'a, const D: usize> System<'a, D> {
         let is_full = relative.confined || lowest - upper[D - 1] > beyond;
         let is_dry = self.curve(soil) == Curve::Ramp && highest - lower[D - 1] < -beyond;
         let along: &[(f64, f64)] = if is_full || is_dry { &TWO } else { &FOUR };
-        gauss([lower, upper], along, soil)
+        let mut points = gauss([lower, upper], along, soil);
+        for point in &mut points {
+            point.volume *= self.conditions.thickness(point.x[0]);
+        }
+        points
     }
 
     /// What share of its permeability soil has at a point, and the slope of that.
@@ -412,6 +416,7 @@ impl<'a, const D: usize> System<'a, D> {
             .filter(|d| *d != axis)
             .map(|d| upper[d] - lower[d])
             .product();
+        let side = side * self.conditions.thickness(0.5 * (lower[0] + upper[0]));
         let height = ends[1][1][axis] - lower[axis];
         let across = (pair.cells).map(|cell| self.tensor(cell, self.some_soil(cell))[axis][axis]);
         let rate = GHOST * height * across[0].min(across[1]) * side / 2_f64.powi(D as i32 - 1);

@@ -133,7 +133,7 @@ fn questions() -> Vec<Question> {
                 "strip, level of the ground",
                 Kind::OnGround,
                 [n_c; 2],
-                Claim::Bounds,
+                Claim::Both,
                 Level::Quick,
             )
         },

@@ -6,15 +6,16 @@ use std::path::Path;
 use std::sync::Arc;
 
 use igimp_assembly::{
-    Consolidating, Constraints, Method, Particles, Permeable, PoreFlow, PoreSite, PoreState,
-    PoreWater, SharedLaw, StepConditions, StepLoads,
+    Consolidating, Constraints, Method, ParticleSeed, Particles, Permeable, PoreFlow, PoreSite,
+    PoreState, PoreWater, Section, SharedLaw, StepConditions, StepLoads,
 };
 use igimp_cases::CaseError;
-use igimp_geometry::seed::fill;
+use igimp_geometry::seed::{fill, fill_polygon};
 use igimp_geometry::solid::{Solid, Sphere};
 use igimp_material::{Elasticity, HenckyElastic};
 use igimp_model::check::Band;
 use igimp_results::tables::table::Table;
+use igimp_shape::Grid;
 use igimp_solver::{Accepted, Body, MarchSettings};
 
 use super::Octant;
@@ -23,7 +24,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
-const ABOUT: &str = "A sphere of elastic soil, an eighth of it, is pressed on all sides at once and drains at its surface. As the outer shell gives way first, the pressure in the middle rises above that of the load before it falls. In place of a load a suction of p₀ comes at once and everywhere: before water flows, all of it is excess pressure.";
+const ABOUT: &str = "A sphere of elastic soil, an eighth of it, is pressed on all sides at once and drains at its surface. As the outer shell gives way first, the pressure in the middle rises above that of the load before it falls. In place of a load a suction of p₀ comes at once and everywhere: before water flows, all of it is excess pressure. The same sphere is computed as a body of revolution, by a quarter of its section.";
 const CRYER: Oracle = Oracle {
     kind: OracleKind::Exact,
     source: "Cryer 1963",
@@ -37,6 +38,8 @@ const SECOND: f64 = 1e-4;
 const RATIO: f64 = 1.07;
 /// Times at which the pressure is held against the series \[-\].
 const TIMES: [f64; 5] = [0.01, 0.05, 0.1, 0.2, 0.5];
+/// Corners of the polygon along a quarter of the circle.
+const ARC: usize = 200;
 /// Within this share of the radius particles tell the pressure in the middle \[-\].
 const MIDDLE: f64 = 0.3;
 
@@ -48,19 +51,36 @@ const MESHES: [(usize, f64, Level); 4] = [
     (16, 0.01, Level::Full),
 ];
 
+/// The same for a body of revolution.
+const TURNED: [(usize, f64, Level); 3] = [
+    (8, 0.025, Level::Quick),
+    (16, 0.01, Level::Default),
+    (32, 0.01, Level::Full),
+];
+
 /// A sphere of radius 1 and Young's modulus 1, its mobility 1.
 #[derive(Clone, Copy, Debug)]
 struct Ball {
     cells: usize,
     poisson: f64,
+    form: Form,
+}
+
+/// As what it is computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Form {
+    /// An eighth of it, in space.
+    Space,
+    /// A quarter of its section, turned about an axis.
+    Revolution,
 }
 
 /// The same pore pressure everywhere.
 #[derive(Debug)]
 struct Uniform(f64);
 
-impl PoreWater<3> for Uniform {
-    fn at(&self, _: PoreSite<'_, 3>) -> PoreState<3> {
+impl<const D: usize> PoreWater<D> for Uniform {
+    fn at(&self, _: PoreSite<'_, D>) -> PoreState<D> {
         PoreState {
             pressure: self.0,
             ..PoreState::dry()
@@ -95,16 +115,41 @@ impl Ball {
 
     /// Runs it; the table has time, pressure in the middle and exact pressure.
     fn run(&self) -> Result<(RunRecord, Table), CaseError> {
-        let cell = 1.0 / self.cells as f64;
-        let grid = grid_of(cell, [self.cells + 1; 3])?;
-        let ball = Octant(Solid::Sphere(Sphere {
-            centre: [0.0; 3],
-            radius: 1.0,
-        }));
-        let mut body = Body::new(Particles::new(&fill(&grid, &ball, 2, 1.0, 0)?)?);
+        let (cell, mut method) = (1.0 / self.cells as f64, Method::igimp_bbar());
+        if self.form == Form::Space {
+            let grid = grid_of(cell, [self.cells + 1; 3])?;
+            let ball = Octant(Solid::Sphere(Sphere {
+                centre: [0.0; 3],
+                radius: 1.0,
+            }));
+            let seeds = fill(&grid, &ball, 2, 1.0, 0)?;
+            return self.pressed(grid, &seeds, &method);
+        }
+        method.section = Section::Axisymmetric;
+        let grid = grid_of(cell, [self.cells + 1; 2])?;
+        let arc = (0..=ARC).map(|k| (FRAC_PI_2 * k as f64 / ARC as f64).sin_cos());
+        let mut quarter: Vec<[f64; 2]> = arc.map(|(y, x)| [x, y]).collect();
+        quarter[ARC] = [0.0, 1.0];
+        quarter.push([0.0, 0.0]);
+        let mut seeds = fill_polygon(&grid, &quarter, 2, 1.0, 0)?;
+        for seed in &mut seeds {
+            let centroid = seed.x[0] + seed.centroid[0] * seed.half_length[0];
+            seed.volume *= method.section.thickness(centroid);
+        }
+        self.pressed(grid, &seeds, &method)
+    }
+
+    /// Presses the ball that particles fill.
+    fn pressed<const D: usize>(
+        &self,
+        grid: Grid<D>,
+        seeds: &[ParticleSeed<D>],
+        method: &Method,
+    ) -> Result<(RunRecord, Table), CaseError> {
+        let mut body = Body::new(Particles::new(seeds)?);
         let law: SharedLaw = Arc::new(HenckyElastic::new(Elasticity::new(1.0, self.poisson)?));
         let mut constraints = Constraints::free(&grid);
-        for axis in 0..3 {
+        for axis in 0..D {
             constraints.fix_wall(&grid, axis, false, axis)?;
         }
         let last = *TIMES.last().expect("there are times");
@@ -118,14 +163,14 @@ impl Ball {
         let load_path = |from: f64, to: f64| {
             let [from, to] = [from, to].map(|factor| (factor * steps as f64).round());
             let took = |from: f64, to: f64| (time(to) - time(from)) / self.modulus();
-            let mut mobility = [[0.0; 3]; 3];
+            let mut mobility = [[0.0; D]; D];
             for (axis, row) in mobility.iter_mut().enumerate() {
                 row[axis] = 1.0;
             }
             let mut conditions = StepConditions::new(
                 grid.clone(),
                 constraints.clone(),
-                StepLoads::gravity([0.0; 3]),
+                StepLoads::gravity([0.0; D]),
                 vec![Arc::clone(&law)],
             )?;
             conditions.water.given = Some(Arc::new(Uniform(-LOAD)));
@@ -148,23 +193,26 @@ impl Ball {
                 drains: Vec::new(),
             }))
         };
+        let (turned, title) = match self.form {
+            Form::Space => ("", ""),
+            Form::Revolution => ("_turned", "of revolution, "),
+        };
         let mut curve = Table::new(
-            format!("pressure_nu{:.2}_{}", self.poisson, self.cells),
+            format!("pressure_nu{:.2}_{}{turned}", self.poisson, self.cells),
             &["time_[-]", "pressure_in_the_middle_[-]", "exact_[-]"],
         );
-        let mut observe = |accepted: &Accepted<'_, 3>| {
+        let mut observe = |accepted: &Accepted<'_, D>| {
             let at = time((accepted.report.to * steps as f64).round());
             let found = in_the_middle(&accepted.body.particles) / LOAD;
             curve.push(vec![at, found, self.exact(at)]);
             ControlFlow::Continue(())
         };
-        let variant = format!("ν = {:.2}, R/h = {}", self.poisson, self.cells);
+        let variant = format!("{title}ν = {:.2}, R/h = {}", self.poisson, self.cells);
         let settings = MarchSettings::steps(steps);
-        let method = Method::igimp_bbar();
         let (run, _) = run(
             variant,
             &mut body,
-            &method,
+            method,
             &settings,
             &load_path,
             &mut observe,
@@ -174,7 +222,7 @@ impl Ball {
 }
 
 /// Pressure at the origin by the parabola in the distance that is nearest to the particles around it.
-fn in_the_middle(particles: &Particles<3>) -> f64 {
+fn in_the_middle<const D: usize>(particles: &Particles<D>) -> f64 {
     let [mut n, mut s, mut ss, mut p, mut sp] = [0.0; 5];
     for (x, excess) in particles.x.iter().zip(&particles.excess) {
         let square: f64 = x.iter().map(|x| x * x).sum();
@@ -200,10 +248,15 @@ fn nearest(curve: &Table, time: f64) -> [f64; 3] {
 /// Runs the study.
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("space-cryer", ABOUT, out)?;
-    for (cells, band, least) in MESHES {
-        for poisson in [0.0, 1.0 / 3.0] {
-            if level >= least {
-                hold(&mut study, Ball { cells, poisson }, band)?;
+    for (form, meshes) in [(Form::Space, &MESHES[..]), (Form::Revolution, &TURNED)] {
+        for &(cells, band, _) in meshes.iter().filter(|(.., least)| *least <= level) {
+            for poisson in [0.0, 1.0 / 3.0] {
+                let ball = Ball {
+                    cells,
+                    poisson,
+                    form,
+                };
+                hold(&mut study, ball, band)?;
             }
         }
     }
@@ -245,7 +298,12 @@ mod tests {
             (0.0, 0.5, 0.27231),
             (1.0 / 3.0, 0.05, 1.20557),
         ] {
-            let ball = Ball { cells: 1, poisson };
+            let form = Form::Space;
+            let ball = Ball {
+                cells: 1,
+                poisson,
+                form,
+            };
             assert!(
                 (ball.exact(time) - value).abs() < 1e-5,
                 "{}",

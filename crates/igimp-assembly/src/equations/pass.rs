@@ -155,7 +155,10 @@ impl<const D: usize> System<'_, D> {
                     strip.f_int[support.node - strip.first_node][0] += force;
                 }
             }
-            let water = self.beside.consolidation.of_particle(particle, supports, u);
+            let water = self
+                .beside
+                .consolidation
+                .of_particle(particle, (supports, hoops), u);
             if let Some(water) = &water {
                 water.add_forces(strip.first_scalar, strip.f_of_scalars);
             }

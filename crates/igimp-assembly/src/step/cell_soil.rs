@@ -11,10 +11,10 @@ use crate::conditions::StepConditions;
 use crate::conditions::loads::LoadPoint;
 use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
-use crate::method::{Geometry, Locking, Method};
+use crate::method::{Geometry, Locking, Method, Section};
 use crate::step::continuation::followers;
 use crate::step::domain::{capped_half_length, merge_equal_nodes, off_grid};
-use crate::step::hoops::{Hoop, RadialPart, off_middle};
+use crate::step::hoops::{Hoop, RadialPart, centroid_of_cell, weigh_by_radius};
 use crate::step::ties::Ties;
 
 /// A cell that is filled to less than this share holds a sliver of soil that reached over its face
@@ -213,11 +213,10 @@ impl<const D: usize> CellSoil<D> {
     /// eq. 130b).
     fn share_by_radius(&mut self, grid: &Grid<D>) {
         for (cell, shared_at) in self.shared_at.iter_mut().enumerate() {
-            let (nodes, place) = (grid.axes[0].nodes(), grid.cell_place(cell)[0]);
-            let size = nodes[place + 1] - nodes[place];
-            let middle = nodes[place] + 0.5 * size;
-            shared_at[0] += off_middle(middle, 0.5 * size) / size;
-            self.hoop_at.push(middle);
+            let place = grid.cell_place(cell);
+            *shared_at = centroid_of_cell(grid, place, Section::Axisymmetric);
+            let [start, end] = radii(grid, place);
+            self.hoop_at.push(0.5 * (start + end));
         }
     }
 
@@ -448,26 +447,19 @@ fn radii<const D: usize>(grid: &Grid<D>, cell: [usize; D]) -> [f64; 2] {
 
 impl<const D: usize> Parts<D> {
     /// Weighs the parts of the last particle by their radii, its domain being of half-length `half_length` around `x` along
-    /// the radius: their shares are then those of its volume (theory, eq. 130).
+    /// the radius.
     fn weigh_by_radius(&mut self, grid: &Grid<D>, method: &Method, x: f64, half_length: f64) {
         let half_length = if method.is_of_points() {
             0.0
         } else {
             half_length
         };
-        let first = self.radial.len();
-        let own = &mut self.all[first..];
+        let own = &mut self.all[self.radial.len()..];
         let radial = own
             .iter()
             .map(|part| RadialPart::of(grid, part, x, half_length));
         self.radial.extend(radial);
-        let radial = &self.radial[first..];
-        let whole: f64 = std::iter::zip(&*own, radial)
-            .map(|(part, at)| part.share * at.middle)
-            .sum();
-        for (part, at) in own.iter_mut().zip(radial) {
-            part.share *= at.middle / whole;
-        }
+        weigh_by_radius(grid, own);
     }
 }
 

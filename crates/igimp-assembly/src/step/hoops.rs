@@ -2,6 +2,8 @@
 
 use igimp_shape::{CellPart, Grid, Support};
 
+use crate::method::Section;
+
 /// How much a support stretches a particle around the axis, for a radial displacement of one \[1/length\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Hoop {
@@ -90,6 +92,32 @@ impl RadialPart {
             centroid: part.middle[0] + off_middle(middle, 0.5 * (upper - lower)) / size,
         }
     }
+}
+
+/// Weighs the parts of a particle by their radii: their shares are then those of its volume (theory, eq. 130).
+pub(crate) fn weigh_by_radius<const D: usize>(grid: &Grid<D>, parts: &mut [CellPart<D>]) {
+    let radius = |part: &CellPart<D>| {
+        let (nodes, cell) = (grid.axes[0].nodes(), part.cell[0]);
+        nodes[cell] + part.middle[0] * (nodes[cell + 1] - nodes[cell])
+    };
+    let whole: f64 = parts.iter().map(|part| part.share * radius(part)).sum();
+    for part in parts {
+        part.share *= radius(part) / whole;
+    }
+}
+
+/// Centroid by volume of a cell in it, from 0 to 1 in each direction \[-\].
+pub(crate) fn centroid_of_cell<const D: usize>(
+    grid: &Grid<D>,
+    cell: [usize; D],
+    section: Section,
+) -> [f64; D] {
+    let mut centroid = [0.5; D];
+    if section.is_axisymmetric() {
+        let (start, size) = (grid.axes[0].nodes()[cell[0]], grid.cell_size(cell)[0]);
+        centroid[0] += off_middle(start + 0.5 * size, 0.5 * size) / size;
+    }
+    centroid
 }
 
 /// How far the centroid by volume of a ring lies beyond its middle: a third of the square of half its width over its

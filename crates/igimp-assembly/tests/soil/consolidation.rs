@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::common::{Random, conditions, displacements, grid, laws, methods, particles};
 use igimp_assembly::{
     Consolidating, Constraints, Geometry, Method, ParticleSeed, Particles, Permeable, PoreFlow,
-    SharedLaw, Stencils, StepConditions, StepLoads, System, VoidLaw,
+    Section, SharedLaw, Stencils, StepConditions, StepLoads, System, VoidLaw,
 };
 use igimp_material::{Elasticity, HenckyElastic, TangentKind};
 use igimp_shape::{Axis, Grid};
@@ -103,13 +103,18 @@ fn the_tangent_is_the_derivative() {
                 geometry: Geometry::Given,
                 ..method.clone()
             };
-            for method in [method, given] {
+            let turned = Method {
+                section: Section::Axisymmetric,
+                ..method.clone()
+            };
+            for method in [method, given, turned] {
                 let error = tangent_error(&plane, &bodies.0, &law, &method, &mut random);
                 assert!(
                     error < 1e-6,
-                    "{name}, {}, {:?}: {error:e}",
+                    "{name}, {}, {:?}, {:?}: {error:e}",
                     method.label(),
-                    method.geometry
+                    method.geometry,
+                    method.section
                 );
             }
         }

@@ -21,6 +21,19 @@ fn a_full_pool_and_a_drawdown_weaken_a_dam() {
     between(ran.measured("factor of safety with a full pool"), 1.85, 2.2);
 }
 
+// GOAL: a pumped well, a body of revolution: its discharge, and ground that settles towards it.
+// CASE: the shipped case `well`, its pictures left out.
+// ORACLE: the discharge of Charny's integral around an axis, in the check of the case; settlement is there, below a hundredth of a
+// cell, and stresses of the ground at rest are in equilibrium with the water before.
+#[test]
+fn a_well_is_pumped() {
+    let ran = ran("well", &["output.figures=[]"]);
+    assert_eq!(ran.outcomes(), [Completed; 2]);
+    between(ran.measured("discharge"), 1.486e-2, 1.516e-2);
+    assert!(ran.run.summary.stages[0].largest_displacement < 1e-9);
+    between(ran.run.summary.stages[1].largest_displacement, 1e-3, 5e-3);
+}
+
 #[test]
 fn water_seeps_through_a_dam() {
     let ran = ran(
@@ -75,14 +88,32 @@ fn a_dam_recovers_from_a_rapid_drawdown() {
 /// ORACLE: Terzaghi's series, in the checks of the case; the run that was not interrupted.
 #[test]
 fn clay_consolidates_under_a_fill() {
-    let file = file("consolidation", &["output.figures=[]"]);
-    let [whole, stopped] = ["consolidation-whole", "consolidation-stopped"].map(folder);
+    consolidates("consolidation");
+}
+
+// GOAL: clay around a vertical drain, a body of revolution, settles in time, loses the water that it settles by, and goes on where
+// it was interrupted, on any number of threads.
+// CASE: the shipped case `vertical_drain`.
+// ORACLE: Barron's series, in the checks of the case; the run that was not interrupted.
+#[test]
+fn clay_drains_to_a_vertical_drain() {
+    consolidates("vertical_drain");
+}
+
+/// Runs a shipped case, whole and interrupted.
+fn consolidates(name: &str) {
+    let file = file(name, &["output.figures=[]"]);
+    let [whole, stopped] = ["whole", "stopped"].map(|part| folder(&format!("{name}-{part}")));
     let run = run_into((&file, file.case()), &whole, Start::Afresh, None);
     assert_done(&run.summary);
     assert_eq!(run.summary.checks.len(), 2);
     assert!(run.summary.checks.iter().all(|check| check.pass));
-    for stage in &run.summary.stages[2..] {
-        let own = stage.consolidation.as_ref().unwrap();
+    let stages = run.summary.stages.iter();
+    let flowed: Vec<_> = stages
+        .filter_map(|own| own.consolidation.as_ref())
+        .collect();
+    assert_eq!(flowed.len(), 2);
+    for own in flowed {
         assert!(own.missing < 1e-8 * own.outflow, "{own:?}");
     }
     run_into((&file, file.case()), &stopped, Start::Afresh, Some(20));
@@ -94,7 +125,7 @@ fn clay_consolidates_under_a_fill() {
         &everything(&stopped),
         "resumed on three threads",
     );
-    let alone = ran("consolidation", &["output.figures=[]"]);
+    let alone = ran(name, &["output.figures=[]"]);
     assert!(alone.run.body.particles == run.body.particles);
 }
 

@@ -66,6 +66,7 @@ impl SeepageCase {
             sections: (own.sections.iter())
                 .map(|(name, within)| (name.clone(), extent(within)))
                 .collect(),
+            axisymmetric: own.axisymmetric,
             confined: own.confined,
             width: own.width,
             floor: own.floor,

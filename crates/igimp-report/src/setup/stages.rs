@@ -255,24 +255,24 @@ fn construction_in_words<const D: usize>(case: &Case<D>, own: &Construction) -> 
 /// The action of a stage on a rigid body, in words.
 fn moves_in_words<const D: usize>(case: &Case<D>, own: &RigidMove) -> String {
     let name = &case.rigid[own.body].name;
-    format!("{name}: {}", drives_in_words::<D>(own))
+    format!("{name}: {}", drives_in_words(case, own))
 }
 
 /// The drives of the components of a rigid body's motion in a stage, in words.
-pub(super) fn drives_in_words<const D: usize>(own: &RigidMove) -> String {
-    let (names, force, moment): (&[&str], _, _) = if D == 2 {
-        (&["x", "y", "rotation"], "N/m", "N m/m")
+pub(super) fn drives_in_words<const D: usize>(case: &Case<D>, own: &RigidMove) -> String {
+    let names: &[&str] = if D == 2 {
+        &["x", "y", "rotation"]
     } else {
-        let names = &[
+        &[
             "x",
             "y",
             "z",
             "rotation about x",
             "rotation about y",
             "rotation about z",
-        ];
-        (names, "N", "N m")
+        ]
     };
+    let [force, moment] = ["N", "N m"].map(|unit| format!("{unit}{}", case.per_metre()));
     let parts: Vec<String> = std::iter::zip(names, own.drives)
         .filter_map(|(name, drive)| {
             let about = name.strip_prefix("rotation");
@@ -281,10 +281,10 @@ pub(super) fn drives_in_words<const D: usize>(own: &RigidMove) -> String {
                 (RigidDrive::By(by), None) => format!("{name} by {} m", short(by)),
                 (RigidDrive::Force(0.0), _) => format!("{name} free"),
                 (RigidDrive::Force(own), Some(about)) => {
-                    format!("moment{about} to {}", kilo(own, moment))
+                    format!("moment{about} to {}", kilo(own, &moment))
                 }
                 (RigidDrive::Force(own), None) => {
-                    format!("force in {name} to {}", kilo(own, force))
+                    format!("force in {name} to {}", kilo(own, &force))
                 }
             })
         })

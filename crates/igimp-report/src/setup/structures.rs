@@ -52,7 +52,7 @@ fn rigid_body<const D: usize>(case: &Case<D>, index: usize, part: &RigidPart<D>)
             continue;
         };
         for own in moves.iter().filter(|own| own.body == index) {
-            moved.push(format!("{}: {}", stage.name, drives_in_words::<D>(own)));
+            moved.push(format!("{}: {}", stage.name, drives_in_words(case, own)));
         }
     }
     let names = match part.shape.sides() {

@@ -102,9 +102,9 @@ table! {
     head: length, optional "another key says it", "head that is kept there";
     drain: flag, optional "another key says it", "water leaves where its pressure would be positive, and none enters";
     discharge: quantity(DischargePerLength, Any), optional "another key says it",
-        "water that is pumped out of all of it; negative enters", in_plane,
+        "water that is pumped out of all of it; negative enters", per_metre,
         quantity(Discharge, Any), optional "another key says it",
-        "water that is pumped out of all of it; negative enters", in_space;
+        "water that is pumped out of all of it; negative enters", whole;
     permeability: quantity(Velocity, Positive), optional "another key says it", "permeability there: a core, a cut-off wall";
 }
 

@@ -6,3 +6,4 @@ mod cost;
 mod dams;
 mod transient;
 mod unconfined;
+mod wells;

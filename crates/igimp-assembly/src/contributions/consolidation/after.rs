@@ -145,8 +145,8 @@ impl<const D: usize> Consolidation<D> {
             moved.outflow += leak.conductance * share * self.pressure_at(leak, u);
         }
         for seeping in &self.seeping {
-            let supports = stencils.of(seeping.particle as usize);
-            moved.swelling += self.stretched(seeping.volume, supports, u).0;
+            let reach = stencils.with_hoops(seeping.particle as usize);
+            moved.swelling += self.stretched(seeping.volume, reach, u).grows;
             moved.stored += seeping.stores * (self.pressed(seeping, u).mean - seeping.start);
         }
         Some(moved)

@@ -8,7 +8,7 @@ use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::conditions::pore_flow::{Consolidating, PoreFlow};
 use crate::error::AssemblyError;
-use crate::method::Method;
+use crate::method::{Method, Section};
 use crate::step::domain::{capped_half_length, off_grid};
 
 /// Cells that soil fills to less than this share are empty \[-\].
@@ -117,7 +117,8 @@ pub(crate) fn openings<const D: usize>(
             }
         }
     }
-    free_faces(grid, &cells, flow, near_body, &mut all);
+    let section = (flow, method.section);
+    free_faces(grid, &cells, section, near_body, &mut all);
     Ok(all)
 }
 
@@ -125,7 +126,7 @@ pub(crate) fn openings<const D: usize>(
 fn free_faces<const D: usize>(
     grid: &Grid<D>,
     cells: &[Option<CellOfSoil<D>>],
-    flow: &Consolidating<D>,
+    (flow, section): (&Consolidating<D>, Section),
     near_body: &dyn Fn(&[f64; D], f64) -> bool,
     all: &mut Vec<Opening>,
 ) {
@@ -143,11 +144,15 @@ fn free_faces<const D: usize>(
                     None => flow.open_faces,
                     Some(beyond) => {
                         let size: f64 = grid.cell_size(beyond).iter().product();
+                        let radius = grid.node_position(grid.node_index(beyond))[0]
+                            + 0.5 * grid.cell_size(beyond)[0];
+                        let whole = size * section.thickness(radius);
                         let soil = cells[grid.cell_index(beyond)];
-                        flow.open_faces && soil.is_none_or(|soil| soil.volume < EMPTY * size)
+                        flow.open_faces && soil.is_none_or(|soil| soil.volume < EMPTY * whole)
                     }
                 };
                 if is_open {
+                    let flow = (flow, section);
                     face(grid, (place, &cell), (axis, is_upper), flow, near_body, all);
                 }
             }
@@ -185,7 +190,7 @@ fn face<const D: usize>(
     grid: &Grid<D>,
     (place, cell): ([usize; D], &CellOfSoil<D>),
     (axis, is_upper): (usize, bool),
-    flow: &Consolidating<D>,
+    (flow, section): (&Consolidating<D>, Section),
     near_body: &dyn Fn(&[f64; D], f64) -> bool,
     all: &mut Vec<Opening>,
 ) {
@@ -219,7 +224,8 @@ fn face<const D: usize>(
         let tents = grid.tents(place, within);
         all.push(Opening {
             values: tents.map(|(node, value, _)| (node, value)).collect(),
-            conductance: flow.duration * mobility * area / (points as f64 * size[axis]),
+            conductance: flow.duration * mobility * area * section.thickness(x[0])
+                / (points as f64 * size[axis]),
         });
     }
 }

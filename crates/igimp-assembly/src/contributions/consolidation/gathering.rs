@@ -14,6 +14,7 @@ use crate::contributions::pore_water::Pores;
 use crate::error::AssemblyError;
 use crate::method::{Kinematics, Method};
 use crate::step::domain::{capped_half_length, off_grid};
+use crate::step::hoops::{centroid_of_cell, weigh_by_radius};
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
 use igimp_rigid::RigidBody;
@@ -247,9 +248,15 @@ impl<const D: usize> Gathering<'_, D> {
         let mut parts = Vec::new();
         cell_parts(grid, &*self.method.basis, &x, &half_length, &mut parts)
             .map_err(|source| off_grid(particle, &x, source))?;
+        let section = self.method.section;
+        if section.is_axisymmetric() {
+            weigh_by_radius(grid, &mut parts);
+        }
         let mut means: Vec<(usize, f64)> = Vec::new();
         for part in &parts {
-            for (node, value, _) in grid.tents(part.cell, [0.5; D]) {
+            for (node, value, _) in
+                grid.tents(part.cell, centroid_of_cell(grid, part.cell, section))
+            {
                 for carrier in self.stencils.carriers(node) {
                     let share = part.share * value * carrier.weight;
                     match means.iter_mut().find(|(other, _)| *other == carrier.node) {

@@ -14,6 +14,7 @@ use igimp_shape::Support;
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::contributions::nodal_forces::{AddBlock, NodalForces};
+use crate::step::hoops::Hoop;
 use crate::step::stencils::Stencils;
 use after::Share;
 pub use after::{PoresAfter, WaterMoved};
@@ -135,6 +136,20 @@ pub(crate) struct WaterOfParticle<'c, const D: usize> {
     volume: f64,
     /// What pushes gradients forward.
     push: [[f64; D]; D],
+    /// How its supports stretch it around the axis, and what pushes that forward; none unless the section is axisymmetric.
+    hoops: &'c [Hoop],
+    push_around: f64,
+}
+
+/// How displacements change the volume of a particle.
+struct Stretched<const D: usize> {
+    /// By how much it grows \[length^D\].
+    grows: f64,
+    /// Its volume then \[length^D\].
+    volume: f64,
+    /// What pushes gradients forward, and the strain around the axis.
+    push: [[f64; D]; D],
+    push_around: f64,
 }
 
 impl<const D: usize> Consolidation<D> {
@@ -188,15 +203,14 @@ impl<const D: usize> Consolidation<D> {
         self.scale * sum
     }
 
-    /// By how much nodal displacements `u` change the volume of a particle, and its volume then, with the gradient that pushes
-    /// forward.
+    /// How nodal displacements `u` change the volume of a particle.
     #[inline]
     fn stretched(
         &self,
         volume: f64,
-        supports: &[Support<D>],
+        (supports, hoops): (&[Support<D>], &[Hoop]),
         u: &[[f64; D]],
-    ) -> (f64, f64, [[f64; D]; D]) {
+    ) -> Stretched<D> {
         let mut gradient = [[0.0; D]; D];
         for support in supports {
             for a in 0..D {
@@ -205,27 +219,48 @@ impl<const D: usize> Consolidation<D> {
                 }
             }
         }
+        let around = if hoops.is_empty() {
+            0.0
+        } else {
+            Hoop::strain(supports, hoops, u).bar
+        };
         if !self.finite {
             let trace: f64 = (0..D).map(|a| gradient[a][a]).sum();
-            return (volume * trace, volume, identity());
+            return Stretched {
+                grows: volume * (trace + around),
+                volume,
+                push: identity(),
+                push_around: 1.0,
+            };
         }
         for (a, row) in gradient.iter_mut().enumerate() {
             row[a] += 1.0;
         }
         let det = determinant(&gradient);
-        (volume * (det - 1.0), volume * det, inverse(&gradient, det))
+        let ratio = det * (1.0 + around);
+        Stretched {
+            grows: volume * (ratio - 1.0),
+            volume: volume * ratio,
+            push: inverse(&gradient, det),
+            push_around: (1.0 + around).recip(),
+        }
     }
 
     /// The water of a particle with the `supports` of its displacement at nodal values `u`; none where water does not flow.
     #[inline]
-    pub(crate) fn of_particle(
-        &self,
+    pub(crate) fn of_particle<'c>(
+        &'c self,
         particle: usize,
-        supports: &[Support<D>],
+        (supports, hoops): (&[Support<D>], &'c [Hoop]),
         u: &[[f64; D]],
-    ) -> Option<WaterOfParticle<'_, D>> {
+    ) -> Option<WaterOfParticle<'c, D>> {
         let seeping = self.seeping_at(particle)?;
-        let (grows, volume, push) = self.stretched(seeping.volume, supports, u);
+        let Stretched {
+            grows,
+            volume,
+            push,
+            push_around,
+        } = self.stretched(seeping.volume, (supports, hoops), u);
         Some(WaterOfParticle {
             scale: self.scale,
             seeping,
@@ -234,6 +269,8 @@ impl<const D: usize> Consolidation<D> {
             grows,
             volume,
             push,
+            hoops,
+            push_around,
         })
     }
 }
@@ -245,10 +282,19 @@ impl<const D: usize> WaterOfParticle<'_, D> {
         self.supports
     }
 
-    /// The gradient of its dilatation by displacement of a support, pushed forward \[1/length\].
+    /// The gradients of its dilatation by displacement of its supports, pushed forward \[1/length\].
     #[inline]
-    pub(crate) fn slope(&self, support: &Support<D>) -> [f64; D] {
-        transpose_apply(&self.push, &support.grad_bar)
+    pub(crate) fn slopes<'s>(
+        &'s self,
+        supports: &'s [Support<D>],
+    ) -> impl Iterator<Item = [f64; D]> + 's {
+        supports.iter().enumerate().map(|(place, support)| {
+            let mut slope = transpose_apply(&self.push, &support.grad_bar);
+            if let Some(hoop) = self.hoops.get(place) {
+                slope[0] += self.push_around * hoop.bar;
+            }
+            slope
+        })
     }
 
     /// Adds the forces of its pressures to those of the pressures from the number `first` on.
@@ -293,8 +339,7 @@ impl<const D: usize> WaterOfParticle<'_, D> {
         moved: &dyn Fn(usize, usize) -> f64,
         add: &mut dyn FnMut(usize, f64),
     ) {
-        for support in supports {
-            let slope = self.slope(support);
+        for (support, slope) in supports.iter().zip(self.slopes(supports)) {
             let along: f64 = (0..D)
                 .map(|axis| slope[axis] * moved(support.node, axis))
                 .sum();

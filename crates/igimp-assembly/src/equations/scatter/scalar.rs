@@ -41,14 +41,14 @@ impl<const D: usize> ScalarColumns<D> {
         let mut pressures = water.pressures().iter().peekable();
         rows.clear();
         self.couplings.clear();
-        for support in supports {
+        for (support, slope) in supports.iter().zip(water.slopes(supports)) {
             let is_own = |own: &&PressureSupport<D>| own.node as usize == support.node;
             let pressure = pressures.next_if(is_own).copied();
             let pressure = pressure.unwrap_or(PressureSupport::nothing());
             rows.push(pressure);
             self.couplings.push(Coupling {
                 shares: [water.coupling(&pressure); 2],
-                slopes: [water.slope(support); 2],
+                slopes: [slope; 2],
             });
         }
         self.moves.clear();

@@ -15,12 +15,11 @@ pub(crate) fn scatter_in_space<const D: usize>(
     (table, pattern): (&BlockTable<D>, &Pattern),
     (start, values): (usize, &mut [f64]),
 ) {
-    for support in supports {
+    for (support, slope) in supports.iter().zip(water.slopes(supports)) {
         let column = &table.nodes[support.node];
         if column.len == 0 {
             continue;
         }
-        let slope = water.slope(support);
         let block = column.block as usize;
         let (height, offsets) = (pattern.height(block), table.offsets_of(support.node));
         let values = &mut values[pattern.values_of(block).start - start..];
@@ -40,12 +39,11 @@ pub(crate) fn scatter_in_space<const D: usize>(
         let before = pattern.values_of(block).start - start;
         let values = &mut values[before + usize::from(table.nodes[node].len) * height..];
         let share = water.coupling(column);
-        for support in supports {
+        for (support, slope) in supports.iter().zip(water.slopes(supports)) {
             let row = &table.nodes[support.node];
             if row.len == 0 {
                 continue;
             }
-            let slope = water.slope(support);
             let offset = offsets(row.code, row.block);
             for (rank, axis) in row.components().enumerate() {
                 values[offset + rank] += share * slope[axis];

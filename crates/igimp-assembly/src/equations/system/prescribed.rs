@@ -107,7 +107,7 @@ impl<const D: usize> System<'_, D> {
         u: &[[f64; D]],
         force: &mut [f64],
     ) {
-        let supports = self.stencils.of(particle);
+        let (supports, hoops) = self.stencils.with_hoops(particle);
         let moved = |node: usize, axis: usize| self.prescribed(node, axis).unwrap_or(0.0);
         let first = self.unknowns.first_scalar();
         let mut add = |place: usize, by: f64| {
@@ -115,7 +115,8 @@ impl<const D: usize> System<'_, D> {
                 force[unknown] += by;
             }
         };
-        if let Some(water) = self.beside.consolidation.of_particle(particle, supports, u) {
+        let water = &self.beside.consolidation;
+        if let Some(water) = water.of_particle(particle, (supports, hoops), u) {
             water.add_force_of_motion(supports, &moved, &mut add);
         }
         if let Some(strain) = self.strain_of_particle(particle, own, u) {

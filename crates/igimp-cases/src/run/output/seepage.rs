@@ -42,7 +42,7 @@ impl<const D: usize> Output<D> {
 
     /// The balance of a flow in time as a table, under the name of its last moment.
     fn balance_of(&mut self, case: &Case<D>, own: &Followed) -> Result<(), CaseError> {
-        let unit = if D == 2 { "m3/m" } else { "m3" };
+        let unit = if case.is_whole() { "m3" } else { "m3/m" };
         let header = ["entered", "left", "stored"].map(|own| format!("{own} [{unit}]"));
         let [entered, left, stored] = &header;
         let columns = [
@@ -111,7 +111,11 @@ pub(crate) fn by_condition<const D: usize>(model: &Model<'_, D>) -> Vec<Vec<f64>
 
 /// Tables of discharges, and of how flows were found; empty without computed seepage.
 pub(crate) fn tables<const D: usize>(model: &Model<'_, D>) -> Vec<SetupTable> {
-    let unit = if D == 2 { "m³/s per m" } else { "m³/s" };
+    let unit = if model.case.is_whole() {
+        "m³/s"
+    } else {
+        "m³/s per m"
+    };
     let (mut through, mut found) = (Vec::new(), Vec::new());
     for (name, flow) in flows(model) {
         through.extend(discharges(name, flow));

@@ -1,5 +1,7 @@
 //! A case of a body of revolution: one in the plane whose section is axisymmetric, and what it has not.
 
+use std::sync::Arc;
+
 use igimp_assembly::Section;
 use igimp_model::{Case, LoadKind, PoreSource, RigidDrive, RigidMove, Side, StageKind, StageWalls};
 use igimp_schema::diagnostic::Problems;
@@ -26,14 +28,18 @@ pub(crate) fn section(tree: &Node, mut case: Case<2>, problems: &mut Problems) -
     if start <= 0.0 && *inner == Side::Free {
         *inner = Side::Roller;
     }
+    for condition in &mut case.water {
+        let of_bodies = condition.bodies.iter_mut().map(|own| &mut own.1);
+        for source in of_bodies.chain([&mut condition.source]) {
+            if let PoreSource::Seepage(own) = source {
+                Arc::make_mut(own).conditions.axisymmetric = true;
+            }
+        }
+    }
     refuse_parts(tree, &case, problems);
     for (index, stage) in case.stages.iter().enumerate() {
         let place = item(tree, "stages", index);
-        refuse_stage(
-            (&stage.kind, stage.consolidation.is_some()),
-            place,
-            problems,
-        );
+        refuse_stage(&stage.kind, place, problems);
     }
     (problems.errors() == before).then_some(case)
 }
@@ -81,19 +87,6 @@ fn refuse_parts(tree: &Node, case: &Case<2>, problems: &mut Problems) {
             )
             .help("compute the body in space, analysis = \"3d\"");
     }
-    for (index, condition) in case.water.iter().enumerate() {
-        let sources =
-            std::iter::once(&condition.source).chain(condition.bodies.iter().map(|own| &own.1));
-        let seeps = |source: &PoreSource| matches!(source, PoreSource::Seepage(_));
-        if sources.into_iter().any(seeps) {
-            problems
-                .error(
-                    item(tree, "water", index),
-                    "seepage is computed in plane strain and in space",
-                )
-                .help("state the pressures by points in a file, or a table");
-        }
-    }
     for (index, material) in case.materials.iter().enumerate() {
         let over_length = (material.softening.as_ref()).is_some_and(|own| own.nonlocal.is_some());
         if over_length {
@@ -110,17 +103,11 @@ fn refuse_parts(tree: &Node, case: &Case<2>, problems: &mut Problems) {
     }
 }
 
-/// Refuses a stage that would not keep a body one of revolution, or that flows, at its place.
-fn refuse_stage((kind, flows): (&StageKind, bool), place: Option<Place>, problems: &mut Problems) {
+/// Refuses a stage that would not keep a body one of revolution, at its place.
+fn refuse_stage(kind: &StageKind, place: Option<Place>, problems: &mut Problems) {
     let mut refuse = |message: &str, help: &str| {
         problems.error(place, message).help(help);
     };
-    if flows {
-        refuse(
-            "consolidation is computed in plane strain and in space",
-            "compute the drained and the undrained end: they enclose it",
-        );
-    }
     match kind {
         StageKind::Gravity {
             horizontal: Some(share),

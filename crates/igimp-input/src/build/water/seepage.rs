@@ -58,6 +58,7 @@ pub(super) fn source<const D: usize>(
             faces,
             regions,
             sections,
+            axisymmetric: false,
             confined: *own.confined,
             width: own.fall.as_ref().map(|own| **own),
             floor: *own.floor,

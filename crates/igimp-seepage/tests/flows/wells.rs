@@ -1,0 +1,129 @@
+//! Flow around an axis: to wells in full ground and with a free surface, and in time to a drain.
+
+use std::f64::consts::PI;
+
+use crate::common::{faces, flow, grid, rectangle};
+use igimp_geometry::region::Region;
+use igimp_seepage::{Conditions, Course, History, OnFaces, SeepageBody, Soil, march};
+
+/// Ground around a well, between two radii \[m\], with heads at both.
+fn around(radii: [f64; 2], height: f64, heads: [f64; 2]) -> (Vec<[f64; 2]>, Conditions<2>) {
+    let [inner, outer] = radii;
+    let mut conditions = Conditions::of(vec![Soil::isotropic(1e-5)]);
+    conditions.axisymmetric = true;
+    conditions.faces = vec![
+        faces("well", [inner, 0.0], [inner, height], OnFaces::Open),
+        faces(
+            "in the well",
+            [inner, 0.0],
+            [inner, heads[0]],
+            OnFaces::Head(heads[0]),
+        ),
+        faces(
+            "far",
+            [outer, 0.0],
+            [outer, height],
+            OnFaces::Head(heads[1]),
+        ),
+    ];
+    (rectangle([inner, 0.0], [outer, height]), conditions)
+}
+
+/// GOAL: water that flows to a well in full ground, whose faces lie on lines of the grid and off them.
+/// ORACLE: Thiem: h = h₁ + (h₂ − h₁) ln(r/r₁)/ln(r₂/r₁), Q = 2π k D (h₂ − h₁)/ln(r₂/r₁); a discharge between parallel faces is the
+/// control.
+#[test]
+fn a_well_in_full_ground() {
+    let (radii, heads, height): ([f64; 2], _, _) = ([0.5, 10.0], [5.0, 8.0], 3.0);
+    let ratio = radii[1] / radii[0];
+    let exact = 2.0 * PI * 1e-5 * height * (heads[1] - heads[0]) / ratio.ln();
+    let mut errors = Vec::new();
+    for (from, cell, count) in [
+        (0.5, 0.25, 38),
+        (0.37, 0.25, 39),
+        (0.5, 0.125, 76),
+        (0.0, 0.15, 67),
+    ] {
+        let grid = grid([from, 0.0], cell, [count, (height / cell).ceil() as usize]);
+        let (ground, mut conditions) = around(radii, height, heads);
+        conditions.confined = true;
+        let found = flow(&grid, &[ground], &conditions).unwrap();
+        let mut apart: f64 = 0.0;
+        for k in 1..10 {
+            let r = radii[0] + 0.1 * f64::from(k) * (radii[1] - radii[0]);
+            let head = heads[0] + (heads[1] - heads[0]) * (r / radii[0]).ln() / ratio.ln();
+            apart = apart.max((found.head(&[r, 1.1]) - head).abs());
+        }
+        let error = found.outflow / exact - 1.0;
+        println!(
+            "cells of {cell} from {from}: Q {:+.3} %, heads {apart:.4} m",
+            100.0 * error
+        );
+        assert!(error.abs() < 0.02 && apart < 0.03, "{error} {apart}");
+        assert!((found.inflow / found.outflow - 1.0).abs() < 1e-10);
+        errors.push(error);
+    }
+    assert!(errors[2].abs() < 0.3 * errors[0].abs(), "{errors:?}");
+    let parallel = 2.0 * PI * 1e-5 * height * (heads[1] - heads[0]) / (radii[1] - radii[0]);
+    assert!(exact > 2.0 * parallel);
+}
+
+/// GOAL: a well in ground with a free surface.
+/// ORACLE: Q = π k (h₂² − h₁²)/ln(r₂/r₁), exact whatever the face at the well, by the integral that gives Charny's discharge.
+#[test]
+fn a_well_with_a_free_surface() {
+    let (radii, heads, height): ([f64; 2], [f64; 2], _) = ([1.0, 10.0], [2.0, 6.0], 6.0);
+    let exact = PI * 1e-5 * (heads[1].powi(2) - heads[0].powi(2)) / (radii[1] / radii[0]).ln();
+    for (from, cell, count, band) in [
+        (1.0, 0.5, 18, 0.02),
+        (0.8, 0.25, 37, 0.02),
+        (1.0, 0.25, 36, 0.01),
+    ] {
+        let grid = grid([from, 0.0], cell, [count, (height / cell) as usize]);
+        let (ground, conditions) = around(radii, height, heads);
+        let found = flow(&grid, &[ground], &conditions).unwrap();
+        let error = found.outflow / exact - 1.0;
+        println!("cells of {cell} from {from}: Q {:+.3} %", 100.0 * error);
+        assert!(error.abs() < band, "{error}");
+        let levels = [2.0, 4.0, 8.0].map(|r| found.free_surface(&[r, 0.0]).unwrap());
+        assert!(levels[0] < levels[1] && levels[1] < levels[2] && levels[2] < heads[1]);
+    }
+}
+
+/// GOAL: water that the ground gives back to a drain in time.
+/// ORACLE: the series of radial flow to a drain (Barron 1948) at r₂/r₁ = 10, computed apart from this program.
+#[test]
+fn a_drain_in_time() {
+    let polygon = rectangle([0.1, 0.0], [1.0, 0.1]);
+    let grid = grid([0.1, 0.0], 0.025, [36, 4]);
+    let mut conditions = Conditions::of(vec![Soil {
+        specific_storage: 1.0,
+        ..Soil::isotropic(1.0)
+    }]);
+    (conditions.axisymmetric, conditions.confined) = (true, true);
+    conditions.faces = vec![faces("drain", [0.1, 0.0], [0.1, 0.1], OnFaces::Head(2.0))];
+    let start = flow(&grid, std::slice::from_ref(&polygon), &conditions).unwrap();
+    let course = Course {
+        histories: vec![Some(History {
+            times: vec![0.0],
+            values: vec![1.0],
+        })],
+        times: vec![0.338_202, 1.691_009],
+    };
+    let bodies = [SeepageBody {
+        region: &polygon as &dyn Region<2>,
+        soil: 0,
+        scale: None,
+    }];
+    let found = march(&grid, &bodies, (&start, &conditions), &|_| None, &course).unwrap();
+    let all = PI * (1.0 - 0.01) * 0.1;
+    for (time, exact) in [(course.times[0], 0.364_780), (course.times[1], 0.877_386)] {
+        let row = found
+            .balance
+            .iter()
+            .find(|own| own.time.to_bits() == time.to_bits());
+        let degree = -row.unwrap().stored / all;
+        println!("t {time}: {degree:.4} of {exact:.4}");
+        assert!((degree - exact).abs() < 5e-3, "{degree}");
+    }
+}
