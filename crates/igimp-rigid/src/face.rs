@@ -8,9 +8,6 @@ use igimp_surface::vectors::{dot, minus, norm};
 /// Abscissa of the two-point rule of Gauss on (−1, 1).
 const GAUSS: f64 = 0.577_350_269_189_625_8;
 
-/// A line with a smaller sine to a side of a domain does not meet it \[-\].
-const ALONG: f64 = 1e-9;
-
 /// A place this much of a length beyond an end is still at it: round-off \[-\].
 const ROUND_OFF: f64 = 1e-9;
 
@@ -106,28 +103,31 @@ impl<const D: usize> Face<D> {
         std::array::from_fn(|a| self.middle[a] + s * self.along[0][a] + t * self.along[1][a])
     }
 
-    /// From a body that is round with this radius to the domain, along the line from its middle through a point of the face
-    /// \[length\] (theory, eq. 45e). A face that is along no side of the domain touches it at a corner; elsewhere soil is further off.
+    /// From a body that is round with this radius to the side of the domain that looks at it, along the line from its middle through a
+    /// point of the face, or to the place of that side that is nearest to the line \[length\] (theory, eq. 45e). A face that is along no
+    /// side of the domain touches it at a corner; the soil behind it stands further off.
     pub fn gap_along(&self, middle: &[f64; D], radius: f64, x: &[f64; D]) -> f64 {
         let [centre, half] = &self.domain;
-        let corner = |axis: usize, sign: f64| centre[axis] + sign * half[axis];
-        let arm = minus(x, middle);
-        let length = norm(&arm);
-        let (mut entry, mut exit) = (f64::NEG_INFINITY, f64::INFINITY);
-        for axis in 0..D {
-            let along = arm[axis] / length;
-            if along.abs() > ALONG {
-                let sides = [-1.0, 1.0].map(|sign| (corner(axis, sign) - middle[axis]) / along);
-                entry = entry.max(sides[0].min(sides[1]));
-                exit = exit.min(sides[0].max(sides[1]));
+        let across = (0..D).fold(0, |most, axis| {
+            if self.normal[axis].abs() > self.normal[most].abs() {
+                axis
+            } else {
+                most
             }
-        }
-        if entry <= exit {
-            return entry - radius;
-        }
-        let nearest: [f64; D] =
-            std::array::from_fn(|axis| x[axis].clamp(corner(axis, -1.0), corner(axis, 1.0)));
-        norm(&minus(&nearest, middle)) - radius
+        });
+        let sign = self.normal[across].signum();
+        let arm = minus(x, middle);
+        let reach = (centre[across] - sign * half[across] - middle[across]) / arm[across];
+        let place: [f64; D] = std::array::from_fn(|axis| {
+            let [lower, upper] = [-half[axis], half[axis]].map(|half| centre[axis] + half);
+            let along = middle[axis] + reach * arm[axis];
+            if axis == across {
+                along
+            } else {
+                along.clamp(lower, upper)
+            }
+        });
+        norm(&minus(&place, middle)) - radius
     }
 
     /// Its points of integration in the plane: two between any two lines of the grid and knots of the surface that

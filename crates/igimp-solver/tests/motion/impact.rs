@@ -209,7 +209,8 @@ fn shortened(mass: f64) -> f64 {
 }
 
 /// GOAL: a sphere in space rolls by 5/7 of what it would slide by without friction, at the height that it rests at, and turns with
-/// its way. Cells are as large as its radius.
+/// its way, but for what the ground under it is shorter by: at most what Hertz's largest pressure presses together. Cells are as large
+/// as its radius.
 #[test]
 fn a_sphere_in_space_rolls() {
     let surface = Surface::sphere(1.0, 0.25).unwrap();
@@ -225,7 +226,11 @@ fn a_sphere_in_space_rolls() {
     let climb = moved.pose.origin[2] - 3.0;
     println!("sphere {share} of its acceleration, lag {lag}, {climb} up");
     within(0.03, share, 1.0);
-    assert!(lag.abs() < 0.01, "{lag}");
+    let plane = YOUNG / (1.0 - POISSON * POISSON);
+    let weight = 20.0 * GRAVITY * SLOPE.cos();
+    let pressure = (6.0 * weight * plane.powi(2) / PI.powi(3)).cbrt();
+    let shorter = (1.0 + POISSON) * (1.0 - 2.0 * POISSON) * pressure / YOUNG;
+    assert!(lag > -0.01 && lag < shorter, "{lag} of {shorter}");
     assert!(climb.abs() < 0.03, "{climb}");
 }
 

@@ -179,7 +179,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
         }
     }
 
-    /// From the body to the soil at a point of a face \[length\].
+    /// From the body to the soil behind a face \[length\].
     fn gap(&self, face: &Face<D>, x: &[f64; D]) -> f64 {
         rolling_radius(self.body, self.conditions).map_or(face.gap, |radius| {
             face.gap_along(&self.body.pose.origin, radius, x)

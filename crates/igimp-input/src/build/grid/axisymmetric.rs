@@ -117,13 +117,16 @@ fn refuse_stage(kind: &StageKind, place: Option<Place>, problems: &mut Problems)
             "compute a slice in plane strain, or the body in space",
         ),
         StageKind::Rigid(moves) => moves.iter().for_each(|own| refuse_move(own, &mut refuse)),
-        StageKind::Dynamic(own)
-            if !own.bodies.is_empty() || own.ground_motion.is_some() || is_walled(&own.walls) =>
-        {
-            refuse(
-                "rigid bodies, sides and ground move in time in plane strain and in space alone",
-                "let the soil move alone, or compute the body in space",
-            );
+        StageKind::Dynamic(own) => {
+            own.bodies
+                .iter()
+                .for_each(|own| refuse_move(own, &mut refuse));
+            if own.ground_motion.is_some() || is_walled(&own.walls) {
+                refuse(
+                    "sides and ground move in time in plane strain and in space alone",
+                    "remove the motion of the ground and of its sides, or compute the body in space",
+                );
+            }
         }
         _ => {}
     }
