@@ -1,4 +1,4 @@
-//! Bodies of revolution in motion: a cylinder that breathes, and columns of sand that collapse.
+//! Bodies of revolution in motion: a cylinder that breathes, a tamper on a rod, and columns of sand that collapse.
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -9,6 +9,7 @@ use igimp_assembly::{
 };
 use igimp_cases::CaseError;
 use igimp_geometry::seed::fill_polygon;
+use igimp_input::CaseFile;
 use igimp_model::check::Band;
 use igimp_solver::Accepted;
 use rayon::prelude::*;
@@ -30,6 +31,11 @@ const KEPT: Oracle = Oracle {
     kind: OracleKind::Theory,
     source: "Newmark's method with β = ¼, γ = ½",
     locator: "a linear system keeps its energy",
+};
+const TAMPER: Oracle = Oracle {
+    kind: OracleKind::Exact,
+    source: "mass on an elastic rod without end",
+    locator: "m v' = m g − ρ c A v from the speed of the fall on, until the wave is back",
 };
 const COLUMNS: Oracle = Oracle {
     kind: OracleKind::Published,
@@ -64,6 +70,7 @@ pub(super) fn hold(study: &mut Study, level: Level) -> Result<(), CaseError> {
     for cells in [8, 16] {
         breathing(study, cells)?;
     }
+    tamper(study)?;
     columns(study, level)
 }
 
@@ -146,6 +153,78 @@ fn breathing(study: &mut Study, cells: usize) -> Result<(), CaseError> {
     let quantity = "energy at the end / energy after one step [-]";
     let kept = energy[energy.len() - 1] / energy[0];
     study.check(run, quantity, KEPT.says(1.0), Band::Relative(1e-9), kept);
+    Ok(())
+}
+
+/// A tamper of mass ρ c A τ that falls on a rod between smooth walls.
+fn tamper(study: &mut Study) -> Result<(), CaseError> {
+    let (gravity, density, young, fall, tau) = (9.81, 1800.0_f64, 20e6_f64, 0.05, 0.01);
+    let area = PI * 0.25;
+    let mass = tau * (density * young).sqrt() * area;
+    let text = format!(
+        "igimp = 1
+[case]
+title = \"a tamper on a rod\"
+analysis = \"axisymmetric\"
+[grid]
+cell = \"0.1 m\"
+domain = {{ x = [\"0 m\", \"0.5 m\"], y = [\"0 m\", \"10.5 m\"] }}
+[materials.rod]
+model = \"elastic\"
+unit_weight = \"{} N/m3\"
+young = \"{young} Pa\"
+poisson = 0
+[[bodies]]
+name = \"rod\"
+material = \"rod\"
+polygon = [[\"0 m\", \"0 m\"], [\"0.5 m\", \"0 m\"], [\"0.5 m\", \"10 m\"], [\"0 m\", \"10 m\"]]
+[boundaries]
+right = \"roller\"
+bottom = \"roller\"
+[[rigid]]
+name = \"tamper\"
+type = \"rectangle\"
+from = [\"0 m\", \"{} m\"]
+to = [\"0.5 m\", \"10.4 m\"]
+interface = \"smooth\"
+rounding = 0
+weight = \"{} N\"
+[[stages]]
+name = \"weight\"
+type = \"gravity\"
+steps = 1
+[[stages]]
+name = \"fall\"
+type = \"dynamic\"
+duration = \"0.18 s\"
+steps = 90
+bodies = [{{ body = \"tamper\", free = [\"y\"] }}]
+[[curves]]
+name = \"way\"
+x = {{ of = \"time\" }}
+y = {{ of = \"rigid.tamper.settlement\" }}
+",
+        density * gravity,
+        10.0 + fall,
+        mass * gravity
+    );
+    let own = Computed::<2>::new(CaseFile::parse("tamper", &text, &[])?.into_case())?;
+    let run = RunRecord::new("tamper on a rod", &own.report, own.elapsed);
+    let run = study.run_to_end(run);
+    let curve = own.curve("way").points(0, 1);
+    let meets = (2.0 * fall / gravity).sqrt();
+    let exact = |time: f64| {
+        let (past, last) = (time - meets, gravity * tau);
+        last * past + (gravity * meets - last) * tau * (1.0 - (-past / tau).exp())
+    };
+    for time in [0.11, 0.13, 0.18] {
+        let apart = |own: &&[f64; 2]| (own[0] - time).abs();
+        let nearest = (curve.iter()).min_by(|a, b| apart(a).total_cmp(&apart(b)));
+        let [at, way] = nearest.copied().unwrap_or([f64::NAN; 2]);
+        let quantity = format!("way into the rod at {at:.3} s [m]");
+        let band = Band::Relative(0.02);
+        study.check(run, quantity, TAMPER.says(exact(at)), band, way - fall);
+    }
     Ok(())
 }
 
