@@ -167,7 +167,7 @@ fn tamper(study: &mut Study) -> Result<(), CaseError> {
 title = \"a tamper on a rod\"
 analysis = \"axisymmetric\"
 [grid]
-cell = \"0.1 m\"
+cell = \"0.05 m\"
 domain = {{ x = [\"0 m\", \"0.5 m\"], y = [\"0 m\", \"10.5 m\"] }}
 [materials.rod]
 model = \"elastic\"
@@ -222,7 +222,7 @@ y = {{ of = \"rigid.tamper.settlement\" }}
         let nearest = (curve.iter()).min_by(|a, b| apart(a).total_cmp(&apart(b)));
         let [at, way] = nearest.copied().unwrap_or([f64::NAN; 2]);
         let quantity = format!("way into the rod at {at:.3} s [m]");
-        let band = Band::Relative(0.02);
+        let band = Band::Relative(0.01);
         study.check(run, quantity, TAMPER.says(exact(at)), band, way - fall);
     }
     Ok(())
