@@ -115,16 +115,21 @@ impl<const D: usize> Face<D> {
                 most
             }
         });
-        let sign = self.normal[across].signum();
+        let side = centre[across] - self.normal[across].signum() * half[across];
         let arm = minus(x, middle);
-        let reach = (centre[across] - sign * half[across] - middle[across]) / arm[across];
+        // A body smaller than the domain has its middle beside it: the side itself is as near.
+        let reach = (side - middle[across]) / arm[across];
+        let meets = reach > 0.0 && reach.is_finite();
         let place: [f64; D] = std::array::from_fn(|axis| {
-            let [lower, upper] = [-half[axis], half[axis]].map(|half| centre[axis] + half);
-            let along = middle[axis] + reach * arm[axis];
-            if axis == across {
-                along
+            let along = if meets {
+                middle[axis] + reach * arm[axis]
             } else {
-                along.clamp(lower, upper)
+                x[axis]
+            };
+            if axis == across {
+                side
+            } else {
+                along.clamp(centre[axis] - half[axis], centre[axis] + half[axis])
             }
         });
         norm(&minus(&place, middle)) - radius
