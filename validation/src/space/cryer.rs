@@ -52,11 +52,7 @@ const MESHES: [(usize, f64, Level); 4] = [
 ];
 
 /// The same for a body of revolution.
-const TURNED: [(usize, f64, Level); 3] = [
-    (8, 0.025, Level::Quick),
-    (16, 0.01, Level::Default),
-    (32, 0.01, Level::Full),
-];
+const TURNED: [(usize, f64, Level); 2] = [(8, 0.025, Level::Quick), (16, 0.01, Level::Default)];
 
 /// A sphere of radius 1 and Young's modulus 1, its mobility 1.
 #[derive(Clone, Copy, Debug)]

@@ -128,11 +128,12 @@ mod tests {
 
     type Row<'a> = (&'a str, bool, Option<&'a str>, &'a [&'a str]);
 
-    const SOUND: [Row<'_>; 23] = [
+    const SOUND: [Row<'_>; 24] = [
         ("igimp-shape", true, None, &["thiserror"]),
         ("igimp-material", true, None, &[]),
         ("igimp-linear", true, None, &[]),
         ("igimp-surface", true, None, &["thiserror"]),
+        ("igimp-rigid", true, None, &[]),
         (
             "igimp-assembly",
             true,
