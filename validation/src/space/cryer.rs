@@ -119,7 +119,7 @@ impl Ball {
                 radius: 1.0,
             }));
             let seeds = fill(&grid, &ball, 2, 1.0, 0)?;
-            return self.pressed(grid, &seeds, &method);
+            return self.pressed(&grid, &seeds, &method);
         }
         method.section = Section::Axisymmetric;
         let grid = grid_of(cell, [self.cells + 1; 2])?;
@@ -132,21 +132,21 @@ impl Ball {
             let centroid = seed.x[0] + seed.centroid[0] * seed.half_length[0];
             seed.volume *= method.section.thickness(centroid);
         }
-        self.pressed(grid, &seeds, &method)
+        self.pressed(&grid, &seeds, &method)
     }
 
     /// Presses the ball that particles fill.
     fn pressed<const D: usize>(
         &self,
-        grid: Grid<D>,
+        grid: &Grid<D>,
         seeds: &[ParticleSeed<D>],
         method: &Method,
     ) -> Result<(RunRecord, Table), CaseError> {
         let mut body = Body::new(Particles::new(seeds)?);
         let law: SharedLaw = Arc::new(HenckyElastic::new(Elasticity::new(1.0, self.poisson)?));
-        let mut constraints = Constraints::free(&grid);
+        let mut constraints = Constraints::free(grid);
         for axis in 0..D {
-            constraints.fix_wall(&grid, axis, false, axis)?;
+            constraints.fix_wall(grid, axis, false, axis)?;
         }
         let last = *TIMES.last().expect("there are times");
         let later = ((last / SECOND).ln() / RATIO.ln()).ceil();
