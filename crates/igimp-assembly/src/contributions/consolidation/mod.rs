@@ -282,7 +282,7 @@ impl<const D: usize> WaterOfParticle<'_, D> {
         self.supports
     }
 
-    /// The gradients of its dilatation by displacement of its supports, pushed forward \[1/length\].
+    /// The gradients of its dilatation by displacement of its supports, pushed forward (theory, eq. 130f) \[1/length\].
     #[inline]
     pub(crate) fn slopes<'s>(
         &'s self,
