@@ -117,8 +117,8 @@ pub(crate) fn openings<const D: usize>(
             }
         }
     }
-    let section = (flow, method.section);
-    free_faces(grid, &cells, section, near_body, &mut all);
+    let of_step = (flow, method.section);
+    free_faces(grid, &cells, of_step, near_body, &mut all);
     Ok(all)
 }
 
