@@ -4,8 +4,7 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 use igimp_assembly::{
-    Constraints, Geometry, Kinematics, Method, Particles, Section, StepConditions, StepLoads,
-    TimeScheme,
+    Constraints, Geometry, Kinematics, Method, Section, StepConditions, StepLoads, TimeScheme,
 };
 use igimp_cases::CaseError;
 use igimp_geometry::seed::fill_polygon;
@@ -14,7 +13,7 @@ use igimp_model::check::Band;
 use igimp_solver::Accepted;
 use rayon::prelude::*;
 
-use super::deposits::front;
+use super::deposits::Deposit;
 use super::{POISSON, Steps, compression, elastic, moved, moving};
 use crate::continuum::laboratory::grid_of;
 use crate::exact::breathing::Breathing;
@@ -243,7 +242,7 @@ fn columns(study: &mut Study, level: Level) -> Result<(), CaseError> {
         for (&ratio, own) in std::iter::zip(ratios, &computed) {
             let variant = format!("column of revolution, a = {ratio}, cells of {cell} cm");
             let run = study.run_to_end(RunRecord::new(variant, &own.report, own.elapsed));
-            let deposit = Deposit::of(run, ratio, own.particles());
+            let deposit = Deposit::of(run, ratio, own.particles(), RADIUS);
             let measured = if ratio < 1.7 {
                 1.24 * ratio
             } else {
@@ -268,31 +267,6 @@ fn columns(study: &mut Study, level: Level) -> Result<(), CaseError> {
         ));
     }
     Ok(())
-}
-
-/// What a column leaves when it rests.
-struct Deposit {
-    /// Number of the run.
-    run: usize,
-    /// Height of the column over its radius \[-\].
-    ratio: f64,
-    /// Run-out and height over the radius \[-\].
-    run_out: f64,
-    height: f64,
-}
-
-impl Deposit {
-    fn of(run: usize, ratio: f64, particles: &Particles<2>) -> Self {
-        let ends = std::iter::zip(&particles.x, &particles.half_length);
-        let near = ends.filter(|(x, _)| x[0] < 0.2 * RADIUS);
-        let top = near.map(|(x, half)| x[1] + half[1]).fold(0.0, f64::max);
-        Self {
-            run,
-            ratio,
-            run_out: front(particles, 0.01) / RADIUS - 1.0,
-            height: top / RADIUS,
-        }
-    }
 }
 
 /// Checks with what power of the ratio run-outs and heights grow.

@@ -30,6 +30,8 @@ pub(crate) struct Inertia<const D: usize> {
     entries: OnceLock<Vec<(u32, f64)>>,
     /// By node that stands for the motion of a rigid body: its mass, or its moment of inertia over its squared size \[mass\].
     of_bodies: Vec<[[f64; D]; D]>,
+    /// By node that stands for the motion of a rigid body: whether a component is given, and moves evenly.
+    is_given: Vec<[bool; D]>,
     /// At the start, by node \[length/time\].
     velocity: Vec<[f64; D]>,
     /// The mean of that of the particles around each node, and that of rigid bodies \[length/time\].
@@ -107,6 +109,9 @@ impl<const D: usize> Inertia<D> {
         }
         Ok(Self {
             of_bodies: bodies.iter().flat_map(RigidBody::nodal_mass).collect(),
+            is_given: (nodes..velocity.len())
+                .map(|node| std::array::from_fn(|axis| unknowns.index(node, axis).is_none()))
+                .collect(),
             step,
             mass,
             entries: OnceLock::new(),
@@ -167,7 +172,8 @@ impl<const D: usize> Inertia<D> {
             .collect()
     }
 
-    /// The motion of the nodes over the step, by nodal step displacements `u` \[length\].
+    /// The motion of the nodes over the step, by nodal step displacements `u` \[length\]. What is given of a rigid body moves
+    /// evenly, as by backward Euler (theory, eq. 67a).
     pub(crate) fn motion(&self, u: &[[f64; D]]) -> Motion<D> {
         let mut motion = Motion {
             after: Vec::with_capacity(u.len()),
@@ -182,6 +188,19 @@ impl<const D: usize> Inertia<D> {
             let (after, acceleration) = self.step.after(before, acceleration, u);
             motion.after.push(after);
             motion.acceleration.push(acceleration);
+        }
+        let evenly = TimeStep {
+            scheme: TimeScheme::BackwardEuler,
+            ..self.step
+        };
+        let nodes = self.mass.diagonal.len();
+        for (node, is_given) in (nodes..u.len()).zip(&self.is_given) {
+            let (before, still) = (&self.velocity[node], [0.0; D]);
+            let (after, acceleration) = evenly.after(before, &still, &u[node]);
+            for axis in (0..D).filter(|&axis| is_given[axis]) {
+                motion.after[node][axis] = after[axis];
+                motion.acceleration[node][axis] = acceleration[axis];
+            }
         }
         motion
     }
@@ -249,6 +268,11 @@ impl<const D: usize> Inertia<D> {
         squared.sqrt()
     }
 
+    /// The weight 1 − α_f of the forces at the end of the step in its equilibrium (theory, eq. 61) \[-\].
+    pub(crate) fn weight_of_end(&self) -> f64 {
+        1.0 - self.step.scheme.weights().of_force
+    }
+
     /// The force of acceleration by node, and what equilibrium between start and end has of the forces at the start: over the weight
     /// of those at the end \[force\].
     fn force(&self, motion: &Motion<D>) -> Vec<[f64; D]> {
@@ -279,8 +303,8 @@ impl<const D: usize> Inertia<D> {
         self.step.rate() * (1.0 - weights.of_mass) / (1.0 - weights.of_force)
     }
 
-    /// The error of the time integration over a step by `u` \[length\], as a share of its motion (theory, eq. 68) \[-\]; none where
-    /// the force of acceleration is `negligible` \[force\], as at rest.
+    /// The error of the time integration over a step by `u` \[length\], as a share of the motion ‖u‖ + Δt² ‖a₁‖ (theory, eq. 68)
+    /// \[-\]; none where the force of acceleration is `negligible` \[force\], as at rest. What is given is not integrated.
     pub(crate) fn error(&self, u: &[[f64; D]], negligible: f64) -> f64 {
         let accelerated = self.motion(u).acceleration;
         let force = self.times(&accelerated);
@@ -290,24 +314,29 @@ impl<const D: usize> Inertia<D> {
         let change: Vec<[f64; D]> = std::iter::zip(&accelerated, &self.acceleration)
             .map(|(after, before)| std::array::from_fn(|a| after[a] - before[a]))
             .collect();
+        let size = |values: &[[f64; D]]| self.size(&self.integrated(values));
         let squared = self.step.duration.powi(2);
-        let motion = self.size_of_motion(u);
+        let motion = size(u) + squared * size(&accelerated);
         if motion > 0.0 {
-            squared / 12.0 * self.size(&change) / motion
+            squared / 12.0 * size(&change) / motion
         } else {
             0.0
         }
     }
 
+    /// Values by node without those of what is given of rigid bodies.
+    fn integrated(&self, values: &[[f64; D]]) -> Vec<[f64; D]> {
+        let mut integrated = values.to_vec();
+        let of_bodies = &mut integrated[self.mass.diagonal.len()..];
+        for (values, is_given) in of_bodies.iter_mut().zip(&self.is_given) {
+            *values = std::array::from_fn(|a| if is_given[a] { 0.0 } else { values[a] });
+        }
+        integrated
+    }
+
     /// The norm √(x M x) of values by node.
     fn size(&self, values: &[[f64; D]]) -> f64 {
         product(&self.times(values), values).max(0.0).sqrt()
-    }
-
-    /// The size ‖u‖ + Δt² ‖a₁‖ of the motion over a step by `u` \[length\] (theory, eq. 68) \[length·√mass\].
-    pub(crate) fn size_of_motion(&self, u: &[[f64; D]]) -> f64 {
-        let accelerated = self.motion(u).acceleration;
-        self.size(u) + self.step.duration.powi(2) * self.size(&accelerated)
     }
 
     /// The product of the mass matrix with values by node.

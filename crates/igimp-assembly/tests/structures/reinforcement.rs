@@ -4,8 +4,8 @@
 
 use crate::common::{Random, conditions, displacements, grid, laws, particles};
 use igimp_assembly::{
-    AssemblyError, Geometry, Hold, Kinematics, Method, Reinforcement, ReinforcementControl,
-    Segment, SegmentState, Station, Stencils, StepConditions, Structures, System,
+    AssemblyError, Geometry, Hold, Kinematics, Method, Reinforcement, ReinforcementControl, Remedy,
+    Segment, SegmentState, SmallCuts, Station, Stencils, StepConditions, Structures, System,
 };
 use igimp_material::TangentKind;
 use igimp_shape::Grid;
@@ -333,6 +333,37 @@ fn forces_balance_in_force_and_moment_where_the_step_ends() {
         sums[2] += x[0] * f[1] - x[1] * f[0];
     }
     assert!(sums.iter().all(|sum: &f64| sum.abs() < 1e-11), "{sums:?}");
+}
+
+// GOAL: a member that ends beside nodes without unknowns hands all of its force on to nodes that have some.
+// ORACLE: what its two ends pull is equal and opposite.
+#[test]
+fn forces_balance_beside_dropped_nodes() {
+    let scene = scene::<2>();
+    let method = Method {
+        small_cuts: SmallCuts {
+            below: 0.7,
+            remedy: Remedy::Drop,
+            ..SmallCuts::default()
+        },
+        ..Method::igimp_bbar()
+    };
+    let member = member([1.3, 2.6], [4.4, 2.9], 9);
+    let stencils = Stencils::build(&scene.body, &method, &scene.conditions).unwrap();
+    let system = System::new(&scene.body, &stencils, &scene.conditions, &method).unwrap();
+    let node = scene.grid.node_index([1, 2]);
+    assert!(stencils.node_volume(node) > 0.0 && !system.unknowns().is_active(node));
+    let u = stretched(&scene.grid, 0.01);
+    let (after, force) = accepted(&scene, &member, &method, None, &u);
+    assert!(after.largest_force() > 0.0);
+    let mut sums = [0.0; 3];
+    for (node, f) in force.iter().enumerate() {
+        let x = scene.grid.node_position(node);
+        sums[0] += f[0];
+        sums[1] += f[1];
+        assert!(f[0] == 0.0 || system.unknowns().is_active(node), "{x:?}");
+    }
+    assert!(sums.iter().all(|sum: &f64| sum.abs() < 1e-12), "{sums:?}");
 }
 
 #[test]

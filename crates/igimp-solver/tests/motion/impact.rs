@@ -1,7 +1,7 @@
 //! GOAL: rigid bodies with mass slide and roll on soil, and bodies of soil meet, as mechanics says.
 //! BODY: stiff elastic ground with a body under the weight of a slope on it; two bars of soil.
 //! ORACLE: a block slides by g (sin β − μ cos β), a cylinder rolls by ⅔ g sin β and a sphere by 5/7 where they do not slip;
-//! bars that meet exchange their velocities after 2 L/c.
+//! bars that meet exchange their velocities after 2 L/c; what drives a mass into a bar evenly works m v² + ρ c A v² t.
 
 use std::f64::consts::PI;
 
@@ -280,5 +280,66 @@ fn bars_that_meet_exchange_their_velocities() {
     for (bar, expected) in [(first, -speed), (second, speed)] {
         let mean = bar.iter().map(|v| v[0]).sum::<f64>() / bar.len() as f64;
         within(0.02, mean, expected);
+    }
+}
+
+/// GOAL: a body that is driven from rest goes evenly by every scheme, with steps that motion is resolved by.
+#[test]
+fn a_driven_body_goes_evenly() {
+    let (cell, speed, mass, duration) = (0.125, 0.05, 3.0, 0.0025);
+    let wave = (YOUNG * 0.7 / (1.3 * 0.4)).sqrt();
+    // Until the wave is back from the base.
+    let steps = (4.0 / wave / duration).floor() as usize;
+    for scheme in [
+        TimeScheme::BackwardEuler,
+        TimeScheme::Newmark,
+        TimeScheme::GeneralisedAlpha,
+    ] {
+        let (grid, particles, mut constraints) = ground([1.0, 4.0], cell);
+        for upper in [false, true] {
+            constraints.fix_wall(&grid, 0, upper, 0).unwrap();
+        }
+        let corners = [[-0.5, 0.0], [0.5, 0.0], [0.5, 0.5], [-0.5, 0.5]];
+        let surface = Surface::polygon(&corners, 0.0, cell).unwrap();
+        let smooth = Interface {
+            shear: Shear::Smooth,
+            tension: Tension::None,
+        };
+        let mut block = RigidBody::new(surface, vec![smooth; 4], [0.5, 2.0]);
+        block.motion.mass = mass;
+        let mut body = Body::new(particles);
+        body.rigid = vec![block];
+        let driven = RigidMotion::displaced([0.0, -speed * duration]);
+        let loads = StepLoads::gravity([0.0; 2]);
+        let conditions = StepConditions::new(grid, constraints, loads, vec![elastic()])
+            .and_then(|own| own.with_motions(vec![driven]))
+            .unwrap();
+        let (method, settings) = (Method::igimp(), NewtonSettings::default());
+        let mut workspace = workspace();
+        let (mut work, mut imbalance) = (0.0, 0.0_f64);
+        for k in 0..steps {
+            let time = TimeStep {
+                scheme,
+                must_resolve: true,
+                ..over(duration, k == 0)
+            };
+            let own = conditions.clone().with_time(Some(time)).unwrap();
+            let ends = (0.0, 1.0);
+            let (report, _) =
+                step(&mut body, &method, &own, ends, &settings, &mut workspace).unwrap();
+            let energy = report.energy.unwrap();
+            work += energy.supports;
+            imbalance += energy.imbalance().abs();
+            let motion = &body.rigid[0].motion;
+            assert!((motion.velocity[1] + speed).abs() < 1e-12, "{scheme:?} {k}");
+            if k > 0 {
+                assert!(motion.acceleration[1].abs() < 1e-9, "{scheme:?} {k}");
+            }
+        }
+        let time = duration * steps as f64;
+        let exact = mass * speed * speed + wave * speed * speed * time;
+        println!("{scheme:?}: {work:e} for {exact:e}, imbalance {imbalance:e}");
+        assert!(imbalance < 1e-12 * exact, "{scheme:?}: {imbalance:e}");
+        within(0.03, work, exact);
     }
 }

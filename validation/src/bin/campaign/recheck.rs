@@ -9,7 +9,7 @@ use igimp_assembly::{Drive, Particles, Stencils};
 use igimp_model::Case;
 use igimp_solver::{Accepted, Body};
 
-use crate::bodies::forces::{Begun, forces};
+use crate::bodies::forces::{Begun, carriers, forces};
 
 /// Size of the round-off in the strain of a particle \[-\].
 const STRAIN_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
@@ -46,7 +46,10 @@ pub(crate) fn equilibrium(
     body: &Body<2>,
     accepted: &Accepted<'_, 2>,
 ) -> Option<Equilibrium> {
-    let conditions = accepted.conditions;
+    let conditions = &*accepted
+        .conditions
+        .without_rollers_at_tips(&body.rigid)
+        .ok()?;
     let (grid, u) = (&conditions.grid, &accepted.forces.u);
     let stencils = Stencils::build(&body.particles, &case.method, conditions).ok()?;
     let soil = of_soil(&stencils, &body.particles, accepted);
@@ -56,6 +59,7 @@ pub(crate) fn equilibrium(
         stencils: &stencils,
         conditions,
         below: case.method.small_cuts.below,
+        is_carrier: carriers(&stencils, grid.node_count()),
     };
     let of_bodies = forces(&begun, &accepted.body.rigid, u);
     let [dx, dy] = case.grid.smallest_cell();

@@ -13,13 +13,17 @@ use crate::equations::trial::Trial;
 const AT_REST: f64 = 100.0;
 
 impl<const D: usize> System<'_, D> {
-    /// The reaction f_int − f_ext by node, zero at unknowns \[force\].
+    /// The reaction f_int − f_ext by node, zero at unknowns \[force\]; where motion is in equilibrium between start and end of a step,
+    /// the one there (theory, eq. 61).
     pub fn reactions(&self, trial: &Trial<D>) -> Vec<[f64; D]> {
+        // Forces of such a step are over the weight of those at its end.
+        let weight = (self.inertia.as_ref()).map_or(1.0, |own| own.weight_of_end());
         let mut reactions = vec![[0.0; D]; trial.f_int.len()];
         for (node, reaction) in reactions.iter_mut().enumerate() {
             for axis in 0..D {
                 if self.unknowns.index(node, axis).is_none() {
-                    reaction[axis] = trial.f_int[node][axis] - self.loads.f_ext[node][axis];
+                    let force = trial.f_int[node][axis] - self.loads.f_ext[node][axis];
+                    reaction[axis] = weight * force;
                 }
             }
         }

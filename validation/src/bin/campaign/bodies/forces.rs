@@ -4,7 +4,9 @@
 
 use std::collections::BTreeMap;
 
-use igimp_assembly::{Particles, RigidBody, Shear, Stencils, StepConditions, Tension};
+use igimp_assembly::{
+    Drive, Particles, RigidBody, RigidMotion, Shear, Stencils, StepConditions, Tension,
+};
 
 use super::outline::in_frame;
 
@@ -17,8 +19,21 @@ pub(crate) struct Begun<'a> {
     pub(crate) rigid: &'a [RigidBody<2>],
     pub(crate) stencils: &'a Stencils<2>,
     pub(crate) conditions: &'a StepConditions<2>,
-    /// Share of its cells below which a node has no unknowns \[-\].
+    /// Share of its cells below which a node that none moves with has no unknowns \[-\].
     pub(crate) below: f64,
+    /// Whether other nodes move with a node.
+    pub(crate) is_carrier: Vec<bool>,
+}
+
+/// Whether other nodes move with a node, by node of the grid.
+pub(crate) fn carriers(stencils: &Stencils<2>, nodes: usize) -> Vec<bool> {
+    let mut is_carrier = vec![false; nodes];
+    for node in 0..nodes {
+        for carrier in stencils.carriers(node).filter(|own| own.node != node) {
+            is_carrier[carrier.node] = true;
+        }
+    }
+    is_carrier
 }
 
 /// What is averaged around a knot.
@@ -26,12 +41,55 @@ pub(crate) struct Begun<'a> {
 struct Around {
     area: f64,
     gap: f64,
+    /// Of faces that no thin particle hides.
+    area_in_front: f64,
+    gap_in_front: f64,
     young: f64,
     adhesion: f64,
     cell: f64,
     /// Opening and slip by node.
     opening: BTreeMap<usize, [f64; 2]>,
     slip: BTreeMap<usize, [f64; 2]>,
+}
+
+impl Around {
+    /// The mean gap at which soil comes near (theory, eq. 45f).
+    fn first_gap(&self) -> f64 {
+        if self.area_in_front > 0.0 {
+            self.gap_in_front / self.area_in_front
+        } else {
+            self.gap / self.area
+        }
+    }
+}
+
+/// A face that a particle turns to a side of a body.
+struct Face {
+    particle: usize,
+    side: usize,
+    height: f64,
+    normal: [f64; 2],
+    tangent: [f64; 2],
+    /// Half of the particle across the side, and along it.
+    thickness: f64,
+    reach: f64,
+    middle: [f64; 2],
+}
+
+impl Face {
+    fn gap(&self) -> f64 {
+        self.height - self.thickness
+    }
+
+    /// Whether the particle ends between the side and the middle of another face (theory, eq. 45f).
+    fn hides(&self, other: &Self) -> bool {
+        let along: f64 = (0..2)
+            .map(|a| (other.middle[a] - self.middle[a]) * self.tangent[a])
+            .sum();
+        self.side == other.side
+            && self.gap() + 2.0 * self.thickness <= other.gap() * (1.0 + 1e-9)
+            && along.abs() < self.reach
+    }
 }
 
 /// A side as a segment between its first and last knot, in the frame of the body; of a circle one between
@@ -60,7 +118,8 @@ pub(crate) fn forces(begun: &Begun<'_>, after: &[RigidBody<2>], u: &[[f64; 2]]) 
             let shear = if own.is_closed {
                 own.shear[0]
             } else {
-                shear_by_law(body, knot, side, &sums, area, u)
+                let motion = &begun.conditions.motions[slot];
+                shear_by_law(body, motion, (knot, side), &sums, area, u)
             };
             for (factor, by_node) in [(own.pressure, &sums.opening), (shear, &sums.slip)] {
                 for (&node, share) in by_node {
@@ -77,27 +136,33 @@ pub(crate) fn forces(begun: &Begun<'_>, after: &[RigidBody<2>], u: &[[f64; 2]]) 
 /// Soil that is no further off than so many cells adheres (theory, eq. 47a) \[-\].
 const ADHESIVE_GAP: f64 = 0.1;
 
+/// Soil that is no further from a body that a force pushes has the body laid on it, in cells (theory, eq. 46) \[-\].
+const LAID: f64 = 1e-6;
+
 /// Shear at a knot that soil touched, or nearly, when the step began and has left at its end (theory, eqs. 47, 47a, 50).
 fn shear_by_law(
     body: &RigidBody<2>,
-    knot: usize,
-    side: usize,
+    motion: &RigidMotion<2>,
+    (knot, side): (usize, usize),
     sums: &Around,
     area: f64,
     u: &[[f64; 2]],
 ) -> f64 {
     let before = &body.contact.knots[knot];
     let bonds = body.interfaces[side].tension != Tension::None && !before.is_broken;
+    let is_pushed = |own: &Drive| matches!(own, Drive::Loaded(force) if force.abs() > 0.0);
+    let is_laid = motion.displacement.iter().any(is_pushed)
+        && sums.first_gap() < LAID * sums.cell / sums.area;
+    let touches = bonds || is_laid;
     let touched = if before.area == 0.0 {
-        bonds || sums.gap <= 0.0
+        touches || sums.first_gap() <= 0.0
     } else {
         before.is_closed
     };
-    let seen = (sums.gap / sums.area).max(0.0);
     let gap = match before.area {
-        0.0 if bonds => 0.0,
-        0.0 => seen,
-        area if sums.area > area => before.gap.max(seen),
+        0.0 if touches => 0.0,
+        0.0 => sums.first_gap().max(0.0),
+        area if sums.area > area => before.gap.max(sums.gap / sums.area),
         _ => before.gap,
     };
     let adheres = touched || !before.is_broken && gap <= ADHESIVE_GAP * sums.cell / sums.area;
@@ -214,6 +279,32 @@ fn sides_near(body: &RigidBody<2>, sides: &[Side], x: [f64; 2]) -> Vec<(usize, f
     of.collect()
 }
 
+/// The faces that particles turn to the sides of a body.
+fn faces(particles: &Particles<2>, body: &RigidBody<2>, sides: &[Side]) -> Vec<Face> {
+    let mut faces = Vec::new();
+    for particle in 0..particles.len() {
+        let (x, half) = (particles.x[particle], particles.half_length[particle]);
+        for (side, height, normal) in sides_near(body, sides, x) {
+            let thickness = half[0] * normal[0].abs() + half[1] * normal[1].abs();
+            if height <= 0.0 || height > 2.0 * thickness {
+                continue;
+            }
+            let tangent = [-normal[1], normal[0]];
+            faces.push(Face {
+                particle,
+                side,
+                height,
+                normal,
+                tangent,
+                thickness,
+                reach: half[0] * tangent[0].abs() + half[1] * tangent[1].abs(),
+                middle: [0, 1].map(|a| x[a] - thickness * normal[a]),
+            });
+        }
+    }
+    faces
+}
+
 fn around_knots(begun: &Begun<'_>, slot: usize, body: &RigidBody<2>) -> BTreeMap<usize, Around> {
     let Begun {
         particles,
@@ -223,42 +314,39 @@ fn around_knots(begun: &Begun<'_>, slot: usize, body: &RigidBody<2>) -> BTreeMap
     let sides = sides(body);
     let first = conditions.grid.node_count() + 2 * slot;
     let mut out: BTreeMap<usize, Around> = BTreeMap::new();
-    for particle in 0..particles.len() {
-        let (x, half) = (particles.x[particle], particles.half_length[particle]);
-        for (number, height, normal) in sides_near(body, &sides, x) {
-            let thickness = half[0] * normal[0].abs() + half[1] * normal[1].abs();
-            if height <= 0.0 || height > 2.0 * thickness {
+    let faces = faces(particles, body, &sides);
+    for face in &faces {
+        let is_in_front = !faces.iter().any(|other| other.hides(face));
+        let law = particles.law[face.particle];
+        let young = particles.young(face.particle, &conditions.laws);
+        let adhesion = match &body.interfaces[face.side].shear {
+            Shear::Limited { adhesion, .. } => adhesion.get(law).copied().unwrap_or(0.0),
+            _ => 0.0,
+        };
+        for (at, length) in points(begun, body, face.middle, face.tangent, face.reach) {
+            let Some(knots) = shares(&sides, face.side, in_frame(&body.pose, at)) else {
                 continue;
-            }
-            let law = particles.law[particle];
-            let young = particles.young(particle, &conditions.laws);
-            let adhesion = match &body.interfaces[number].shear {
-                Shear::Limited { adhesion, .. } => adhesion.get(law).copied().unwrap_or(0.0),
-                _ => 0.0,
             };
-            let tangent = [-normal[1], normal[0]];
-            let reach = half[0] * tangent[0].abs() + half[1] * tangent[1].abs();
-            let middle = [0, 1].map(|a| x[a] - thickness * normal[a]);
-            for (at, length) in points(begun, body, middle, tangent, reach) {
-                let Some(knots) = shares(&sides, number, in_frame(&body.pose, at)) else {
-                    continue;
-                };
-                let Some((nodes, place, cell)) = soil(begun, at) else {
-                    continue;
-                };
-                for (knot, tent) in knots.into_iter().filter(|(_, tent)| *tent > 0.0) {
-                    let weight = length * tent;
-                    let sums = out.entry(knot).or_default();
-                    sums.area += weight;
-                    sums.gap += weight * (height - thickness);
-                    sums.young += weight * young;
-                    sums.adhesion += weight * adhesion;
-                    sums.cell += weight * cell;
-                    for (direction, by_node) in
-                        [(normal, &mut sums.opening), (tangent, &mut sums.slip)]
-                    {
-                        add_way(by_node, &nodes, (direction, weight), (body, first, place));
-                    }
+            let Some((nodes, place, cell)) = soil(begun, at) else {
+                continue;
+            };
+            for (knot, tent) in knots.into_iter().filter(|(_, tent)| *tent > 0.0) {
+                let weight = length * tent;
+                let sums = out.entry(knot).or_default();
+                sums.area += weight;
+                sums.gap += weight * face.gap();
+                if is_in_front {
+                    sums.area_in_front += weight;
+                    sums.gap_in_front += weight * face.gap();
+                }
+                sums.young += weight * young;
+                sums.adhesion += weight * adhesion;
+                sums.cell += weight * cell;
+                for (direction, by_node) in [
+                    (face.normal, &mut sums.opening),
+                    (face.tangent, &mut sums.slip),
+                ] {
+                    add_way(by_node, &nodes, (direction, weight), (body, first, place));
                 }
             }
         }
@@ -342,8 +430,7 @@ fn soil(begun: &Begun<'_>, x: [f64; 2]) -> Option<Soil> {
         let node = grid.node_index([cell[0] + i, cell[1] + j]);
         for carrier in begun.stencils.carriers(node) {
             let fill = begun.stencils.node_fill(grid, carrier.node);
-            // Nodes that others are extrapolated from keep half of what makes a cut.
-            if fill > 0.0 && fill >= 0.5 * begun.below {
+            if begun.is_carrier[carrier.node] || fill > 0.0 && fill >= begun.below {
                 nodes.push((carrier.node, carrier.weight * share));
             }
         }
