@@ -58,6 +58,8 @@ pub struct StepConditions<const D: usize> {
     pub ground: Option<GroundMotion<D>>,
     /// Viscous damping of soil, in a step that takes time.
     pub damping: Option<Rayleigh>,
+    /// Whether rigid bodies at which soil stands without a gap are laid on it, as those are that a force pushes (theory, eq. 46).
+    pub is_laid: bool,
 }
 
 impl<const D: usize> StepConditions<D> {
@@ -86,6 +88,7 @@ impl<const D: usize> StepConditions<D> {
             walls: None,
             ground: None,
             damping: None,
+            is_laid: false,
         };
         conditions.validate_fields()?;
         Ok(conditions)
@@ -99,6 +102,13 @@ impl<const D: usize> StepConditions<D> {
         self.motions = motions;
         self.validate_fields()?;
         Ok(self)
+    }
+
+    /// The same with rigid bodies laid on the soil that stands at them without a gap.
+    #[must_use]
+    pub fn with_bodies_laid(mut self) -> Self {
+        self.is_laid = true;
+        self
     }
 
     /// The same with what acts on reinforcement, in its order.

@@ -343,8 +343,9 @@ fn is_ours(root: &Path) -> bool {
     };
     let summary = fs::read(root.join(SUMMARY)).ok();
     let marker = root.join(MARKER);
-    marker.is_file()
-        || temporary_name(&marker).is_file()
+    // The temporary first: another igimp may rename it to the marker between the two.
+    temporary_name(&marker).is_file()
+        || marker.is_file()
         || summary
             .and_then(|bytes| serde_json::from_slice(&bytes).ok())
             .is_some_and(names_igimp)

@@ -28,7 +28,8 @@ const GHOST_PENALTY: f64 = 1e-3;
 /// that bring internal and external force into balance are found, and the particles are moved.
 /// The body is untouched unless the step is accepted.
 ///
-/// A step whose system is singular at a node that hardly touches soil is tried once more with a ghost
+/// A step whose system is singular before any soil has touched a rigid body is tried once more with bodies laid on the soil that stands
+/// at them (theory, eq. 46); one that is singular at a node that hardly touches soil with a ghost
 /// penalty (theory, eq. 28), and the report says so. On a given geometry the penalty would be a support at a limit load: where
 /// soil has no stiffness the step is tried once more with guarded corrections and regularised tangents (theory, eq. 25e),
 /// which change no equilibrium. In a step that takes time the free fields beside walls go ahead.
@@ -96,7 +97,14 @@ fn step_of_body<const D: usize>(
     let may_hold = method.geometry == Geometry::Moving && method.small_cuts.ghost_penalty == 0.0;
     let mut held = method.clone();
     held.small_cuts.ghost_penalty = GHOST_PENALTY;
-    let again = if may_hold && history.is_weakly_held() {
+    let laid;
+    let again = if failure.is_singular() && lies_on_nothing(body, conditions) {
+        laid = conditions.clone().with_bodies_laid();
+        Some(Attempt {
+            conditions: &laid,
+            ..attempt
+        })
+    } else if may_hold && history.is_weakly_held() {
         Some(Attempt {
             method: &held,
             ghost_penalty: GHOST_PENALTY,
@@ -124,6 +132,13 @@ fn step_of_body<const D: usize>(
         residuals: history.residuals,
         failure: Box::new(failure),
     })
+}
+
+/// Whether a step in statics begins before any soil has touched a rigid body: at no gap and no pressure contact has no stiffness, and
+/// holds no soil that lies on a body.
+fn lies_on_nothing<const D: usize>(body: &Body<D>, conditions: &StepConditions<D>) -> bool {
+    let mut knots = body.rigid.iter().flat_map(|own| &own.contact.knots);
+    conditions.time.is_none() && !body.rigid.is_empty() && knots.all(|knot| knot.area == 0.0)
 }
 
 /// Whether a step failed for soil without stiffness: its system was singular, or soil was at the apex of its strength, where

@@ -9,7 +9,7 @@ use crate::common::{Random, displacements, grid, laws, particles};
 use igimp_assembly::{
     Constraints, ContactNode, Drive, Geometry, Interface, Method, Particles, Pose, RigidBody,
     RigidMotion, SharedLaw, Shear, Stencils, StepConditions, StepLoads, Structures, Surface,
-    System, Tension,
+    System, Tension, TimeScheme, TimeStep,
 };
 use igimp_linear::TangentMatrix;
 use igimp_material::TangentKind;
@@ -637,6 +637,55 @@ fn soil_that_comes_near_later_is_as_far_off_as_it_stands() {
     for (fresh, later) in near {
         assert!((fresh.gap - 0.06).abs() < 1e-12, "{fresh:?}");
         assert!((later.gap - 0.06).abs() < 1e-12, "{later:?}");
+    }
+}
+
+// GOAL: a body lies on soil without a gap where a force pushes it or the step says so, and in statics alone.
+// CASE: a plate at no gap and at a small one, and nothing that moves.
+// ORACLE: pressure needs no motion where a body is laid, and there is none elsewhere.
+#[test]
+fn bodies_are_laid_on_soil_in_statics() {
+    let pushed = RigidMotion {
+        displacement: [Drive::Moved(0.0), Drive::Loaded(-1.0)],
+        ..RigidMotion::held()
+    };
+    let in_time = TimeStep {
+        duration: 0.1,
+        scheme: TimeScheme::Newmark,
+        lumped: 0.0,
+        is_first: true,
+        must_resolve: false,
+    };
+    let (_, law) = laws().remove(0);
+    let method = Method::igimp_bbar();
+    for (gap, motion, says_so, time, presses) in [
+        (0.0, RigidMotion::held(), false, None, false),
+        (0.0, RigidMotion::held(), true, None, true),
+        (0.0, pushed.clone(), false, None, true),
+        (0.0, pushed.clone(), true, Some(in_time), false),
+        (0.01, pushed.clone(), true, None, false),
+    ] {
+        let (grid, soil, mut body) = plate(&Interface::smooth(), gap);
+        body.motion.mass = 1.0;
+        let mut conditions = conditions(&grid, &law, motion).with_time(time).unwrap();
+        if says_so {
+            conditions = conditions.with_bodies_laid();
+        }
+        let stencils = Stencils::build(&soil, &method, &conditions).unwrap();
+        let structures = Structures {
+            bodies: std::slice::from_ref(&body),
+            ..Structures::default()
+        };
+        let system = System::with_structures(&soil, &structures, &stencils, &conditions, &method)
+            .and_then(System::in_motion)
+            .unwrap();
+        let moved = system.bodies_at(&all_by(&grid, [0.0; 2])).unwrap();
+        let knots = &moved.bodies[0].contact.knots;
+        let near = knots.iter().filter(|knot| knot.area > 1e-2);
+        assert!(near.clone().count() > 2);
+        for knot in near {
+            assert_eq!(knot.pressure > 0.0, presses, "{gap} {says_so} {time:?}");
+        }
     }
 }
 

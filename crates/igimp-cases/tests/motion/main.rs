@@ -6,6 +6,7 @@ mod resuming;
 mod dynamic;
 mod earthquake;
 mod pseudo_static;
+mod rigid;
 
 use igimp_results::summary::EnergySummary;
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use igimp_geometry::polygon::{area_and_centroid, bounding_box, contains};
 use igimp_geometry::region::Region;
-use igimp_model::{BodyPart, Boundaries, Side};
+use igimp_model::{BodyPart, Boundaries, RigidPart, Side};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::bodies::Body;
@@ -256,11 +256,11 @@ pub(super) fn check(
     }
 }
 
-/// Warns of bodies that nothing holds from below.
+/// Warns of bodies that neither boundaries nor rigid bodies hold from below.
 pub(super) fn check_support(
     own: &[Thing<Body>],
     bodies: &[Option<BodyPart<2>>],
-    boundaries: Option<&Boundaries<2>>,
+    (boundaries, rigid): (Option<&Boundaries<2>>, &[Option<RigidPart<2>>]),
     site: &Site,
     problems: &mut Problems,
 ) {
@@ -270,6 +270,8 @@ pub(super) fn check_support(
     let [x, y] = frame.axes.each_ref().map(|axis| axis.extremes()[1]);
     let reach = x.max(y);
     let polygons = &site.polygons;
+    let from_start = rigid.iter().flatten().filter(|part| part.from_start);
+    let outlines: Vec<_> = from_start.map(|part| part.outline(64)).collect();
     let held = |polygon: &Vec<[f64; 2]>| {
         let (lower, upper) = bounding_box(polygon);
         let boxed = boundaries.boxes.iter().any(|part| {
@@ -280,6 +282,9 @@ pub(super) fn check_support(
                 })
         });
         boxed
+            || outlines
+                .iter()
+                .any(|own| bounding_box(own).0[1] < lower[1] - reach && touch(own, polygon, reach))
             || boundaries.sides[1][0] != Side::Free && lower[1] < frame.lower[1] + reach
             || boundaries.sides[0][0] == Side::Fixed && lower[0] < frame.lower[0] + reach
             || boundaries.sides[0][1] == Side::Fixed && upper[0] > frame.upper[0] - reach

@@ -124,7 +124,6 @@ fn in_plane(
     let boundaries = Root::boundaries(tree).ok();
     let boundaries =
         boundaries.and_then(|own| boundaries::boundaries(&own, site.frame.as_ref(), problems));
-    bodies::check_support(&own, bodies, boundaries.as_ref(), &site, problems);
     let layers = Layers {
         tree,
         own: &own,
@@ -142,6 +141,8 @@ fn in_plane(
         sequence,
     };
     let rigid = rigid::rigid(tree, &around, materials, problems);
+    let held_by = (boundaries.as_ref(), rigid.as_slice());
+    bodies::check_support(&own, bodies, held_by, &site, problems);
     rigid::stage::check_use(&things(Root::<2>::rigid(tree)), &stages, names, problems);
     let around = water::Around {
         own: &things(Root::<2>::water(tree)),

@@ -85,7 +85,8 @@ impl<'a, const D: usize> Contact<'a, D> {
         };
         let node = self.first_node + NODES_PER_BODY * index;
         let motion = conditions.motions.get(index);
-        let is_loaded = conditions.time.is_none() && motion.is_some_and(RigidMotion::is_pushed);
+        let is_pushed = conditions.is_laid || motion.is_some_and(RigidMotion::is_pushed);
+        let is_loaded = conditions.time.is_none() && is_pushed;
         let rolls = rolling_radius(body, conditions).is_some();
         let of_step = (conditions, method.section);
         let knots = Gathering::new(body, node, particles, stencils, of_step, unknowns).sums();
