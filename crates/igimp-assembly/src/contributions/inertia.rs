@@ -288,6 +288,13 @@ impl<const D: usize> Inertia<D> {
                 ((1.0 - of_mass) * own[a] + of_mass * before[a]) / (1.0 - of_force)
             });
         }
+        // What is given moves evenly, and its blow is that of the step.
+        let nodes = self.mass.diagonal.len();
+        for (node, is_given) in (nodes..between.len()).zip(&self.is_given) {
+            for axis in (0..D).filter(|&axis| is_given[axis]) {
+                between[node][axis] = motion.acceleration[node][axis] / (1.0 - of_force);
+            }
+        }
         let mut force = self.times(&between);
         add_scaled(
             &mut force,

@@ -17,13 +17,16 @@ const LEAST_HEIGHT: f64 = 0.5;
 /// within the body, and the way back could lead through its other side.
 const MOST_DEPTH: f64 = 1.0;
 
+/// A body sees soil up to so many half-thicknesses off its sides (theory, eq. 45b) \[-\].
+const SIGHT: f64 = 2.0;
+
 /// In a notch, or between two bodies, the way off one side leads to another: the sides are looked at so often.
 const MOST_PASSES: usize = 20;
 
 /// What is missing to the least height after the first pass is round-off, as a share of it \[-\].
 const ROUND_OFF: f64 = 1e-9;
 
-/// A particle would be carried into a rigid body, or through it.
+/// A particle would be carried into a rigid body, through it, or up to it from where the body did not see it.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error(
     "particle {particle} would be carried {depth:.2} of its half-length into the rigid body \
@@ -34,7 +37,7 @@ pub struct Penetration {
     pub particle: usize,
     /// Name of the body.
     pub body: String,
-    /// How deep, in half-lengths of the particle as seeded \[-\].
+    /// How deep, in half-lengths of the particle as seeded; below zero outside of the body \[-\].
     pub depth: f64,
     /// Where its centre would be in the end \[length\], axes beyond the dimension 0.
     pub position: [f64; 3],
@@ -72,7 +75,8 @@ pub(crate) type WaysOff<const D: usize> = Vec<(usize, [f64; D])>;
 /// `place` and bodies from `before` to `after`.
 ///
 /// # Errors
-/// [`Penetration`] for the first particle that it would carry into a body, or through it.
+/// [`Penetration`] for the first particle that it would carry into a body, through it, or as near as that from where the body did
+/// not see it as the step began: without contact on its way.
 pub(crate) fn push_out<const D: usize>(
     before: &[RigidBody<D>],
     after: &[RigidBody<D>],
@@ -90,7 +94,12 @@ pub(crate) fn push_out<const D: usize>(
         for (extent, old) in extents.iter().zip(before) {
             let from = old.pose.into_body(&particles.x[particle]);
             let depth = deepest(extent, &from, &x, half);
-            if depth > MOST_DEPTH * half {
+            let most = if depth <= -LEAST_HEIGHT * half || is_seen(old, particles, particle) {
+                MOST_DEPTH
+            } else {
+                -LEAST_HEIGHT
+            };
+            if depth > most * half {
                 return Err(Penetration {
                     particle,
                     body: extent.body.name.clone(),
@@ -102,6 +111,14 @@ pub(crate) fn push_out<const D: usize>(
         out.extend(way_off(&extents, &x, half).map(|way| (particle, way)));
     }
     Ok(out)
+}
+
+/// Whether a body sees a particle.
+fn is_seen<const D: usize>(body: &RigidBody<D>, particles: &Particles<D>, particle: usize) -> bool {
+    let (distance, normal) = body.nearest(&particles.x[particle]);
+    let half_length = &particles.half_length[particle];
+    let thickness: f64 = (0..D).map(|a| half_length[a] * normal[a].abs()).sum();
+    distance <= SIGHT * thickness
 }
 
 /// Particles that stand too close to bodies, or within them by no more than their domains reach, with the way
@@ -137,7 +154,7 @@ fn deepest<const D: usize>(
     half: f64,
 ) -> f64 {
     let to = extent.body.pose.into_body(x);
-    if !extent.may_reach(from, &to, 0.0) {
+    if !extent.may_reach(from, &to, LEAST_HEIGHT * half) {
         return f64::NEG_INFINITY;
     }
     let way = minus(&to, from);

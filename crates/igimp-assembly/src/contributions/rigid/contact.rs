@@ -154,6 +154,14 @@ impl<'a, const D: usize> Contact<'a, D> {
         self.rows.iter().any(|row| row.body == index)
     }
 
+    /// How far soil came near in a step by nodal displacements `u` \[length\] where a gap closed, at most, in cells \[-\].
+    pub(crate) fn closing(&self, u: &[[f64; D]]) -> f64 {
+        let closes = |row: &&Row<D>| row.gap > 0.0 && row.gap_at(u) < 0.0;
+        let ways = self.rows.iter().filter(closes);
+        ways.map(|row| (row.gap - row.gap_at(u)) / row.cell)
+            .fold(0.0, f64::max)
+    }
+
     /// What contact leaves behind when nodal step displacements `u` are accepted: the bodies at their
     /// new places. On a given geometry they stay.
     pub(crate) fn accepted(

@@ -143,6 +143,12 @@ impl<const D: usize> System<'_, D> {
         (self.inertia.as_ref()).map(|inertia| inertia.error(u, negligible))
     }
 
+    /// How far soil came near to a rigid body in a step by nodal displacements `u` \[length\] where a gap closed, at most, in cells
+    /// \[-\].
+    pub fn closing(&self, u: &[[f64; D]]) -> f64 {
+        self.beside.contact.closing(u)
+    }
+
     /// The error in time of a step with nodal values `u` in which water flows, as a share of its excess pore pressures \[-\]; none
     /// where none flows.
     pub fn flow_error(&self, trial: &Trial<D>, u: &[[f64; D]]) -> Option<f64> {
