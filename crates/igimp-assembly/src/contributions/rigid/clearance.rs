@@ -75,13 +75,13 @@ pub(crate) type WaysOff<const D: usize> = Vec<(usize, [f64; D])>;
 /// `place` and bodies from `before` to `after`.
 ///
 /// # Errors
-/// [`Penetration`] for the first particle that it would carry into a body, through it, or as near as that from where the body did
-/// not see it as the step began: without contact on its way.
+/// [`Penetration`] for the first particle that it would carry into a body or through it; in a step that `takes_time` also for one that
+/// comes so close from where the body did not see it as the step began, without contact on its way.
 pub(crate) fn push_out<const D: usize>(
-    before: &[RigidBody<D>],
-    after: &[RigidBody<D>],
+    (before, after): (&[RigidBody<D>], &[RigidBody<D>]),
     particles: &Particles<D>,
     place: impl Fn(usize) -> [f64; D],
+    takes_time: bool,
 ) -> Result<WaysOff<D>, Penetration> {
     let mut out = Vec::new();
     if after.is_empty() {
@@ -94,10 +94,11 @@ pub(crate) fn push_out<const D: usize>(
         for (extent, old) in extents.iter().zip(before) {
             let from = old.pose.into_body(&particles.x[particle]);
             let depth = deepest(extent, &from, &x, half);
-            let most = if depth <= -LEAST_HEIGHT * half || is_seen(old, particles, particle) {
-                MOST_DEPTH
-            } else {
+            let is_close = takes_time && depth > -LEAST_HEIGHT * half;
+            let most = if is_close && !is_seen(old, particles, particle) {
                 -LEAST_HEIGHT
+            } else {
+                MOST_DEPTH
             };
             if depth > most * half {
                 return Err(Penetration {

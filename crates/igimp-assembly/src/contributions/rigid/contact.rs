@@ -169,7 +169,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         u: &[[f64; D]],
         particles: &Particles<D>,
         stencils: &Stencils<D>,
-        geometry: Geometry,
+        (geometry, takes_time): (Geometry, bool),
     ) -> Result<AcceptedContact<D>, Penetration> {
         let mut moved: Vec<RigidBody<D>> = self.bodies.to_vec();
         for (index, body) in moved.iter_mut().enumerate() {
@@ -221,7 +221,7 @@ impl<'a, const D: usize> Contact<'a, D> {
                 push_out: Vec::new(),
             });
         }
-        let push_out = push_out(self.bodies, &moved, particles, |particle| {
+        let place = |particle: usize| {
             let mut x = particles.x[particle];
             for support in stencils.of(particle) {
                 for axis in 0..D {
@@ -229,7 +229,8 @@ impl<'a, const D: usize> Contact<'a, D> {
                 }
             }
             x
-        })?;
+        };
+        let push_out = push_out((self.bodies, &moved), particles, place, takes_time)?;
         Ok(AcceptedContact {
             bodies: moved,
             push_out,

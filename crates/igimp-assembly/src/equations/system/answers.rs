@@ -174,10 +174,11 @@ impl<const D: usize> System<'_, D> {
             method,
             ..
         } = self;
-        let mut contact = self
-            .beside
-            .contact
-            .accepted(u, particles, stencils, method.geometry)?;
+        let takes_time = self.conditions.time.is_some();
+        let mut contact =
+            self.beside
+                .contact
+                .accepted(u, particles, stencils, (method.geometry, takes_time))?;
         if let Some(motion) = self.motion(u) {
             let of_grid = self.conditions.grid.node_count();
             let velocities = motion.after[of_grid..].as_chunks().0;
