@@ -97,14 +97,13 @@ fn step_of_body<const D: usize>(
     let may_hold = method.geometry == Geometry::Moving && method.small_cuts.ghost_penalty == 0.0;
     let mut held = method.clone();
     held.small_cuts.ghost_penalty = GHOST_PENALTY;
-    let laid;
-    let again = if failure.is_singular() && lies_on_nothing(body, conditions) {
-        laid = conditions.clone().with_bodies_laid();
-        Some(Attempt {
-            conditions: &laid,
-            ..attempt
-        })
-    } else if may_hold && history.is_weakly_held() {
+    let lies = failure.is_singular() && lies_on_nothing(body, conditions);
+    let laid = lies.then(|| conditions.clone().with_bodies_laid());
+    let on_bodies = laid.as_ref().map(|conditions| Attempt {
+        conditions,
+        ..attempt
+    });
+    let again = if may_hold && history.is_weakly_held() {
         Some(Attempt {
             method: &held,
             ghost_penalty: GHOST_PENALTY,
@@ -118,7 +117,7 @@ fn step_of_body<const D: usize>(
     } else {
         None
     };
-    if let Some(attempt) = again {
+    for attempt in on_bodies.into_iter().chain(again) {
         // What fails all the same fails for the first reason.
         let mut own = ResidualHistory::default();
         if let Ok(accepted) = equilibrium(&attempt, body, workspace, &mut own) {

@@ -17,7 +17,7 @@ impl<const D: usize> System<'_, D> {
     /// the one there (theory, eq. 61).
     pub fn reactions(&self, trial: &Trial<D>) -> Vec<[f64; D]> {
         // Forces of such a step are over the weight of those at its end.
-        let weight = (self.inertia.as_ref()).map_or(1.0, |own| own.weight_of_end());
+        let weight = (self.inertia.as_ref()).map_or(1.0, Inertia::weight_of_end);
         let mut reactions = vec![[0.0; D]; trial.f_int.len()];
         for (node, reaction) in reactions.iter_mut().enumerate() {
             for axis in 0..D {
