@@ -516,6 +516,38 @@ mod tests {
         }
     }
 
+    // GOAL: the layer by which soil without cohesion counts (theory, eq. 8g) is soil one cell high.
+    // CASE: cells 1 wide and 2 high, 0.5 and 3 in density.
+    // ORACLE: the mass of a cell over its width.
+    #[test]
+    fn a_layer_is_one_cell_high() {
+        let axes = [1.0, 2.0].map(|size| igimp_shape::Axis::uniform(0.0, size, 2).unwrap());
+        let grid = Grid::<2>::new(axes);
+        let laws: Vec<crate::SharedLaw> = vec![Arc::new(soil(0.0)), Arc::new(soil(20.0))];
+        let seeds: Vec<_> = (0..4)
+            .map(|cell| crate::ParticleSeed {
+                x: [0.5 + f64::from(cell % 2), 1.0 + 2.0 * f64::from(cell / 2)],
+                half_length: [0.5, 1.0],
+                volume: 2.0,
+                density: [0.5, 3.0][cell as usize / 2],
+                law: cell as usize / 2,
+                centroid: [0.0; 2],
+            })
+            .collect();
+        let particles = Particles::new(&seeds).unwrap();
+        let constraints = crate::Constraints::free(&grid);
+        let loads = crate::StepLoads::gravity([0.0, -10.0]);
+        let conditions = StepConditions::new(grid, constraints, loads, laws).unwrap();
+        let method = Method {
+            geometry: Geometry::Given,
+            ..Method::shared_strain()
+        };
+        let soil = CellSoil::where_it_counts(&particles, &method, &conditions, &[]).unwrap();
+        let moments = soil.unwrap().moments(&conditions.grid, &particles, &method);
+        let layers: Vec<f64> = moments.iter().map(|own| own.layer).collect();
+        assert_eq!(layers, [1.0, 6.0]);
+    }
+
     // GOAL: a point that loads a face is of the cells that it may press.
     // ORACLE: a point within a cell is of that alone, one on a line of both beside it, one on the side of the grid of that within.
     #[test]
