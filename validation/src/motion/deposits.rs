@@ -210,6 +210,10 @@ fn columns(study: &mut Study, level: Level) -> Result<(), CaseError> {
         if level >= Level::Full {
             exponents(study, &found);
         }
+        let heights = Deposit::heights(&found);
+        study.notes.push(format!(
+            "motion: columns of sand on cells of {cell} cm leave heights over half their width of {heights}"
+        ));
     }
     Ok(())
 }
@@ -263,5 +267,12 @@ impl Deposit {
             run_out: front(particles, 0.01) / half_width - 1.0,
             height: top / half_width,
         }
+    }
+
+    /// Heights by ratios, in words.
+    pub(super) fn heights(found: &[Self]) -> String {
+        let heights = found.iter();
+        let heights = heights.map(|own| format!("{:.2} at a = {}", own.height, own.ratio));
+        heights.collect::<Vec<_>>().join(", ")
     }
 }

@@ -259,11 +259,9 @@ fn columns(study: &mut Study, level: Level) -> Result<(), CaseError> {
             found.push(deposit);
         }
         exponents(study, &found);
-        let heights = found.iter();
-        let heights = heights.map(|own| format!("{:.2} at a = {}", own.height, own.ratio));
+        let heights = Deposit::heights(&found);
         study.notes.push(format!(
-            "motion: columns of revolution on cells of {cell} cm leave heights over the radius of {}",
-            heights.collect::<Vec<_>>().join(", ")
+            "motion: columns of revolution on cells of {cell} cm leave heights over the radius of {heights}"
         ));
     }
     Ok(())

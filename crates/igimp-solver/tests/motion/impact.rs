@@ -340,6 +340,7 @@ fn a_driven_body_goes_evenly() {
         let exact = mass * speed * speed + wave * speed * speed * time;
         println!("{scheme:?}: {work:e} for {exact:e}, imbalance {imbalance:e}");
         assert!(imbalance < 1e-12 * exact, "{scheme:?}: {imbalance:e}");
+        // Newmark's method is 2.3 % low on these cells, and all are within 1 % on cells of half the size.
         within(0.03, work, exact);
     }
 }

@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use crate::body::particles::Particles;
 use crate::error::padded;
-use igimp_rigid::RigidBody;
+use igimp_rigid::{Face, RigidBody};
 use igimp_surface::vectors::{minus, norm};
 
 /// The centre of a particle stands at least so far off a body, in half-lengths as seeded \[-\]. A choice: an undeformed domain
@@ -17,9 +17,6 @@ const LEAST_HEIGHT: f64 = 0.5;
 /// within the body, and the way back could lead through its other side.
 const MOST_DEPTH: f64 = 1.0;
 
-/// A body sees soil up to so many half-thicknesses off its sides (theory, eq. 45b) \[-\].
-const SIGHT: f64 = 2.0;
-
 /// In a notch, or between two bodies, the way off one side leads to another: the sides are looked at so often.
 const MOST_PASSES: usize = 20;
 
@@ -28,10 +25,7 @@ const ROUND_OFF: f64 = 1e-9;
 
 /// A particle would be carried into a rigid body, through it, or up to it from where the body did not see it.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[error(
-    "particle {particle} would be carried {depth:.2} of its half-length into the rigid body \
-     \"{body}\" on its way to {position:?} m"
-)]
+#[error("particle {particle} {} the rigid body \"{body}\" on its way to {position:?} m", way(*depth))]
 pub struct Penetration {
     /// Number of the particle, from 0.
     pub particle: usize,
@@ -41,6 +35,16 @@ pub struct Penetration {
     pub depth: f64,
     /// Where its centre would be in the end \[length\], axes beyond the dimension 0.
     pub position: [f64; 3],
+}
+
+/// How a particle comes to a body, by its depth there.
+fn way(depth: f64) -> String {
+    if depth > 0.0 {
+        format!("would be carried {depth:.2} of its half-length into")
+    } else {
+        let off = -depth;
+        format!("would come, unseen as the step began, within {off:.2} of its half-length of")
+    }
 }
 
 /// A body with its extent in its own frame \[length\].
@@ -114,12 +118,11 @@ pub(crate) fn push_out<const D: usize>(
     Ok(out)
 }
 
-/// Whether a body sees a particle.
+/// Whether a particle turns a face to a body (theory, eq. 45b), or is in it.
 fn is_seen<const D: usize>(body: &RigidBody<D>, particles: &Particles<D>, particle: usize) -> bool {
-    let (distance, normal) = body.nearest(&particles.x[particle]);
-    let half_length = &particles.half_length[particle];
-    let thickness: f64 = (0..D).map(|a| half_length[a] * normal[a].abs()).sum();
-    distance <= SIGHT * thickness
+    let (x, half) = (&particles.x[particle], &particles.half_length[particle]);
+    let mut sides = 0..body.surface.side_count();
+    body.distance(x) <= 0.0 || sides.any(|side| Face::of(body, side, x, half).is_some())
 }
 
 /// Particles that stand too close to bodies, or within them by no more than their domains reach, with the way
