@@ -104,7 +104,7 @@ impl<const D: usize> System<'_, D> {
             own.add(at, &mut force, None);
             product(&force, u)
         };
-        let [ghost, drag, contact, reinforcement, ..] = (self.beside.forces())
+        let [ghost, drag, contact, reinforcement, .., turning] = (self.beside.forces())
             .map(|own| theta * work_of(own, u) + (1.0 - theta) * work_of(own, &still));
         let ground = self.work_of_ground(inertia, u);
         let mut energy = StepEnergy {
@@ -116,7 +116,7 @@ impl<const D: usize> System<'_, D> {
             reinforcement,
             damping: ghost + drag + ground.damping,
             boundaries: ground.boundaries,
-            loads: product(self.f_ext(), u) - ground.carried + ground.earlier,
+            loads: product(self.f_ext(), u) - turning - ground.carried,
             supports: product(&self.reactions(trial), u),
             unbalanced: theta * self.work_out_of_balance(trial, u),
             ..StepEnergy::default()
@@ -129,7 +129,8 @@ impl<const D: usize> System<'_, D> {
             .collect();
         let gained = inertia.times(&gained);
         let duration = inertia.step().duration;
-        let accelerating = product(&gained, u) / duration;
+        let centred = inertia.of_centres(u);
+        let accelerating = product(&gained, &centred) / duration;
         energy.integration = energy.loads + energy.supports
             - energy.unbalanced
             - accelerating
@@ -145,7 +146,7 @@ impl<const D: usize> System<'_, D> {
         energy.kinetic += of_bodies(after);
         energy.kinetic_gain = energy.kinetic - kinetic_before;
         energy.map = kinetic_before - of_grid(before) - (energy.kinetic - of_grid(after));
-        let mean: Vec<[f64; D]> = std::iter::zip(u, std::iter::zip(after, before))
+        let mean: Vec<[f64; D]> = std::iter::zip(&*centred, std::iter::zip(after, before))
             .map(|(u, (after, before))| {
                 std::array::from_fn(|a| u[a] / duration - 0.5 * (after[a] + before[a]))
             })

@@ -4,6 +4,7 @@
 //! strain, per metre run). The second axis points up; gravity acts along its negative direction.
 
 mod axes;
+mod calm;
 pub mod check;
 mod grid;
 mod ground;
@@ -27,6 +28,7 @@ use igimp_linear::{LinearSolver, SolverKind};
 use serde::{Deserialize, Serialize};
 
 pub use axes::{front, in_space};
+pub use calm::Calm;
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use ground::{Ground, Layer};
 pub use ground_motion::{Base, GroundMotion, Piece};

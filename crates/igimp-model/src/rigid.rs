@@ -17,13 +17,15 @@ pub struct RigidPart<const D: usize> {
     pub shape: Arc<dyn RigidForm<D>>,
     /// The reference point of its displacement, forces and moment, as the body starts \[m\].
     pub reference: [f64; D],
+    /// Its centre of mass, where its weight acts, as the body starts \[m\].
+    pub centre_of_mass: [f64; D],
     /// The interfaces of its sides; one for each side of the shape.
     pub interfaces: Vec<RigidInterface>,
     /// Normal stiffness of contact in units of E/h \[-\].
     pub stiffness: f64,
     /// Radius of its corners as a share of the cell \[-\]; a rounding carries nothing.
     pub rounding: f64,
-    /// Own weight of the whole body, which acts at the reference point with gravity \[N/m\], of whole bodies \[N\].
+    /// Own weight of the whole body, which acts at its centre of mass with gravity \[N/m\], of whole bodies \[N\].
     pub weight: f64,
     /// The whole body over the part that is modelled, 2 for half a body \[-\]: forces that stages state
     /// and that are reported are those of the whole body.
@@ -70,6 +72,9 @@ pub trait RigidForm<const D: usize>: Debug + Send + Sync {
     /// coordinates \[m\]; infinite beside the body.
     fn underside(&self, lower: &[f64; D], upper: &[f64; D]) -> f64;
 
+    /// Its centroid: the centre of mass of a uniform body \[m\].
+    fn centroid(&self) -> [f64; D];
+
     /// Moments of inertia over the mass of a uniform body, about axes through a point; in the plane the last one counts \[m²\].
     fn squared_gyration(&self, about: &[f64; D]) -> [[f64; 3]; 3];
 
@@ -100,12 +105,27 @@ impl<const D: usize> RigidPart<D> {
         }
     }
 
-    /// Its moments of inertia under a gravity \[m/s²\], about axes through the reference point, where its mass has its
-    /// centre: those of a uniform body \[kg·m, in space kg·m²\].
+    /// Its moments of inertia under a gravity \[m/s²\], about axes through its centre of mass: those of a uniform body about its
+    /// centroid \[kg·m, in space kg·m²\].
     pub fn moments_of_inertia(&self, gravity: f64) -> [[f64; 3]; 3] {
         let mass = self.mass(gravity);
-        let squared = self.shape.squared_gyration(&self.reference);
+        let squared = self.shape.squared_gyration(&self.shape.centroid());
         squared.map(|row| row.map(|own| mass * own))
+    }
+
+    /// From its reference point to its centre of mass, as it starts \[m\]; none where they differ by round-off.
+    pub fn arm(&self) -> [f64; D] {
+        let (lower, upper) = self.bounds();
+        let places = lower.iter().chain(&upper).chain(&self.reference);
+        let largest = places.fold(0.0, |most: f64, x| most.max(x.abs()));
+        std::array::from_fn(|axis| {
+            let own = self.centre_of_mass[axis] - self.reference[axis];
+            if own.abs() > 1e-12 * largest {
+                own
+            } else {
+                0.0
+            }
+        })
     }
 
     /// Its extent where it starts: corners of the lowest and of the highest coordinates \[m\].
@@ -189,6 +209,13 @@ impl RigidForm<2> for RigidShape {
             Self::Circle { centre, .. } => {
                 lowest(&mut std::iter::once(centre[0].clamp(left, right)))
             }
+        }
+    }
+
+    fn centroid(&self) -> [f64; 2] {
+        match self {
+            Self::Polygon(corners) => igimp_geometry::polygon::area_and_centroid(corners).1,
+            Self::Circle { centre, .. } => *centre,
         }
     }
 

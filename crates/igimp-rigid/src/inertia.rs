@@ -1,20 +1,22 @@
-//! Mass and velocity of a rigid body (theory, eq. 67).
+//! Mass and velocity of a rigid body (theory, eqs. 67 and 67b).
 
 use crate::{NODES_PER_BODY, RigidBody, rotations};
 use igimp_shape::matrices::congruence;
 
-/// Mass of a rigid body, whose centre is its reference point, and its velocity.
+/// Mass of a rigid body, and its velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidInertia<const D: usize> {
     /// Mass; zero for a body without inertia \[mass; per unit thickness in plane strain\].
     pub mass: f64,
-    /// Moments of inertia about the axes of the body; in the plane the last one counts \[mass·length²\].
+    /// The centre of mass in the frame of the body, from its reference point \[length\].
+    pub centre: [f64; D],
+    /// Moments of inertia about the axes of the body through the centre of mass; in the plane the last one counts \[mass·length²\].
     pub moments: [[f64; 3]; 3],
-    /// Velocity of the reference point \[length/time\].
+    /// Velocity of the centre of mass \[length/time\].
     pub velocity: [f64; D],
     /// Angular velocity: in the plane the first component, in space about the axes \[rad/time\].
     pub spin: [f64; 3],
-    /// Acceleration of the reference point \[length/time²\].
+    /// Acceleration of the centre of mass \[length/time²\].
     pub acceleration: [f64; D],
     /// Angular acceleration \[rad/time²\].
     pub spin_rate: [f64; 3],
@@ -24,6 +26,7 @@ impl<const D: usize> Default for RigidInertia<D> {
     fn default() -> Self {
         Self {
             mass: 0.0,
+            centre: [0.0; D],
             moments: [[0.0; 3]; 3],
             velocity: [0.0; D],
             spin: [0.0; 3],
@@ -46,7 +49,7 @@ impl<const D: usize> RigidBody<D> {
         congruence(&turn, &self.motion.moments)
     }
 
-    /// The mass on the nodes that stand for its motion: of its displacement, and of its rotation in lengths \[mass\].
+    /// The mass on the nodes that stand for its motion: of the displacement of its centre of mass, and of its rotation in lengths \[mass\].
     pub fn nodal_mass(&self) -> [[[f64; D]; D]; NODES_PER_BODY] {
         let mut displacement = [[0.0; D]; D];
         let mut rotation = [[0.0; D]; D];
@@ -108,6 +111,7 @@ impl<const D: usize> RigidBody<D> {
     pub fn rest(&mut self) {
         self.motion = RigidInertia {
             mass: self.motion.mass,
+            centre: self.motion.centre,
             moments: self.motion.moments,
             ..RigidInertia::default()
         };

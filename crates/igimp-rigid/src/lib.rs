@@ -1,6 +1,7 @@
 //! Rigid bodies beside soil: a surface with an interface on each of its sides, a pose, a mass, what contact has left
 //! behind, and the faces that particles turn to them. Nothing here knows of stress in soil or of equilibrium.
 
+mod arm;
 mod face;
 mod face_clipping;
 mod inertia;
@@ -12,6 +13,7 @@ use std::sync::Arc;
 
 use igimp_surface::Surface;
 
+pub use arm::Arm;
 pub use face::{Face, FacePoint};
 pub use face_clipping::{Piece, pieces, tents_within};
 pub use inertia::RigidInertia;

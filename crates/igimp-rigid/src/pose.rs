@@ -53,7 +53,7 @@ impl<const D: usize> Pose<D> {
 }
 
 /// The matrix of a rotation: by an angle in the plane, by a vector in space (theory, eq. 45d).
-fn turn_by<const D: usize>(rotation: &[f64; 3]) -> [[f64; D]; D] {
+pub(crate) fn turn_by<const D: usize>(rotation: &[f64; 3]) -> [[f64; D]; D] {
     let mut out = identity::<D>();
     if D == 2 {
         let (sin, cos) = rotation[0].sin_cos();

@@ -45,14 +45,15 @@ fn linear() -> Method {
 /// Acceleration of a base that swings by [`WAY`] along the first axis.
 fn swings<const D: usize>(omega: f64) -> impl Fn(f64, f64) -> GroundMotion<D> {
     move |from, to| {
-        let along = |t: f64| {
+        // The change of the velocity of the base over a step.
+        let mean = |from: f64, to: f64| {
             let mut all = [0.0; D];
-            all[0] = -WAY * omega * omega * (omega * t).sin();
+            all[0] = WAY * omega * ((omega * to).cos() - (omega * from).cos()) / (to - from);
             all
         };
         GroundMotion {
-            before: along(from),
-            after: along(to),
+            acceleration: mean(from, to),
+            earlier: mean(2.0 * from - to, from),
         }
     }
 }

@@ -1,18 +1,23 @@
 //! What is given of motion beside loads: the acceleration of the ground that a body stands on, and viscous damping of soil.
 
-/// Acceleration of the ground in whose frame displacement and velocity are told (theory, eq. 72) \[length/time²\].
+/// Acceleration of the ground in whose frame displacement and velocity are told (theory, eqs. 72 and 72a) \[length/time²\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundMotion<const D: usize> {
-    /// At the start of the step.
-    pub before: [f64; D],
-    /// At its end.
-    pub after: [f64; D],
+    /// The mean over the step: the change of velocity of the ground over the duration.
+    pub acceleration: [f64; D],
+    /// The mean over the step before, which the accelerations that are carried on belong to; none where it stood still.
+    pub earlier: [f64; D],
 }
 
 impl<const D: usize> GroundMotion<D> {
+    /// By how much the acceleration of the ground is another than in the step before.
+    pub(crate) fn change(&self) -> [f64; D] {
+        std::array::from_fn(|axis| self.acceleration[axis] - self.earlier[axis])
+    }
+
     /// Whether all numbers are finite.
     pub(crate) fn is_finite(&self) -> bool {
-        let mut all = self.before.iter().chain(&self.after);
+        let mut all = self.acceleration.iter().chain(&self.earlier);
         all.all(|value| value.is_finite())
     }
 }

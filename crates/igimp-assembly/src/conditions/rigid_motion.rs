@@ -18,6 +18,8 @@ pub struct RigidMotion<const D: usize> {
     pub displacement: [Drive; D],
     /// Of the rotation: one component in the plane, three in space; those beyond are not looked at.
     pub rotation: [Drive; 3],
+    /// Force at its centre of mass, beside what drives it: its weight \[force\].
+    pub weight: [f64; D],
 }
 
 impl<const D: usize> RigidMotion<D> {
@@ -26,6 +28,7 @@ impl<const D: usize> RigidMotion<D> {
         Self {
             displacement: [Drive::Moved(0.0); D],
             rotation: [Drive::Moved(0.0); 3],
+            weight: [0.0; D],
         }
     }
 
@@ -37,19 +40,17 @@ impl<const D: usize> RigidMotion<D> {
         }
     }
 
-    /// Whether a force pushes it along some axis.
+    /// Whether a force pushes it along some axis, its weight counted.
     pub(crate) fn is_pushed(&self) -> bool {
-        let mut along = self.displacement.iter();
-        along.any(|drive| matches!(drive, Drive::Loaded(force) if *force != 0.0))
+        std::iter::zip(&self.displacement, &self.weight)
+            .any(|(drive, weight)| matches!(drive, Drive::Loaded(force) if force + weight != 0.0))
     }
 
     /// Whether every number is finite.
     pub(crate) fn is_finite(&self) -> bool {
-        self.displacement
-            .iter()
-            .chain(&self.rotation)
-            .all(|drive| match drive {
-                Drive::Moved(value) | Drive::Loaded(value) => value.is_finite(),
-            })
+        let mut drives = self.displacement.iter().chain(&self.rotation);
+        drives.all(|drive| match drive {
+            Drive::Moved(value) | Drive::Loaded(value) => value.is_finite(),
+        }) && self.weight.iter().all(|own| own.is_finite())
     }
 }

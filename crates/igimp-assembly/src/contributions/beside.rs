@@ -9,7 +9,7 @@ use crate::contributions::loads::nodal_drag;
 use crate::contributions::nodal_forces::NodalForces;
 use crate::contributions::pore_water::Pores;
 use crate::contributions::reinforcement::{Members, Reinforcement};
-use crate::contributions::rigid::Contact;
+use crate::contributions::rigid::{Contact, TurningWeights};
 use crate::contributions::walls::WallForces;
 use crate::error::AssemblyError;
 use crate::method::Method;
@@ -28,6 +28,8 @@ pub(crate) struct BesideParticles<'a, const D: usize> {
     pub(crate) walls: WallForces<D>,
     /// Excess pore pressure as an unknown, in a step in which water flows.
     pub(crate) consolidation: Consolidation<D>,
+    /// What acts at the centres of mass of rigid bodies that turn.
+    pub(crate) weights: TurningWeights<D>,
 }
 
 impl<'a, const D: usize> BesideParticles<'a, D> {
@@ -57,11 +59,12 @@ impl<'a, const D: usize> BesideParticles<'a, D> {
                 particles, bodies, stencils, of_step, unknowns, pores,
             )?,
             walls: WallForces::find(particles, stencils, conditions, unknowns, &mass_of),
+            weights: TurningWeights::find(bodies, conditions, method),
         })
     }
 
     /// The forces in the order in which they are summed.
-    pub(crate) fn forces(&self) -> [&dyn NodalForces<D>; 6] {
+    pub(crate) fn forces(&self) -> [&dyn NodalForces<D>; 7] {
         [
             &self.ghost,
             &self.drag,
@@ -69,6 +72,7 @@ impl<'a, const D: usize> BesideParticles<'a, D> {
             &self.reinforcement,
             &self.walls,
             &self.consolidation,
+            &self.weights,
         ]
     }
 

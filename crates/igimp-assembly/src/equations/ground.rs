@@ -18,8 +18,6 @@ pub(crate) struct WorkOfGround {
     pub(crate) boundaries: f64,
     /// Of the forces that walls carry: part of the work of the external force.
     pub(crate) carried: f64,
-    /// By how much the motion of the ground does more, with its acceleration at the start of the step for its share of the mean.
-    pub(crate) earlier: f64,
     /// Against damping of soil.
     pub(crate) damping: f64,
 }
@@ -39,7 +37,7 @@ impl<const D: usize> System<'_, D> {
             }
         }
         if let Some(ground) = conditions.ground {
-            let force = inertia.times(&self.uniform(&ground.after));
+            let force = inertia.force_of(&self.uniform(&ground.acceleration));
             for (f_ext, force) in self.loads.f_ext.iter_mut().zip(force) {
                 *f_ext = std::array::from_fn(|a| f_ext[a] - force[a]);
             }
@@ -47,7 +45,7 @@ impl<const D: usize> System<'_, D> {
         inertia.damp(conditions.damping.map_or(0.0, |own| own.mass));
     }
 
-    /// A motion of all nodes of the grid and of the reference points of rigid bodies, by node.
+    /// A motion of all nodes of the grid and of the centres of mass of rigid bodies, by node.
     fn uniform(&self, of_all: &[f64; D]) -> Vec<[f64; D]> {
         let of_grid = self.conditions.grid.node_count();
         (0..self.node_count())
@@ -58,7 +56,7 @@ impl<const D: usize> System<'_, D> {
             .collect()
     }
 
-    /// The internal forces by node as the step begins that differ from those as it ends: of the ground, of dashpots and of damping
+    /// The internal forces by node as the step begins that differ from those as it ends: of dashpots and of damping
     /// \[force\].
     pub(crate) fn forces_of_start(
         &self,
@@ -73,21 +71,12 @@ impl<const D: usize> System<'_, D> {
             inertia.damping_force(inertia.velocity()),
             self.force_of(damping, inertia.velocity()),
         ];
-        let earlier = self.earlier_ground(inertia);
-        for other in others.iter().chain(&earlier) {
+        for other in &others {
             for (force, other) in force.iter_mut().zip(other) {
                 *force = std::array::from_fn(|a| force[a] + other[a]);
             }
         }
         force
-    }
-
-    /// The force M a of the acceleration of the ground at the start of the step beyond that at its end \[force\]; none on still
-    /// ground.
-    fn earlier_ground(&self, inertia: &Inertia<D>) -> Option<Vec<[f64; D]>> {
-        let ground = self.conditions.ground?;
-        let change = std::array::from_fn(|a| ground.before[a] - ground.after[a]);
-        Some(inertia.times(&self.uniform(&change)))
     }
 
     /// Damping by the elastic stiffness of soil as it is now, if the conditions have some.
@@ -182,11 +171,9 @@ impl<const D: usize> System<'_, D> {
             product(&inertia.damping_force(velocity), u) + product(&by_stiffness, u)
         };
         let after = inertia.motion(u).after;
-        let earlier = self.earlier_ground(inertia);
         WorkOfGround {
             boundaries: over(product(&at_end, u), product(&at_start, u)) - carried,
             carried,
-            earlier: earlier.map_or(0.0, |force| -(1.0 - theta) * product(&force, u)),
             damping: over(damped(&after), damped(inertia.velocity())),
         }
     }

@@ -117,6 +117,7 @@ fn above<const D: usize>(
     let motion = RigidMotion {
         displacement: [Drive::Loaded(-0.3); D],
         rotation,
+        ..RigidMotion::held()
     };
     (body, motion)
 }

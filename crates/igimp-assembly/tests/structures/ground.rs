@@ -40,8 +40,8 @@ fn shaken(grid: &Grid<2>, law: &SharedLaw, scheme: TimeScheme) -> StepConditions
         beside: Arc::new(Vec::new()),
     };
     let ground = GroundMotion {
-        before: [0.1, 0.0],
-        after: [0.4, 0.0],
+        acceleration: [0.4, 0.0],
+        earlier: [0.1, 0.0],
     };
     let damping = Rayleigh {
         mass: 0.7,

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
+use igimp_model::Calm;
 use igimp_results::checkpoint::{CheckpointError, Meta};
 use igimp_results::ending::EndReason;
 use igimp_results::summary::{CheckRow, FigureNote, StageSummary, TrialSummary};
@@ -32,6 +33,8 @@ pub(crate) struct Resumption {
     pub(crate) resistance: f64,
     /// Drag of the next step \[1/s²\].
     pub(crate) drag: f64,
+    /// How calm motion has become.
+    pub(crate) calm: Option<Calm>,
     /// Why the march ended with its last step, if its stage said so.
     pub(crate) end: Option<EndReason>,
 }

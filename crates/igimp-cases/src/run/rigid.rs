@@ -2,8 +2,7 @@
 
 use igimp_assembly::{Drive, Interface, Particles, RigidBody, RigidMotion, Shear};
 use igimp_model::{
-    Adhesion, COMPONENTS, Case, RigidInterface, RigidPart, RigidQuantity, RigidShear, components,
-    in_space,
+    Adhesion, Case, RigidInterface, RigidPart, RigidQuantity, RigidShear, components, in_space,
 };
 use igimp_results::tables::table::Table;
 use igimp_solver::{Accepted, StepFailure};
@@ -38,6 +37,7 @@ pub(crate) fn made<const D: usize>(
     body.name.clone_from(&part.name);
     body.penalty.stiffness = part.stiffness;
     body.motion.mass = part.mass(case.gravity);
+    body.motion.centre = part.arm();
     body.motion.moments = part.moments_of_inertia(case.gravity);
     Ok(body)
 }
@@ -65,12 +65,8 @@ fn interface<const D: usize>(case: &Case<D>, of: &RigidInterface, laws: usize) -
 }
 
 /// Own weight, with what pseudo-static acceleration adds to it, by component \[N/m\], of whole bodies \[N\].
-fn weight<const D: usize>(part: &RigidPart<D>, controls: &Controls) -> [f64; COMPONENTS] {
-    let mut weight = [0.0; COMPONENTS];
-    for (own, share) in std::iter::zip(&mut weight, controls.body_force::<D>()) {
-        *own = share * part.weight;
-    }
-    weight
+fn weight<const D: usize>(part: &RigidPart<D>, controls: &Controls) -> [f64; D] {
+    controls.body_force::<D>().map(|share| share * part.weight)
 }
 
 /// How the rigid bodies that are there move in a step between two controls.
@@ -82,9 +78,8 @@ pub(crate) fn motions<const D: usize>(
     to.placed()
         .map(|index| {
             let (part, own, before) = (&case.rigid[index], &to.rigid[index], &from.rigid[index]);
-            let weight = weight(part, to);
             let drive = |k: usize| match own.loaded[k] {
-                Some(force) => Drive::Loaded((force + weight[k]) / part.force_factor),
+                Some(force) => Drive::Loaded(force / part.force_factor),
                 None => Drive::Moved(own.moved[k] - before.moved[k]),
             };
             RigidMotion {
@@ -96,6 +91,7 @@ pub(crate) fn motions<const D: usize>(
                         Drive::Moved(0.0)
                     }
                 }),
+                weight: weight(part, to).map(|own| own / part.force_factor),
             }
         })
         .collect()
@@ -116,7 +112,6 @@ pub(crate) fn tracks<const D: usize>(
         let (part, own) = (&case.rigid[index], &controls.rigid[index]);
         let node = first + 2 * slot;
         let size = body.surface.size();
-        let weight = weight(part, controls);
         let track = &mut tracks[index];
         for k in 0..components::<D>() {
             let (by, reaction) = if k < D {
@@ -126,7 +121,7 @@ pub(crate) fn tracks<const D: usize>(
                 (u[node + 1][k] / size, reactions[node + 1][k] * size)
             };
             track.displacement[k] += by;
-            track.force[k] = own.loaded[k].unwrap_or(part.force_factor * reaction - weight[k]);
+            track.force[k] = own.loaded[k].unwrap_or(part.force_factor * reaction);
         }
         track.lowered = part.reference[D - 1] - body.pose.origin[D - 1];
     }

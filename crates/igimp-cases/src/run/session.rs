@@ -311,7 +311,7 @@ impl<'a, const D: usize> StagePath<'a, D> {
             Some(own) => (own.on_ground)(before, after, conditions)?,
             None => conditions,
         };
-        let durations = [after.time - before.time, after.flow_step];
+        let durations = [after.time - before.time, after.last_step];
         let flow = |own| flow::of_step((model.case, model.laws.len()), own, durations);
         conditions
             .with_flow(self.flow.map(flow))?
@@ -370,10 +370,10 @@ pub(crate) fn march_path<const D: usize>(
     let model = session.model;
     let tracks = RefCell::new(state.controls.tracks());
     let walls = RefCell::new(state.controls.walls.clone());
-    let flow_step = Cell::new(state.controls.flow_step);
+    let last_step = Cell::new(state.controls.last_step);
     let at = |reached: f64| {
         let controls = Controls {
-            flow_step: flow_step.get(),
+            last_step: last_step.get(),
             ..path.from.towards(path.to, reached)
         };
         (controls.with_tracks(&tracks.borrow())).with_walls(&walls.borrow())
@@ -397,7 +397,7 @@ pub(crate) fn march_path<const D: usize>(
         each,
         tracks: &tracks,
         walls: &walls,
-        flow_step: &flow_step,
+        last_step: &last_step,
         reached: march.at,
         stopped: Ok(None),
     };
@@ -440,8 +440,8 @@ struct Watch<'w, 's, const D: usize> {
     tracks: &'w RefCell<Vec<RigidTrack>>,
     /// What stands at walls.
     walls: &'w RefCell<Vec<WallTrack>>,
-    /// Duration of the last step in which water flowed.
-    flow_step: &'w Cell<f64>,
+    /// Duration of the last step.
+    last_step: &'w Cell<f64>,
     reached: f64,
     stopped: Result<Option<Stop>, CaseError>,
 }
@@ -457,15 +457,13 @@ impl<const D: usize> Watch<'_, '_, D> {
             export.accepted(accepted.conditions, &self.session.summary, self.stage);
         }
         let model = self.session.model;
-        if self.path.flow.is_some() {
-            if report.water.is_some() {
-                let own = self.stage.consolidation.get_or_insert_default();
-                flow::tally(own, model.case, report, &accepted.body.particles);
-            }
-            self.flow_step.set(report.duration);
+        if self.path.flow.is_some() && report.water.is_some() {
+            let own = self.stage.consolidation.get_or_insert_default();
+            flow::tally(own, model.case, report, &accepted.body.particles);
         }
+        self.last_step.set(report.duration);
         let mut controls = self.path.from.towards(self.path.to, report.to);
-        controls.flow_step = self.flow_step.get();
+        controls.last_step = self.last_step.get();
         controls = controls.with_tracks(&self.tracks.borrow());
         let tracks = rigid::tracks(model.case, &controls, accepted);
         controls = controls.with_tracks(&tracks);

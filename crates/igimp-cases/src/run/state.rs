@@ -28,9 +28,9 @@ pub struct Controls {
     /// Time since the first stage that takes some \[s\].
     #[serde(default)]
     pub time: f64,
-    /// Duration of the last step in which water flowed; zero where statics came after it \[s\].
+    /// Duration of the last step; zero where statics came after it, and as a stage begins \[s\].
     #[serde(default)]
-    pub flow_step: f64,
+    pub last_step: f64,
     /// What stands at the nodes of walls that a motion has let go.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub walls: Vec<WallTrack>,
@@ -131,7 +131,7 @@ impl Controls {
             water: None,
             drained: false,
             time: 0.0,
-            flow_step: 0.0,
+            last_step: 0.0,
             walls: Vec::new(),
         }
     }
@@ -156,7 +156,7 @@ impl Controls {
             water: end.water,
             drained: end.drained,
             time: between(self.time, end.time, t),
-            flow_step: self.flow_step,
+            last_step: self.last_step,
             walls: self.walls.clone(),
         }
     }

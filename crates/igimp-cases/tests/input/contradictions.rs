@@ -58,7 +58,7 @@ fn friction_by_speed_that_makes_no_sense() {
             &[
                 ("type = \"dynamic\" ", "type = \"gravity\" "),
                 ("duration = \"0.6 s\"", ""),
-                ("at_rest = 1e-6", "")
+                ("at_rest = 1e-4", "")
             ],
         ]
     ));

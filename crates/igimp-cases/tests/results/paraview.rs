@@ -165,6 +165,7 @@ fn rectangle() -> (RigidPart<2>, RigidBody<2>) {
         name: "plate".into(),
         shape: Arc::new(RigidShape::Polygon(corners.to_vec())),
         reference: [1.0, 0.0],
+        centre_of_mass: [1.0, 0.5],
         interfaces: vec![interface; 4],
         stiffness: 10.0,
         rounding: 0.5,

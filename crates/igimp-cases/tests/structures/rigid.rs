@@ -465,3 +465,79 @@ fn a_body_that_is_laid_on_soil_takes_a_force() {
         assert!((limit / carried - 1.0).abs() < 0.08, "{edge}: {limit}");
     }
 }
+
+/// GOAL: the weight of a body acts at its centre of mass, and goes round with it: a block that is pushed over at its top needs less and less
+/// force.
+/// ORACLE: moments about the corner that it turns about, H (h cos θ + b sin θ) = W (b cos θ − h_c sin θ): the lever b to the corner is the same
+/// all along, and half the width less the rounding and half of the last knot.
+#[test]
+fn a_block_is_pushed_over() {
+    let text = r#"
+igimp = 1
+[case]
+title = "A block that is pushed over"
+[grid]
+cell = "0.1 m"
+domain = { x = ["-1.5 m", "1.5 m"], y = ["0 m", "3.2 m"] }
+[materials.rock]
+model = "elastic"
+unit_weight = "0 kN/m3"
+young = "1 GPa"
+poisson = 0
+[[bodies]]
+name = "ground"
+material = "rock"
+points_per_cell = 4
+polygon = [["-1.5 m", "0 m"], ["1.5 m", "0 m"], ["1.5 m", "0.5 m"], ["-1.5 m", "0.5 m"]]
+[[rigid]]
+name = "block"
+type = "rectangle"
+from = ["-0.5 m", "0.5 m"]
+to = ["0.5 m", "2.5 m"]
+reference = ["0 m", "2.5 m"]
+interface = { friction = 0.6 }
+weight = "40 kN/m"
+[[stages]]
+name = "weight"
+type = "gravity"
+steps = 1
+[[stages]]
+name = "stand"
+type = "rigid"
+bodies = [{ body = "block", free = ["x", "y", "rotation"] }]
+steps = 2
+[[stages]]
+name = "push"
+type = "rigid"
+bodies = [{ body = "block", x = "0.36 m", free = ["y", "rotation"] }]
+steps = 18
+[[curves]]
+name = "push"
+stage = "push"
+x = { of = "rigid.block.rotation" }
+y = { of = "rigid.block.force_x" }
+[output]
+figures = []
+"#;
+    for (centre, height) in [
+        (None, 1.0),
+        (Some("rigid.block.centre_of_mass=[\"0 m\", \"1 m\"]"), 0.5),
+    ] {
+        let changes: Vec<String> = centre.into_iter().map(str::to_owned).collect();
+        let file = CaseFile::parse("block.toml", text, &changes).unwrap();
+        let run = in_memory(file.case()).unwrap();
+        assert!(run.failure.is_none(), "{:?}", run.failure);
+        let curve = run.curves.iter().find(|own| own.name == "push").unwrap();
+        let levers: Vec<f64> = (curve.points(0, 1).into_iter().skip(2))
+            .map(|[rotation, force]| {
+                let (sin, cos) = (-rotation).sin_cos();
+                let share = force / 40e3;
+                (2.0 * share * cos + height * sin) / (cos - share * sin)
+            })
+            .collect();
+        println!("{height}: {levers:?}");
+        for lever in levers {
+            assert!((lever - 0.42).abs() < 0.01, "{height}: {lever}");
+        }
+    }
+}

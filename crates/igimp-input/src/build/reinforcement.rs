@@ -322,7 +322,7 @@ pub(super) fn installs<const D: usize>(
                 value.place,
                 format!("a stage of type {kind} installs nothing"),
             )
-            .help("install it in a stage of type gravity, load, rigid, construction or displacement before");
+            .help("install it in a stage of type gravity, load, rigid, construction, displacement or dynamic before");
         return None;
     }
     let mut members = Vec::new();

@@ -92,11 +92,18 @@ fn part_of<const D: usize>(
             problems,
         )?,
     };
+    if let (Some(stated), 0.0) = (&common.centre_of_mass, *common.weight) {
+        problems
+            .error(stated.place, "there is no weight that acts there")
+            .help("add weight = \"10 kN/m\", in space \"10 kN\"");
+    }
     let basis = basis?;
     let interfaces = all_sides(own, whole, &basis.sides, materials, problems);
     let part = RigidPart {
         name: own.name.value.clone(),
         reference: basis.reference,
+        centre_of_mass: (common.centre_of_mass.as_ref())
+            .map_or_else(|| basis.shape.centroid(), |own| **own),
         shape: basis.shape,
         interfaces: interfaces?,
         stiffness: *common.stiffness,

@@ -173,6 +173,18 @@ fn stop_when_of<const D: usize>(
                 "it is for stages of type displacement"
             });
     }
+    if let StageForm::RunOut(_) | StageForm::Dynamic(_) = **form
+        && let equilibrium = &own.no_equilibrium
+        && **equilibrium
+    {
+        let kind = form.name();
+        problems
+            .error(
+                equilibrium.key_place,
+                format!("a stage of type {kind} has no load that could be the greatest"),
+            )
+            .help("it is for stages of type gravity, load, displacement and rigid");
+    }
     if let (StageForm::StrengthReduction(_), Some(displacement)) = (&**form, &own.displacement) {
         problems
             .error(

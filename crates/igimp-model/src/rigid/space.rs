@@ -125,11 +125,8 @@ impl RigidSolid {
                 ])
             }
             Self::Surface(own) => {
-                let parts: Vec<_> = (own.faces().iter())
-                    .map(|face| {
-                        let [p, q, r] = face.map(|corner| off(&own.points()[corner]));
-                        let cross = |a: usize, b: usize| q[a] * r[b] - q[b] * r[a];
-                        let volume = p[0] * cross(1, 2) + p[1] * cross(2, 0) + p[2] * cross(0, 1);
+                let parts: Vec<_> = tetrahedra(own, about)
+                    .map(|(volume, [p, q, r])| {
                         let sum: [f64; 3] = std::array::from_fn(|a| p[a] + q[a] + r[a]);
                         let second = std::array::from_fn(|a| {
                             std::array::from_fn(|b| {
@@ -145,6 +142,21 @@ impl RigidSolid {
     }
 }
 
+/// The tetrahedra from a point to the triangles of a closed surface: six times their volume, of either sign \[m³\], and the corners of
+/// the triangles from that point \[m\].
+fn tetrahedra<'a>(
+    own: &'a ClosedSurface,
+    about: &'a [f64; 3],
+) -> impl Iterator<Item = (f64, [[f64; 3]; 3])> + 'a {
+    own.triangles().map(|triangle| {
+        let corners = triangle.map(|at| std::array::from_fn(|axis| at[axis] - about[axis]));
+        let [p, q, r]: [[f64; 3]; 3] = corners;
+        let cross = |a: usize, b: usize| q[a] * r[b] - q[b] * r[a];
+        let volume = p[0] * cross(1, 2) + p[1] * cross(2, 0) + p[2] * cross(0, 1);
+        (volume, corners)
+    })
+}
+
 /// The nearest distance in plan of a box from a point \[m\].
 fn distance_in_plan(at: &[f64; 3], lower: &[f64; 3], upper: &[f64; 3]) -> f64 {
     let off = |axis: usize| at[axis] - at[axis].clamp(lower[axis], upper[axis]);
@@ -152,6 +164,31 @@ fn distance_in_plan(at: &[f64; 3], lower: &[f64; 3], upper: &[f64; 3]) -> f64 {
 }
 
 impl RigidForm<3> for RigidSolid {
+    fn centroid(&self) -> [f64; 3] {
+        match self {
+            Self::Cuboid(..) | Self::Cylinder { .. } | Self::Sphere { .. } => self.reference(),
+            Self::Cone {
+                tip, height, shaft, ..
+            } => {
+                let (cone, whole) = (height / 3.0, height / 3.0 + shaft);
+                let above = (cone * 0.75 * height + shaft * (height + 0.5 * shaft)) / whole;
+                [tip[0], tip[1], tip[2] + above]
+            }
+            Self::Surface(own) => {
+                let about = self.reference();
+                let (mut volume, mut moment) = (0.0, [0.0; 3]);
+                for (part, corners) in tetrahedra(own, &about) {
+                    volume += part;
+                    moment = std::array::from_fn(|axis| {
+                        let sum: f64 = corners.iter().map(|corner| corner[axis]).sum();
+                        moment[axis] + part * sum / 4.0
+                    });
+                }
+                std::array::from_fn(|axis| about[axis] + moment[axis] / volume)
+            }
+        }
+    }
+
     fn squared_gyration(&self, about: &[f64; 3]) -> [[f64; 3]; 3] {
         let second = self.second_moments(about);
         let trace = second[0][0] + second[1][1] + second[2][2];

@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use igimp_assembly::Tension;
-use igimp_model::{Adhesion, Case, ReinforcementPart, RigidPart, RigidShear, StageKind, distance};
+use igimp_model::{
+    Adhesion, Case, Dynamic, ReinforcementPart, RigidPart, RigidShear, StageKind, distance,
+};
 use igimp_results::summary::SetupTable;
 use igimp_text::short;
 
@@ -34,21 +36,22 @@ fn rigid_body<const D: usize>(case: &Case<D>, index: usize, part: &RigidPart<D>)
     let [shape, size] = part.shape.words();
     let shear = |side: usize| shear(part.interfaces[side].shear);
     let tension = |side: usize| tension(part.interfaces[side].tension);
-    let weight = if (part.force_factor - 1.0).abs() > 0.0 {
+    let mut weight = short(part.weight / 1e3);
+    if part.weight > 0.0 && part.arm().iter().any(|own| *own != 0.0) {
+        let _ = write!(weight, " at {}", point(part.centre_of_mass));
+    }
+    if (part.force_factor - 1.0).abs() > 0.0 {
         let factor = short(part.force_factor);
-        format!(
-            "{}; forces are those modelled times {factor}",
-            short(part.weight / 1e3)
-        )
-    } else {
-        short(part.weight / 1e3)
-    };
+        let _ = write!(weight, "; forces are those modelled times {factor}");
+    }
     let mut moved = Vec::new();
     if part.from_start {
         moved.push("there from the start".to_owned());
     }
     for stage in &case.stages {
-        let StageKind::Rigid(moves) = &stage.kind else {
+        let (StageKind::Rigid(moves) | StageKind::Dynamic(Dynamic { bodies: moves, .. })) =
+            &stage.kind
+        else {
             continue;
         };
         for own in moves.iter().filter(|own| own.body == index) {

@@ -141,9 +141,11 @@ table! {
         "tension at which a side lets go for good";
     sides: each(table(SIDE: Side), 0, MOST_THINGS), default "[]", "sides that are unlike the others";
     weight: quantity(ForcePerLength, NotNegative), default "\"0 kN/m\"",
-        "own weight of the whole body, at its reference point; acts with gravity", per_metre,
+        "own weight of the whole body, at its centre of mass; acts with gravity", per_metre,
         quantity(Force, NotNegative), default "\"0 kN\"",
-            "own weight of the whole body, at its middle; acts with gravity", whole;
+            "own weight of the whole body, at its centre of mass; acts with gravity", whole;
+    centre_of_mass: point, optional "the centroid of the body, as if it were uniform",
+        "point at which its weight acts, of revolution on the axis; moments of inertia about it are those of a uniform body about its centroid";
     force_factor: number(Positive), default "1",
         "whole body over the part that is modelled, 2 for half a body: forces are those of the whole";
     from_start: flag, default "false",

@@ -164,6 +164,7 @@ fn a_free_plate_hands_its_load_to_the_floor() {
     let motion = RigidMotion {
         displacement: force.map(Drive::Loaded),
         rotation: [Drive::Loaded(moment), Drive::Moved(0.0), Drive::Moved(0.0)],
+        ..RigidMotion::held()
     };
     let before = body.rigid[0].pose.origin;
     let (report, forces) = advance(&mut body, &conditions, motion);
@@ -305,6 +306,7 @@ fn steps_have_the_same_bits_on_one_two_and_seven_threads() {
             let motion = RigidMotion {
                 displacement: [Drive::Moved(0.1), Drive::Loaded(-15.0)],
                 rotation: [Drive::Loaded(-4.0), Drive::Moved(0.0), Drive::Moved(0.0)],
+                ..RigidMotion::held()
             };
             let (_, forces) = advance(&mut body, &conditions, motion);
             let slips = body.rigid[0].contact.knots.iter().any(|knot| knot.slips);

@@ -478,6 +478,7 @@ fn a_rigid_body_with_mass_moves_freely() {
     let free = RigidMotion {
         displacement: [Drive::Loaded(0.0), Drive::Loaded(-2.0)],
         rotation: [Drive::Loaded(0.05), Drive::Moved(0.0), Drive::Moved(0.0)],
+        ..RigidMotion::held()
     };
     let loads = StepLoads::gravity([0.0; 2]);
     let mut constraints = Constraints::free(&grid);

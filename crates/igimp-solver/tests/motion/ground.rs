@@ -106,14 +106,18 @@ impl<const D: usize> Motion<D> {
 
     /// One step on ground of this acceleration at a time along the first axis.
     pub(crate) fn step(&mut self, acceleration: impl Fn(f64) -> f64) -> StepReport {
-        let along = |t: f64| {
+        // The mean over a step, by Simpson's rule.
+        let mean = |end: f64| {
+            let start = end - self.time.duration;
             let mut all = [0.0; D];
-            all[0] = acceleration(t);
+            all[0] =
+                (acceleration(start) + 4.0 * acceleration(0.5 * (start + end)) + acceleration(end))
+                    / 6.0;
             all
         };
         let ground = GroundMotion {
-            before: along(self.elapsed()),
-            after: along(self.elapsed() + self.time.duration),
+            acceleration: mean(self.elapsed() + self.time.duration),
+            earlier: mean(self.elapsed()),
         };
         let time = TimeStep {
             is_first: self.steps == 0,

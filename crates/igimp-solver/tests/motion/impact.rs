@@ -84,6 +84,7 @@ fn slid<const D: usize>(
     let motion = RigidMotion {
         displacement,
         rotation: [turn; 3],
+        ..RigidMotion::held()
     };
     let loads = StepLoads::gravity([0.0; D]);
     let conditions = StepConditions::new(grid, constraints, loads, vec![elastic()])

@@ -9,3 +9,4 @@ mod free_field;
 mod granular;
 mod ground;
 mod impact;
+mod pendulum;

@@ -378,7 +378,7 @@ mod tests {
                 reinforcement: Vec::new(),
                 water: None,
                 drained: false,
-                flow_step: 0.0,
+                last_step: 0.0,
                 time: 0.0,
                 walls: Vec::new(),
             },

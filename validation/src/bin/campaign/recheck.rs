@@ -79,7 +79,7 @@ pub(crate) fn equilibrium(
             }
         }
     }
-    add_bodies(&mut squares, &begun, &of_bodies);
+    add_bodies(&mut squares, &begun, &of_bodies, u);
     let reference: f64 = f64::sqrt(squares.external) + f64::sqrt(squares.reaction);
     // Where nothing acts, nothing is out of balance.
     let share = |force: f64| if force == 0.0 { 0.0 } else { force / reference };
@@ -141,22 +141,28 @@ fn of_soil(
 }
 
 /// Adds the forces of rigid bodies, which are moved or loaded.
-fn add_bodies(squares: &mut Squares, begun: &Begun<'_>, of_bodies: &[[f64; 2]]) {
+fn add_bodies(squares: &mut Squares, begun: &Begun<'_>, of_bodies: &[[f64; 2]], u: &[[f64; 2]]) {
     for (slot, rigid) in begun.rigid.iter().enumerate() {
         let motion = &begun.conditions.motions[slot];
         let [x, y] = motion.displacement;
         let first = begun.conditions.grid.node_count() + 2 * slot;
         let size = rigid.surface.size();
-        for (drive, unit, force) in [
-            (x, 1.0, of_bodies[first][0]),
-            (y, 1.0, of_bodies[first][1]),
-            (motion.rotation[0], size, of_bodies[first + 1][0]),
+        let [across, up] = motion.weight;
+        // The weight at the centre of mass, where the step leaves that.
+        let moment = rigid.arm(true).map_or(0.0, |arm| {
+            let arm = arm.after(&[u[first + 1][0], 0.0]);
+            (arm[0] * up - arm[1] * across) / size
+        });
+        for (drive, unit, weight, force) in [
+            (x, 1.0, across, of_bodies[first][0]),
+            (y, 1.0, up, of_bodies[first][1]),
+            (motion.rotation[0], size, moment, of_bodies[first + 1][0]),
         ] {
             match drive {
-                Drive::Moved(_) => squares.reaction += force * force,
+                Drive::Moved(_) => squares.reaction += (weight + force).powi(2),
                 Drive::Loaded(load) => {
-                    squares.free += (load / unit + force).powi(2);
-                    squares.external += (load / unit).powi(2);
+                    squares.free += (load / unit + weight + force).powi(2);
+                    squares.external += (load / unit + weight).powi(2);
                 }
             }
         }

@@ -131,7 +131,8 @@ impl<'a, const D: usize> Contact<'a, D> {
                 slip: [functional(&sums.slip[0]), functional(&sums.slip[1])],
                 before,
             };
-            row.carry_force(interface, &body.penalty);
+            let whole = tents[knot] * (sums.area / sums.length);
+            row.carry_force(interface, &body.penalty, whole);
             if is_laid {
                 row.seat(&body.penalty);
             }

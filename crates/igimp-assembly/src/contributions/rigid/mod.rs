@@ -8,8 +8,10 @@ mod contact;
 mod mortar_integrals;
 mod rollers;
 mod row;
+mod weight;
 
 pub use clearance::Penetration;
 pub(crate) use clearance::seeded_too_close;
 pub use contact::AcceptedContact;
 pub(crate) use contact::Contact;
+pub(crate) use weight::{TurningWeights, add_weights};

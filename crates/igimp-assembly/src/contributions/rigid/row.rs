@@ -8,6 +8,10 @@ use igimp_rigid::{ContactNode, Interface, Penalty, Shear, Tension};
 /// the last bit of soil at a knot would carry all of its force; what is cut off is out of balance in one step, and found by it.
 const MOST_GROWTH: f64 = 2.0;
 
+/// Soil that covers less of a knot than this share hands its traction on, and not its force: soil that leaves a side takes along what it
+/// carries \[-\]. A choice: forces that are carried on to the last crumb have no bound.
+const CRUMB: f64 = 0.1;
+
 /// Shear this near to its limit still sticks: what slipped in the last step begins the next one with the
 /// tangent of sticking, whatever round-off says \[-\].
 const ON_THE_LIMIT: f64 = 1e-12;
@@ -65,13 +69,14 @@ pub(crate) struct Traction {
 }
 
 impl<const D: usize> Row<D> {
-    /// Begins the step with the force that the last one left, on the area that is covered now (theory, eq.
+    /// Begins the step with the force that the last one left, on the area that is covered now of the `whole` of the knot (theory, eq.
     /// 50): soil that flows along a side hands its place on to other soil.
-    pub(crate) fn carry_force(&mut self, interface: &Interface, penalty: &Penalty) {
+    pub(crate) fn carry_force(&mut self, interface: &Interface, penalty: &Penalty, whole: f64) {
         if self.before.area == 0.0 {
             return;
         }
-        let growth = (self.before.area / self.area).min(MOST_GROWTH);
+        let covered = |area: f64| area.max(CRUMB * whole);
+        let growth = (covered(self.before.area) / covered(self.area)).min(MOST_GROWTH);
         self.before.shear = self.before.shear.map(|shear| growth * shear);
         if !self.before.is_closed {
             return;

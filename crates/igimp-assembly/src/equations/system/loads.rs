@@ -5,6 +5,7 @@ use crate::conditions::StepConditions;
 use crate::conditions::rigid_motion::{Drive, RigidMotion};
 use crate::contributions::loads::{add_unbalanced_forces, add_variation_of_weight, weight};
 use crate::contributions::pore_water::Pores;
+use crate::contributions::rigid::add_weights;
 use crate::error::AssemblyError;
 use crate::method::Method;
 use crate::step::stencils::Stencils;
@@ -41,12 +42,14 @@ impl<const D: usize> Loads<D> {
         if let Some(held) = &conditions.held {
             add_unbalanced_forces(held, stencils, &mut f_ext);
         }
+        let of_grid = f_ext.len();
         f_ext.extend(motions.iter().map(|motion| {
             motion.map(|drive| match drive {
                 Drive::Loaded(force) => force,
                 Drive::Moved(_) => 0.0,
             })
         }));
+        add_weights(bodies, conditions, &mut f_ext[of_grid..]);
         Ok(Self {
             f_ext,
             motions,

@@ -20,6 +20,7 @@ use crate::contributions::inertia::Inertia;
 use crate::contributions::loads::add_force_of_points;
 use crate::contributions::nonlocal::{NonlocalStrain, strain_nodes};
 use crate::contributions::reinforcement::Reinforcement;
+use crate::contributions::rigid::TurningWeights;
 use crate::equations::blocks::BlockTable;
 use crate::equations::damping::StiffnessDamping;
 use crate::equations::residual::force_of_round_off;
@@ -165,9 +166,9 @@ impl<'a, const D: usize> System<'a, D> {
         let mass_of =
             |particle: usize| self.particles.mass[particle] + self.loads.pores.mass(particle);
         let mut inertia = Inertia::of(
-            time,
+            (time, self.conditions.ground),
             self.particles,
-            self.beside.contact.bodies(),
+            (self.beside.contact.bodies(), self.method.geometry),
             self.stencils,
             &self.unknowns,
             &mass_of,
@@ -176,6 +177,7 @@ impl<'a, const D: usize> System<'a, D> {
         let damping = self.stiffness_damping()?;
         let first = self.conditions.grid.node_count();
         for (index, body) in self.beside.contact.bodies().iter().enumerate() {
+            // About its centre of mass.
             let gyroscopic = body.gyroscopic_force();
             for (axis, force) in gyroscopic.into_iter().enumerate() {
                 self.loads.f_ext[first + NODES_PER_BODY * index + 1][axis] += force;
@@ -216,6 +218,7 @@ impl<'a, const D: usize> System<'a, D> {
         self.beside.reinforcement.control(&conditions.reinforcement);
         let (particles, stencils) = (self.particles, self.stencils);
         let bodies = self.beside.contact.bodies();
+        self.beside.weights = TurningWeights::find(bodies, &conditions, self.method);
         let mut loads = Loads::find(particles, bodies, stencils, &conditions, self.method)?;
         loads.f_ext.resize(self.loads.f_ext.len(), [0.0; D]);
         let f_ext = &mut loads.f_ext;

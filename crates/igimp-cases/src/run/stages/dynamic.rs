@@ -10,13 +10,14 @@ use igimp_results::ending::EndReason;
 use igimp_results::summary::{NewmarkSummary, StageSummary};
 use igimp_solver::{MarchSettings, Pace};
 
-use super::loading::{begin, target};
+use super::loading::{begin, reason_to_stop, target};
 use super::rigid_begin;
 use super::run_out::{divisor, flowing};
 use super::walls;
 use crate::error::CaseError;
 use crate::run::model::Model;
 use crate::run::output::records::Moment;
+use crate::run::reinforcement;
 use crate::run::resume::Resumption;
 use crate::run::session::{Session, StageEnd, StagePath, TimeIntegration, march_path};
 use crate::run::state::{Controls, State};
@@ -50,6 +51,8 @@ pub(crate) fn dynamic<const D: usize>(
         for text in rigid_begin::begin(model, state, &dynamic.bodies)? {
             session.warn(text);
         }
+        reinforcement::begin(model.case, state, stage);
+        state.controls.last_step = 0.0;
     }
     let method = method(model, dynamic, stage);
     if resumption.is_none() {
@@ -83,6 +86,9 @@ pub(crate) fn dynamic<const D: usize>(
         left: resumption,
         ..StagePath::of_equilibria((&from, &to), method, settings)
     };
+    let mut calm = resumption.and_then(|left| left.calm).unwrap_or_default();
+    let record = dynamic.ground_motion.as_ref();
+    let shakes_until = record.and_then(|own| own.times.last().copied());
     let ended = march_path(
         session,
         state,
@@ -94,17 +100,19 @@ pub(crate) fn dynamic<const D: usize>(
                 energy,
                 ..taken.moment(number, summary.steps)
             })?;
+            let time = taken.controls.time - from.time;
             let share = energy.map_or(1.0, |own| own.kinetic / own.most_kinetic);
-            let is_at_rest = dynamic.at_rest.is_some_and(|at_rest| share < at_rest);
+            let at_rest = dynamic.at_rest.filter(|at_rest| {
+                calm.take(time, share / at_rest) && shakes_until.is_none_or(|end| time >= end)
+            });
+            let at_rest = at_rest.map(|_| EndReason::CameToRest { time, share });
             let resumption = Resumption {
                 from: from.clone(),
                 march: *taken.accepted.state,
                 resistance: taken.resistance,
                 drag: 0.0,
-                end: is_at_rest.then_some(EndReason::CameToRest {
-                    time: taken.controls.time - from.time,
-                    share,
-                }),
+                calm: Some(calm),
+                end: at_rest.or_else(|| reason_to_stop(session, stage, 0.0, taken)),
             };
             if let Some(output) = &mut session.output {
                 let run = &session.summary;

@@ -91,7 +91,7 @@ pub(crate) fn release<const D: usize>(
     if resumption.is_none() {
         reinforcement::begin(model.case, state, stage);
         // What came before it may have changed the pressures at once.
-        state.controls.flow_step = 0.0;
+        state.controls.last_step = 0.0;
     }
     let consolidation = stage.consolidation.as_ref();
     let from = resumption.map_or_else(|| state.controls.clone(), |left| left.from.clone());
@@ -124,6 +124,7 @@ pub(crate) fn release<const D: usize>(
                 march: *taken.accepted.state,
                 resistance,
                 drag: 0.0,
+                calm: None,
                 end,
             };
             if let Some(output) = &mut session.output {
@@ -164,7 +165,7 @@ pub(crate) fn begin<const D: usize>(
 }
 
 /// The condition of the case that ends the stage after a step, if one does.
-fn reason_to_stop<const D: usize>(
+pub(super) fn reason_to_stop<const D: usize>(
     session: &Session<'_, D>,
     stage: &Stage,
     resistance_before: f64,

@@ -16,7 +16,7 @@ use igimp_results::ending::EndReason;
 use igimp_results::fields::length;
 use igimp_results::summary::StageSummary;
 
-use super::loading::begin;
+use super::loading::{begin, reason_to_stop};
 use crate::error::CaseError;
 use crate::run::model::Model;
 use crate::run::resume::Resumption;
@@ -48,7 +48,8 @@ pub(crate) fn run_out<const D: usize>(
     if resumption.is_none() {
         begin(session, state, number)?;
     }
-    let steps = case.stages[number].steps;
+    let stage = &case.stages[number];
+    let steps = stage.steps;
     let cell = case.grid.smallest_cell();
     let target = run_out.move_per_step * cell.into_iter().fold(f64::INFINITY, f64::min);
     // The whole weight would move the body by the target.
@@ -72,16 +73,18 @@ pub(crate) fn run_out<const D: usize>(
             let change = (moved / target).clamp(CHANGE[0], CHANGE[1]);
             drag.set((drag.get() * change).clamp(1e-9 * largest, largest));
             let share = taken.accepted.report.drag_share;
+            let at_rest = (share < run_out.at_rest).then_some(EndReason::AtRest {
+                steps: summary.steps,
+                drag_share: share,
+                is_in_equilibrium: None,
+            });
             let resumption = Resumption {
                 from: to.clone(),
                 march: *taken.accepted.state,
                 resistance: taken.resistance,
                 drag: drag.get(),
-                end: (share < run_out.at_rest).then_some(EndReason::AtRest {
-                    steps: summary.steps,
-                    drag_share: share,
-                    is_in_equilibrium: None,
-                }),
+                calm: None,
+                end: at_rest.or_else(|| reason_to_stop(session, stage, 0.0, taken)),
             };
             if let Some(output) = &mut session.output {
                 let run = &session.summary;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use igimp_assembly::{
     AbsorbingWall, AssemblyError, Constraints, GroundMotion, Method, Stencils, StepConditions,
-    System, TiedWalls, TimeScheme, WallNode, Walls,
+    System, TiedWalls, WallNode, Walls,
 };
 use igimp_material::TangentKind;
 use igimp_model::{Base, Dynamic, StageWalls};
@@ -157,23 +157,18 @@ pub(crate) fn shaken<const D: usize>(
     let walls = released(dynamic);
     release(model, &walls, &mut conditions)?;
     let walls = (!walls.is_empty()).then(|| walls_of(model, dynamic, before));
-    let scheme = dynamic.scheme;
     let ground = dynamic.ground_motion.as_ref().map(|motion| {
-        let along = |acceleration: f64| {
+        let mean = |from: f64, to: f64| {
             let mut all = [0.0; D];
-            all[motion.axis] = acceleration;
+            if to > from {
+                all[motion.axis] = (motion.velocity(to) - motion.velocity(from)) / (to - from);
+            }
             all
         };
         let [from, to] = [before.time - began, after.time - began];
         GroundMotion {
-            before: along(motion.acceleration(from)),
-            after: along(match scheme {
-                // The velocity of the ground at the end of the step is then that of the record.
-                TimeScheme::BackwardEuler => {
-                    (motion.velocity(to) - motion.velocity(from)) / (to - from)
-                }
-                TimeScheme::Newmark | TimeScheme::GeneralisedAlpha => motion.acceleration(to),
-            }),
+            acceleration: mean(from, to),
+            earlier: mean(from - before.last_step, from),
         }
     });
     conditions

@@ -36,6 +36,10 @@ pub(crate) fn section(tree: &Node, mut case: Case<2>, problems: &mut Problems) -
             }
         }
     }
+    // It lies on the axis, and nothing turns.
+    for part in &mut case.rigid {
+        part.centre_of_mass = part.reference;
+    }
     refuse_parts(tree, &case, problems);
     for (index, stage) in case.stages.iter().enumerate() {
         let place = item(tree, "stages", index);

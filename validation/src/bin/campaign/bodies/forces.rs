@@ -119,7 +119,7 @@ pub(crate) fn forces(begun: &Begun<'_>, after: &[RigidBody<2>], u: &[[f64; 2]]) 
                 own.shear[0]
             } else {
                 let motion = &begun.conditions.motions[slot];
-                shear_by_law(body, motion, (knot, side), &sums, area, u)
+                shear_by_law(body, motion, (knot, side), &sums, tents[knot], u)
             };
             for (factor, by_node) in [(own.pressure, &sums.opening), (shear, &sums.slip)] {
                 for (&node, share) in by_node {
@@ -136,6 +136,9 @@ pub(crate) fn forces(begun: &Begun<'_>, after: &[RigidBody<2>], u: &[[f64; 2]]) 
 /// Soil that is no further off than so many cells adheres (theory, eq. 47a) \[-\].
 const ADHESIVE_GAP: f64 = 0.1;
 
+/// Soil that covers less of a knot than this share hands on its traction (theory, eq. 50) \[-\].
+const CRUMB: f64 = 0.1;
+
 /// Soil that is no further from a body that a force pushes has the body laid on it, in cells (theory, eq. 46) \[-\].
 const LAID: f64 = 1e-6;
 
@@ -145,7 +148,7 @@ fn shear_by_law(
     motion: &RigidMotion<2>,
     (knot, side): (usize, usize),
     sums: &Around,
-    area: f64,
+    whole: f64,
     u: &[[f64; 2]],
 ) -> f64 {
     let before = &body.contact.knots[knot];
@@ -171,7 +174,8 @@ fn shear_by_law(
         Shear::Limited { .. } if adheres => sums.adhesion / sums.area,
         _ => return 0.0,
     };
-    let growth = (before.area / area).min(2.0);
+    let covered = |area: f64| area.max(CRUMB * whole);
+    let growth = (covered(before.area) / covered(sums.area.min(whole))).min(2.0);
     let stiffness = body.penalty.tangential * body.penalty.stiffness * sums.young / sums.cell;
     let slip: f64 = sums
         .slip

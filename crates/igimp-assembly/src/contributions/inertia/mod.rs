@@ -6,20 +6,25 @@
 //! f^{a}(u) = M \left[(1 - \alpha_m)\,a_1 + \alpha_m\,a_0\right]
 //! ```
 //!
-//! The particles are the quadrature of the mass, as they are of stress: momentum and energy of the map are exact.
+//! The particles are the quadrature of the mass, as they are of stress: momentum and energy of the map are exact. What rigid bodies add
+//! is in [`bodies`].
+
+mod bodies;
 
 use std::sync::OnceLock;
 
 use igimp_shape::Support;
 
 use crate::body::particles::Particles;
+use crate::conditions::ground_motion::GroundMotion;
 use crate::conditions::time_step::{TimeScheme, TimeStep, Weights};
 use crate::contributions::nodal_forces::AddBlock;
 use crate::contributions::nodal_mass::{NodalMass, add_scaled, mask, product};
 use crate::error::AssemblyError;
+use crate::method::Geometry;
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
-use igimp_rigid::{NODES_PER_BODY, RigidBody};
+use igimp_rigid::{Arm, NODES_PER_BODY, RigidBody};
 
 /// Inertia of one step.
 #[derive(Debug)]
@@ -30,6 +35,9 @@ pub(crate) struct Inertia<const D: usize> {
     entries: OnceLock<Vec<(u32, f64)>>,
     /// By node that stands for the motion of a rigid body: its mass, or its moment of inertia over its squared size \[mass\].
     of_bodies: Vec<[[f64; D]; D]>,
+    /// By rigid body whose centre of mass is not its reference point: from that to the centre. The motion of its nodes here is that
+    /// of the centre.
+    arms: Vec<Option<Arm<D>>>,
     /// By node that stands for the motion of a rigid body: whether a component is given, and moves evenly.
     is_given: Vec<[bool; D]>,
     /// At the start, by node \[length/time\].
@@ -48,14 +56,15 @@ pub(crate) struct Inertia<const D: usize> {
 
 impl<const D: usize> Inertia<D> {
     /// The mass of particles and rigid bodies on the nodes of a step, and their motion: the one that comes closest to that of the
-    /// particles, and where none is found means around nodes, which lose energy.
+    /// particles, and where none is found means around nodes, which lose energy. Accelerations are those against ground that is accelerated
+    /// as in this step.
     ///
     /// # Errors
     /// Never for particles of positive mass.
     pub(crate) fn of(
-        step: TimeStep,
+        (step, ground): (TimeStep, Option<GroundMotion<D>>),
         particles: &Particles<D>,
-        bodies: &[RigidBody<D>],
+        (bodies, geometry): (&[RigidBody<D>], Geometry),
         stencils: &Stencils<D>,
         unknowns: &Unknowns<D>,
         mass_of: &(dyn Fn(usize) -> f64 + Sync),
@@ -82,13 +91,15 @@ impl<const D: usize> Inertia<D> {
             }
         };
         let carries = step.asks_for_acceleration() && !step.is_first;
+        let change = ground.map_or([0.0; D], |own| own.change());
+        let carried = || {
+            let shifted = |own: &[f64; D]| std::array::from_fn(|axis| own[axis] - change[axis]);
+            let all: Vec<_> = particles.acceleration.iter().map(shifted).collect();
+            on_grid(&all)
+        };
         let (of_velocity, of_acceleration) = rayon::join(
             || on_grid(&particles.velocity),
-            || {
-                carries
-                    .then(|| on_grid(&particles.acceleration))
-                    .transpose()
-            },
+            || carries.then(carried).transpose(),
         );
         let (mut velocity, mut mean_velocity, mut by_means) = of_velocity?;
         let mut acceleration = vec![[0.0; D]; nodes];
@@ -100,18 +111,27 @@ impl<const D: usize> Inertia<D> {
             let own = body.nodal(&body.motion.velocity, &body.motion.spin);
             velocity.extend(own);
             mean_velocity.extend(own);
-            let carried = body.nodal(&body.motion.acceleration, &body.motion.spin_rate);
+            let node = acceleration.len();
+            let is_free = |axis: usize| unknowns.index(node, axis).is_some();
+            let [mut of_way, of_turn] =
+                body.nodal(&body.motion.acceleration, &body.motion.spin_rate);
+            for axis in (0..D).filter(|&axis| is_free(axis)) {
+                of_way[axis] -= change[axis];
+            }
             acceleration.extend(if carries {
-                carried
+                [of_way, of_turn]
             } else {
                 [[0.0; D]; NODES_PER_BODY]
             });
         }
+        let turns = geometry == Geometry::Moving;
+        let arms: Vec<_> = bodies.iter().map(|body| body.arm(turns)).collect();
         Ok(Self {
             of_bodies: bodies.iter().flat_map(RigidBody::nodal_mass).collect(),
             is_given: (nodes..velocity.len())
                 .map(|node| std::array::from_fn(|axis| unknowns.index(node, axis).is_none()))
                 .collect(),
+            arms,
             step,
             mass,
             entries: OnceLock::new(),
@@ -167,14 +187,20 @@ impl<const D: usize> Inertia<D> {
     /// their particles, for those of nodes that few particles reach are in doubt.
     pub(crate) fn predicted(&self) -> Vec<[f64; D]> {
         let duration = self.step.duration;
-        (self.mean_velocity.iter())
+        let mut u: Vec<_> = (self.mean_velocity.iter())
             .map(|v| v.map(|v| duration * v))
-            .collect()
+            .collect();
+        for (node, arm) in self.with_arms() {
+            let way = arm.way(&u[node + 1]);
+            u[node] = std::array::from_fn(|axis| u[node][axis] - way[axis]);
+        }
+        u
     }
 
     /// The motion of the nodes over the step, by nodal step displacements `u` \[length\]. What is given of a rigid body moves
     /// evenly, as by backward Euler (theory, eq. 67a).
     pub(crate) fn motion(&self, u: &[[f64; D]]) -> Motion<D> {
+        let centred = self.of_centres(u);
         let mut motion = Motion {
             after: Vec::with_capacity(u.len()),
             acceleration: Vec::with_capacity(u.len()),
@@ -182,26 +208,15 @@ impl<const D: usize> Inertia<D> {
             keeps_rest: self.step.scheme == TimeScheme::Newmark,
             carries_acceleration: self.step.asks_for_acceleration(),
         };
-        for (u, (before, acceleration)) in
-            std::iter::zip(u, std::iter::zip(&self.velocity, &self.acceleration))
-        {
+        for (u, (before, acceleration)) in std::iter::zip(
+            &*centred,
+            std::iter::zip(&self.velocity, &self.acceleration),
+        ) {
             let (after, acceleration) = self.step.after(before, acceleration, u);
             motion.after.push(after);
             motion.acceleration.push(acceleration);
         }
-        let evenly = TimeStep {
-            scheme: TimeScheme::BackwardEuler,
-            ..self.step
-        };
-        let nodes = self.mass.diagonal.len();
-        for (node, is_given) in (nodes..u.len()).zip(&self.is_given) {
-            let (before, still) = (&self.velocity[node], [0.0; D]);
-            let (after, acceleration) = evenly.after(before, &still, &u[node]);
-            for axis in (0..D).filter(|&axis| is_given[axis]) {
-                motion.after[node][axis] = after[axis];
-                motion.acceleration[node][axis] = acceleration[axis];
-            }
-        }
+        self.move_bodies(u, &mut motion);
         motion
     }
 
@@ -221,17 +236,9 @@ impl<const D: usize> Inertia<D> {
             let on_grid: Vec<_> = force[..nodes].iter().map(driving).collect();
             let still = vec![[0.0; D]; nodes];
             self.acceleration = self.mass.solve(&on_grid, still, unknowns)?;
-            for (index, mass) in self.of_bodies.iter().enumerate() {
-                let node = nodes + index;
-                // The mass is diagonal but for a turning body of three different moments, whose first step this is.
-                self.acceleration.push(std::array::from_fn(|a| {
-                    let is_free = unknowns.index(node, a).is_some() && mass[a][a] > 0.0;
-                    if is_free {
-                        -force[node][a] / mass[a][a]
-                    } else {
-                        0.0
-                    }
-                }));
+            for body in 0..self.arms.len() {
+                let begun = self.begun(body, &force, unknowns);
+                self.acceleration.extend(begun);
             }
         }
         if self.step.scheme.weights().of_force > 0.0 {
@@ -249,7 +256,7 @@ impl<const D: usize> Inertia<D> {
         blocks: Option<&mut AddBlock<'_, D>>,
     ) -> f64 {
         let motion = self.motion(u);
-        let force = self.force(&motion);
+        let force = self.force(&motion, u);
         let mut squared = 0.0;
         for (f, force) in f.iter_mut().zip(&force) {
             for a in 0..D {
@@ -263,7 +270,7 @@ impl<const D: usize> Inertia<D> {
             }
         }
         if let Some(blocks) = blocks {
-            self.add_mass_of_bodies(blocks);
+            self.add_mass_of_bodies(u, &force, blocks);
         }
         squared.sqrt()
     }
@@ -275,12 +282,12 @@ impl<const D: usize> Inertia<D> {
 
     /// The force of acceleration by node, and what equilibrium between start and end has of the forces at the start: over the weight
     /// of those at the end \[force\].
-    fn force(&self, motion: &Motion<D>) -> Vec<[f64; D]> {
+    fn force(&self, motion: &Motion<D>, u: &[[f64; D]]) -> Vec<[f64; D]> {
         let Weights {
             of_mass, of_force, ..
         } = self.step.scheme.weights();
         if of_mass == 0.0 && of_force == 0.0 {
-            return self.times(&motion.acceleration);
+            return self.about_reference(self.times(&motion.acceleration), Some(u));
         }
         let mut between = motion.acceleration.clone();
         for (own, before) in between.iter_mut().zip(&self.acceleration) {
@@ -288,20 +295,19 @@ impl<const D: usize> Inertia<D> {
                 ((1.0 - of_mass) * own[a] + of_mass * before[a]) / (1.0 - of_force)
             });
         }
-        // What is given moves evenly, and its blow is that of the step.
-        let nodes = self.mass.diagonal.len();
-        for (node, is_given) in (nodes..between.len()).zip(&self.is_given) {
-            for axis in (0..D).filter(|&axis| is_given[axis]) {
-                between[node][axis] = motion.acceleration[node][axis] / (1.0 - of_force);
-            }
-        }
-        let mut force = self.times(&between);
+        self.accelerate_given(u, motion, &mut between);
+        let mut force = self.about_reference(self.times(&between), Some(u));
         add_scaled(
             &mut force,
             of_force / (1.0 - of_force),
             &self.force_at_start,
         );
         force
+    }
+
+    /// The force of an acceleration of all nodes and centres of mass, about the reference points as the step begins \[force\].
+    pub(crate) fn force_of(&self, acceleration: &[[f64; D]]) -> Vec<[f64; D]> {
+        self.about_reference(self.times(acceleration), None)
     }
 
     /// The factor of the mass in the derivative of the force \[1/time²\].
@@ -323,7 +329,7 @@ impl<const D: usize> Inertia<D> {
             .collect();
         let size = |values: &[[f64; D]]| self.size(&self.integrated(values));
         let squared = self.step.duration.powi(2);
-        let motion = size(u) + squared * size(&accelerated);
+        let motion = size(&self.of_centres(u)) + squared * size(&accelerated);
         if motion > 0.0 {
             squared / 12.0 * size(&change) / motion
         } else {
@@ -393,15 +399,6 @@ impl<const D: usize> Inertia<D> {
         });
         for &(place, mass) in entries {
             values[place as usize] += rate * mass;
-        }
-    }
-
-    /// Hands the derivative of the force of acceleration of rigid bodies on in blocks of nodes.
-    fn add_mass_of_bodies(&self, blocks: &mut AddBlock<'_, D>) {
-        let rate = self.mass_rate();
-        for (node, mass) in self.of_bodies.iter().enumerate() {
-            let node = self.mass.diagonal.len() + node;
-            blocks(node, node, &mass.map(|row| row.map(|own| rate * own)));
         }
     }
 }

@@ -1,0 +1,226 @@
+//! The arm of the centre of mass of a rigid body about its reference point, over a step (theory, eqs. 67b and 67c).
+
+use crate::{RigidBody, rotations};
+
+/// From this angle on closed forms keep their digits; below it series do \[rad\].
+const SMALL: f64 = 1e-2;
+
+/// From the reference point of a body to its centre of mass, as a step begins and as the body turns in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arm<const D: usize> {
+    start: [f64; D],
+    /// What rotations are multiplied by to be lengths \[length\].
+    size: f64,
+    /// Whether it turns with the body: not on a given geometry.
+    turns: bool,
+}
+
+impl<const D: usize> RigidBody<D> {
+    /// The arm of its centre of mass, unless that is its reference point; whether it `turns` in a step.
+    pub fn arm(&self, turns: bool) -> Option<Arm<D>> {
+        let is_off = self.motion.centre.iter().any(|own| *own != 0.0);
+        is_off.then(|| Arm {
+            start: self.pose.direction(&self.motion.centre),
+            size: self.surface.size(),
+            turns,
+        })
+    }
+}
+
+impl<const D: usize> Arm<D> {
+    /// As the step begins \[length\].
+    pub fn at_start(&self) -> [f64; D] {
+        self.start
+    }
+
+    /// Once the body has turned by a rotation in lengths \[length\].
+    pub fn after(&self, rotation: &[f64; D]) -> [f64; D] {
+        let way = self.way(rotation);
+        std::array::from_fn(|a| self.start[a] + if self.turns { way[a] } else { 0.0 })
+    }
+
+    /// The way of the centre of mass less that of the reference point, (R − 1) s = φ × m, by a rotation in lengths \[length\].
+    pub fn way(&self, rotation: &[f64; D]) -> [f64; D] {
+        cross(&self.angle(rotation), &self.mean(rotation))
+    }
+
+    /// The mean m of the arm over the turn \[length\].
+    fn mean(&self, rotation: &[f64; D]) -> [f64; D] {
+        if !self.turns {
+            return self.start;
+        }
+        let angle = self.angle(rotation);
+        let squared = angle.iter().map(|own| own * own).sum::<f64>();
+        let whole = squared.sqrt();
+        // (1 − cos φ) / φ² and (φ − sin φ) / φ³.
+        let (once, twice) = if whole < SMALL {
+            (
+                0.5 - squared / 24.0 + squared * squared / 720.0,
+                1.0 / 6.0 - squared / 120.0 + squared * squared / 5040.0,
+            )
+        } else {
+            let half = (0.5 * whole).sin();
+            (
+                2.0 * half * half / squared,
+                (whole - whole.sin()) / (squared * whole),
+            )
+        };
+        let first = cross(&angle, &self.start);
+        let second = cross(&angle, &first);
+        std::array::from_fn(|a| self.start[a] + once * first[a] + twice * second[a])
+    }
+
+    /// The rotation \[rad\] of one in lengths.
+    fn angle(&self, rotation: &[f64; D]) -> [f64; 3] {
+        let mut angle = [0.0; 3];
+        for (angle, own) in angle.iter_mut().zip(rotation).take(rotations(D)) {
+            *angle = own / self.size;
+        }
+        angle
+    }
+
+    /// The way of the centre of mass by a rotation in lengths, in the direction of an `arm` and no more: by component of the
+    /// rotation \[-\].
+    pub fn lever(&self, arm: &[f64; D]) -> [[f64; D]; D] {
+        let mut lever = [[0.0; D]; D];
+        for k in 0..rotations(D) {
+            let mut unit = [0.0; 3];
+            unit[k] = 1.0 / self.size;
+            let way = cross(&unit, arm);
+            for (row, way) in lever.iter_mut().zip(way) {
+                row[k] = way;
+            }
+        }
+        lever
+    }
+
+    /// The velocity of the centre of mass against the reference point by an `arm`, as the body turns with a `spin` in lengths; so too its
+    /// acceleration by a rate of spin \[length/time, length/time²\].
+    pub fn carried(&self, arm: &[f64; D], spin: &[f64; D]) -> [f64; D] {
+        cross(&self.angle(spin), arm)
+    }
+
+    /// The acceleration of the centre of mass towards the axis by an `arm`, as the body turns with a `spin` in lengths \[length/time²\]; none
+    /// where the arm does not turn.
+    pub fn pulled(&self, arm: &[f64; D], spin: &[f64; D]) -> [f64; D] {
+        if self.turns {
+            self.carried(&self.carried(arm, spin), spin)
+        } else {
+            [0.0; D]
+        }
+    }
+
+    /// The moment of a force at the centre of mass by an `arm`, over the size of the body \[force\].
+    pub fn moment(&self, arm: &[f64; D], force: &[f64; D]) -> [f64; D] {
+        let lever = self.lever(arm);
+        std::array::from_fn(|k| (0..D).map(|a| lever[a][k] * force[a]).sum())
+    }
+
+    /// How the moment of a force by an `arm` changes as the body turns, over its squared size \[force/length\]: symmetric, as the
+    /// second derivative of the work of the force.
+    pub fn turning(&self, arm: &[f64; D], force: &[f64; D]) -> [[f64; D]; D] {
+        let along: f64 = std::iter::zip(arm, force).map(|(a, f)| a * f).sum();
+        let mut block = [[0.0; D]; D];
+        for (i, row) in block.iter_mut().enumerate().take(rotations(D)) {
+            for (j, entry) in row.iter_mut().enumerate().take(rotations(D)) {
+                let across = if D == 3 {
+                    0.5 * (arm[i] * force[j] + arm[j] * force[i])
+                } else {
+                    0.0
+                };
+                *entry = (across - if i == j { along } else { 0.0 }) / self.size.powi(2);
+            }
+        }
+        block
+    }
+}
+
+/// The vector product of a rotation, whose first component counts in the plane, and a vector.
+fn cross<const D: usize>(rotation: &[f64; 3], v: &[f64; D]) -> [f64; D] {
+    std::array::from_fn(|a| match D {
+        2 if a == 0 => -rotation[0] * v[1],
+        2 => rotation[0] * v[0],
+        3 => {
+            let (b, c) = ((a + 1) % 3, (a + 2) % 3);
+            rotation[b] * v[c] - rotation[c] * v[b]
+        }
+        _ => 0.0,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use igimp_shape::matrices::multiply;
+    use igimp_surface::Surface;
+
+    use super::*;
+    use crate::Interface;
+    use crate::pose::turn_by;
+
+    fn arm() -> Arm<3> {
+        Arm {
+            start: [0.3, -0.5, 0.7],
+            size: 1.25,
+            turns: true,
+        }
+    }
+
+    /// GOAL: the way of the centre of mass is that of the turned arm, by small and large angles.
+    /// ORACLE: the rotation of a pose.
+    #[test]
+    fn the_centre_of_mass_goes_round() {
+        for by in [1e-6, 5e-3, 0.0099, 0.0101, 0.7, 3.0] {
+            let rotation = [0.6 * by, -0.2 * by, 0.5 * by];
+            let turn = turn_by::<3>(&rotation.map(|own| own / 1.25));
+            let start = [arm().start, [0.0; 3], [0.0; 3]];
+            let columns = std::array::from_fn(|a| std::array::from_fn(|b| start[b][a]));
+            let turned = multiply(&turn, &columns);
+            for (row, own) in turned.iter().zip(arm().after(&rotation)) {
+                assert!((row[0] - own).abs() < 1e-15, "{by}");
+            }
+        }
+    }
+
+    /// GOAL: what the moment of a force changes by as the body turns is the derivative that Newton's method needs.
+    /// ORACLE: the second difference of the work of the force.
+    #[test]
+    fn the_moment_changes_as_the_body_turns() {
+        let force = [2.0, -1.0, 0.5];
+        let work = |rotation: [f64; 3]| -> f64 {
+            std::iter::zip(force, arm().way(&rotation))
+                .map(|(f, w)| f * w)
+                .sum()
+        };
+        let turning = arm().turning(&arm().start, &force);
+        let step = 1e-3;
+        for i in 0..3 {
+            for j in 0..3 {
+                let at = |a: f64, b: f64| {
+                    let mut rotation = [0.0; 3];
+                    rotation[i] += a * step;
+                    rotation[j] += b * step;
+                    work(rotation)
+                };
+                let second = (at(1.0, 1.0) - at(1.0, -1.0) - at(-1.0, 1.0) + at(-1.0, -1.0))
+                    / (4.0 * step * step);
+                assert!((second - turning[i][j]).abs() < 1e-5, "{i} {j}");
+            }
+        }
+    }
+
+    /// GOAL: a body whose centre of mass is its reference point has no arm; one in the plane turns it about the axis across.
+    /// ORACLE: a quarter turn takes x to y.
+    #[test]
+    fn an_arm_in_the_plane() {
+        let surface = Surface::circle(0.5, 0.1).unwrap();
+        let mut body = RigidBody::new(surface, vec![Interface::smooth()], [0.0; 2]);
+        assert_eq!(body.arm(true), None);
+        body.motion.centre = [2.0, 0.0];
+        let arm = body.arm(true).unwrap();
+        let quarter = [std::f64::consts::FRAC_PI_2 * body.surface.size(), 0.0];
+        let [x, y] = arm.after(&quarter);
+        assert!(x.abs() < 1e-15 && (y - 2.0).abs() < 1e-15);
+        let [moment, none] = arm.moment(&arm.at_start(), &[0.0, 3.0]);
+        assert!((moment * body.surface.size() - 6.0).abs() < 1e-15 && none == 0.0);
+    }
+}
