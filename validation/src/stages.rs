@@ -276,7 +276,7 @@ fn loaded_clay() -> Result<Oedometer, CaseError> {
     let mut clay = case.materials[0].clone();
     "clay".clone_into(&mut clay.name);
     clay.drainage = Drainage::Undrained {
-        stiffness,
+        stiffness: stiffness.into(),
         flows: false,
     };
     case.materials.push(clay);

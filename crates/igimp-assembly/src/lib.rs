@@ -31,7 +31,7 @@ pub use conditions::rigid_motion::{Drive, RigidMotion};
 pub use conditions::time_step::{TimeScheme, TimeStep};
 pub use conditions::unbalanced::UnbalancedForces;
 pub use conditions::walls::{AbsorbingWall, FreeMotion, TiedWalls, WallNode, Walls};
-pub use conditions::water::{PoreSite, PoreState, PoreWater, Water};
+pub use conditions::water::{PoreSite, PoreState, PoreStiffness, PoreWater, Water};
 pub use contributions::consolidation::{PoresAfter, WaterMoved};
 pub use contributions::inertia::Motion;
 pub use contributions::reinforcement::{Hold, Reinforcement, Segment, SegmentState, Station};

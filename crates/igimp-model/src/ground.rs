@@ -26,8 +26,8 @@ pub struct Layer<const D: usize> {
     pub unit_weight: f64,
     /// How it varies, if it does.
     pub profile: Option<Profile>,
-    /// By how much soil is heavier below the water table \[N/m³\].
-    pub added: f64,
+    /// Unit weight below the water table, where it is another \[N/m³\].
+    pub saturated: Option<f64>,
 }
 
 impl<const D: usize> Case<D> {
@@ -51,7 +51,7 @@ impl<const D: usize> Ground<D> {
             region: Arc::clone(&body.region),
             unit_weight: material.unit_weight,
             profile: material.profiles.unit_weight.clone(),
-            added: material.added_by_water(),
+            saturated: material.saturated,
         }))
     }
 
@@ -69,6 +69,21 @@ impl<const D: usize> Ground<D> {
         tops.reduce(f64::max)
     }
 
+    /// A place on a side of the ground as one hardly within it: the soil of a side is on its left.
+    fn within(&self, place: &[f64; D]) -> [f64; D] {
+        let mut within = *place;
+        for (axis, own) in within.iter_mut().enumerate().take(D - 1) {
+            for layer in &self.layers {
+                let (lower, upper) = layer.region.bounds();
+                let off = BESIDE * (upper[axis] - lower[axis]);
+                if (place[axis] - upper[axis]).abs() < off && self.surface(place).is_none() {
+                    *own = upper[axis] - off;
+                }
+            }
+        }
+        within
+    }
+
     /// How far a place lies below the surface, straight down \[m\]; 0 above it.
     pub fn depth(&self, place: &[f64; D]) -> f64 {
         let level = place[D - 1];
@@ -78,6 +93,7 @@ impl<const D: usize> Ground<D> {
 
     /// The weight of the soil above a place per area \[Pa\] (theory, eq. 36).
     pub fn weight_above(&self, place: &[f64; D]) -> f64 {
+        let place = &self.within(place);
         let layers = self.layers.iter();
         layers
             .map(|layer| match &layer.profile {
@@ -91,11 +107,23 @@ impl<const D: usize> Ground<D> {
 
     /// The weight above a place that a water table at a level adds \[Pa\].
     pub fn added_above(&self, place: &[f64; D], table: f64) -> f64 {
-        let wet = |layer: &Layer<D>| sum_above(&*layer.region, place, |level| level.min(table));
-        self.layers
-            .iter()
-            .map(|layer| wet(layer) * layer.added)
-            .sum()
+        let place = &self.within(place);
+        // A table that lies below adds nothing, however low it is.
+        let table = table.max(place[D - 1]);
+        let added = |layer: &Layer<D>| {
+            let Some(saturated) = layer.saturated else {
+                return 0.0;
+            };
+            sum_above(&*layer.region, place, |level| {
+                let level = level.min(table);
+                let dry = match &layer.profile {
+                    None => layer.unit_weight * level,
+                    Some(own) => own.integral(place, level, self),
+                };
+                saturated * level - dry
+            })
+        };
+        self.layers.iter().map(added).sum()
     }
 
     /// The vertical effective stress σ′_v0 of level ground at a place, compression positive \[Pa\] (theory, eq. 36a): the
@@ -219,7 +247,7 @@ mod tests {
             region: Arc::new(polygon.to_vec()),
             unit_weight,
             profile: None,
-            added: 0.0,
+            saturated: None,
         }
     }
 

@@ -4,6 +4,7 @@ pub(crate) mod seepage;
 
 use std::sync::Arc;
 
+use igimp_assembly::PoreStiffness;
 use igimp_geometry::region::Region;
 use igimp_geometry::solid::Terrain;
 
@@ -192,7 +193,7 @@ pub enum Drainage {
     /// stress.
     Undrained {
         /// Bulk modulus of the water over the porosity, K_w/n \[Pa\].
-        stiffness: f64,
+        stiffness: PoreStiffness,
         /// Whether water leaves in stages with consolidation.
         flows: bool,
     },

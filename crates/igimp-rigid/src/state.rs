@@ -28,6 +28,8 @@ pub struct ContactNode {
     /// Mean gap, summed over the motion of the soil since it came near; negative in penetration
     /// \[length\].
     pub gap: f64,
+    /// Way by which soil slid along it in the last step \[length\].
+    pub way: f64,
     /// Whether soil touches.
     pub is_closed: bool,
     /// Whether soil slips.

@@ -181,7 +181,7 @@ impl Ball {
                 must_resolve: false,
                 soils: vec![PoreFlow::Flows(Permeable {
                     mobility,
-                    stiffness: f64::INFINITY,
+                    stiffness: f64::INFINITY.into(),
                     follows: None,
                 })],
                 open_sides: Vec::new(),

@@ -130,7 +130,7 @@ fn specimen(study: &mut Study) -> Result<(), CaseError> {
         let mut case = CaseFile::parse("specimen", &text, &[])?.into_case();
         let stiff = stiffness(POISSON, undrained);
         case.materials[0].drainage = Drainage::Undrained {
-            stiffness: 1e3 * stiff,
+            stiffness: (1e3 * stiff).into(),
             flows: false,
         };
         case.stages[0].drained = true;
@@ -221,7 +221,7 @@ fn slope(study: &mut Study) -> Result<(), CaseError> {
     let undrained = |dilation: f64| -> Result<Computed<2>, CaseError> {
         let mut case = case(&soil(CONFINED, dilation))?;
         case.materials[0].drainage = Drainage::Undrained {
-            stiffness: 1e3 * stiffness(CONFINED, 0.499_999),
+            stiffness: (1e3 * stiffness(CONFINED, 0.499_999)).into(),
             flows: false,
         };
         case.stages[0].drained = true;

@@ -1,5 +1,6 @@
 //! Water that flows out of soil while a step takes time (theory, eqs. 97 to 104).
 
+use crate::conditions::water::PoreStiffness;
 use crate::error::AssemblyError;
 
 /// What the water in a soil does during a step.
@@ -18,8 +19,8 @@ pub enum PoreFlow<const D: usize> {
 pub struct Permeable<const D: usize> {
     /// Permeability over the unit weight of water, k/γ_w \[length⁴/(force·time)\].
     pub mobility: [[f64; D]; D],
-    /// Bulk modulus of the water over the porosity, K_w/n \[force/length²\]; infinite where water does not give way.
-    pub stiffness: f64,
+    /// Bulk modulus of the water over the porosity, K_w/n; infinite where water does not give way.
+    pub stiffness: PoreStiffness,
     /// How permeability follows the volume of the pores; none: it stays.
     pub follows: Option<VoidLaw>,
 }
@@ -83,7 +84,7 @@ impl<const D: usize> Consolidating<D> {
                 let follows = own.follows.is_none_or(|law| {
                     law.initial > LEAST_VOID_RATIO && law.index.is_none_or(|index| index > 0.0)
                 });
-                !(flows && is_finite && follows && own.stiffness > 0.0)
+                !(flows && is_finite && follows && own.stiffness.modulus > 0.0)
             }
         };
         match self.soils.iter().position(bad) {

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use crate::body::particles::Particles;
 use crate::error::AssemblyError;
+use igimp_material::Ratios;
 
 /// What given water is at a particle, at full gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +45,8 @@ pub struct PoreSite<'a, const D: usize> {
     pub number: usize,
     /// Index of its law.
     pub law: usize,
+    /// Density as seeded, without what the water adds \[mass/length³\].
+    pub density: f64,
     /// Centre of its domain \[length\].
     pub x: &'a [f64; D],
     /// Half-lengths of its domain \[length\].
@@ -65,6 +68,7 @@ impl<const D: usize> Particles<D> {
         PoreSite {
             number: self.number[particle],
             law: self.law[particle],
+            density: self.mass[particle] / self.volume0[particle],
             x: &self.x[particle],
             half_length: &self.half_length[particle],
             filled: self.volume0[particle] / domain0,
@@ -85,9 +89,37 @@ pub struct Water<const D: usize> {
     pub given: Option<Arc<dyn PoreWater<D>>>,
     /// Factor on its pressure, the multiple of gravity \[-\].
     pub factor: f64,
-    /// Bulk modulus of the water over the porosity, K_w/n, by law; zero or absent where water leaves as it likes
-    /// \[force/length²\].
-    pub stiffness: Vec<f64>,
+    /// Bulk modulus of the water over the porosity, K_w/n, by law; zero or absent where water leaves as it likes.
+    pub stiffness: Vec<PoreStiffness>,
+}
+
+/// Bulk modulus of the water over the porosity, K_w/n, in soil of one law.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PoreStiffness {
+    /// Where the soil has the constants of its law \[force/length²\].
+    pub modulus: f64,
+    /// Whether it varies as the stiffness of the soil does: it follows from a Poisson's ratio of undrained soil. Else it is one.
+    pub goes_with_soil: bool,
+}
+
+impl PoreStiffness {
+    /// Of soil with these ratios \[force/length²\].
+    pub(crate) fn of(&self, ratios: &Ratios) -> f64 {
+        if self.goes_with_soil {
+            self.modulus * ratios.stiffness
+        } else {
+            self.modulus
+        }
+    }
+}
+
+impl From<f64> for PoreStiffness {
+    fn from(modulus: f64) -> Self {
+        Self {
+            modulus,
+            goes_with_soil: false,
+        }
+    }
 }
 
 impl<const D: usize> Default for Water<D> {
@@ -106,7 +138,7 @@ impl<const D: usize> Water<D> {
     #[inline]
     pub(crate) fn stiffness_of(&self, particles: &Particles<D>, particle: usize) -> f64 {
         let own = self.stiffness.get(particles.law[particle]);
-        own.map_or(0.0, |own| own * particles.ratios[particle].stiffness)
+        own.map_or(0.0, |own| own.of(&particles.ratios[particle]))
     }
 
     /// Refuses numbers that are not finite.
@@ -115,7 +147,7 @@ impl<const D: usize> Water<D> {
             let what = "factor on pore pressure";
             return Err(AssemblyError::NonFinite { what, index: 0 });
         }
-        let bad = |own: &f64| !(own.is_finite() && *own >= 0.0);
+        let bad = |own: &PoreStiffness| !(own.modulus.is_finite() && own.modulus >= 0.0);
         match self.stiffness.iter().position(bad) {
             Some(index) => {
                 let what = "bulk modulus of pore water";

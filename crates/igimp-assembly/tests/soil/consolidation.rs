@@ -23,7 +23,7 @@ fn flow<const D: usize>(duration: f64, stiffness: f64) -> Consolidating<D> {
         must_resolve: false,
         soils: vec![PoreFlow::Flows(Permeable {
             mobility,
-            stiffness,
+            stiffness: stiffness.into(),
             follows: Some(VoidLaw {
                 initial: 1.0,
                 index: None,

@@ -49,7 +49,7 @@ fn with_water<const D: usize>(
         .with_water(Water {
             given: Some(Arc::new(given)),
             factor: 1.0,
-            stiffness: vec![stiffness],
+            stiffness: vec![stiffness.into()],
         })
         .unwrap()
 }
@@ -175,7 +175,7 @@ fn water_takes_the_share_of_skempton() {
         for method in methods() {
             let mut body = particles(&grid, 0.0, &mut Random(3));
             let mut conditions = conditions(&grid, &law);
-            conditions.water.stiffness = vec![stiffness];
+            conditions.water.stiffness = vec![stiffness.into()];
             let stencils = Stencils::build(&body, &method, &conditions).unwrap();
             let system = System::new(&body, &stencils, &conditions, &method).unwrap();
             let squeeze = -1e-7;
@@ -229,7 +229,7 @@ fn excess_pressure_goes_on_from_step_to_step() {
             }
             let mut body = Particles::from_fields(fields).unwrap();
             let mut conditions = conditions(&grid, &law);
-            conditions.water.stiffness = vec![300.0];
+            conditions.water.stiffness = vec![300.0.into()];
             let (factors, dimension) = ([0.9, 0.85], D as f64);
             for factor in factors {
                 stretch(&mut body, &conditions, &method, factor);
@@ -326,7 +326,7 @@ fn water_moves_with_its_mass() {
         .with_water(Water {
             given: Some(Arc::new(Filling(added))),
             factor: 1.0,
-            stiffness: vec![0.0],
+            stiffness: vec![0.0.into()],
         })
         .and_then(|own| {
             own.with_time(Some(TimeStep {

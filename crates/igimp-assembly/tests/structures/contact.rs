@@ -106,8 +106,7 @@ fn above<const D: usize>(
             area: 1.0,
             gap,
             is_closed: bonded || gap < 0.0,
-            slips: false,
-            is_broken: false,
+            ..ContactNode::default()
         };
     }
     let mut rotation = [Drive::Moved(0.0); 3];

@@ -5,8 +5,8 @@ mod seeding;
 use std::sync::Arc;
 
 use igimp_assembly::{
-    AssemblyError, Constraints, Geometry, LoadPoint, Method, Particles, PoreWater, SharedLaw,
-    StepConditions, StepLoads, Water,
+    AssemblyError, Constraints, Geometry, LoadPoint, Method, Particles, PoreStiffness, PoreWater,
+    SharedLaw, StepConditions, StepLoads, Water,
 };
 use igimp_linear::LinearSolver;
 use igimp_model::{Case, Drainage, LoadKind, Material, OfCase, Side};
@@ -281,7 +281,7 @@ impl<'c, const D: usize> Model<'c, D> {
     fn water(&self, to: &Controls) -> Water<D> {
         let stiffness = |material: &Material| match material.drainage {
             Drainage::Undrained { stiffness, .. } if !to.drained => stiffness,
-            _ => 0.0,
+            _ => PoreStiffness::default(),
         };
         let own = to.water.and_then(|condition| self.ground_water(condition));
         Water {

@@ -69,8 +69,8 @@ pub(crate) struct GroundWater<const D: usize> {
     reference: Source<D>,
     /// By body: a pressure of its own.
     own: Vec<Option<Source<D>>>,
-    /// By material: density that water adds below the table \[kg/m³\].
-    added_density: Vec<f64>,
+    /// By material: density below the table, where it is stated \[kg/m³\].
+    saturated: Vec<Option<f64>>,
     /// By material: whether its law speaks of total stress.
     is_total: Vec<bool>,
     /// Density of water \[kg/m³\].
@@ -254,12 +254,12 @@ impl<const D: usize> GroundWater<D> {
             own[*body] = Some(Source::of(case, None, source));
         }
         let gravity = gravity_of_weights(case.gravity);
-        let added = |material: &Material| material.added_by_water() / gravity;
+        let saturated = |own: &Material| own.saturated.map(|weight| weight / gravity);
         let is_total = |material: &Material| material.drainage == Drainage::Total;
         Self {
             reference: Source::of(case, flow, &condition.source),
             own,
-            added_density: case.materials.iter().map(added).collect(),
+            saturated: case.materials.iter().map(saturated).collect(),
             is_total: case.materials.iter().map(is_total).collect(),
             density: case.water_unit_weight / gravity,
             carried: condition.carried,
@@ -329,7 +329,8 @@ impl<const D: usize> PoreWater<D> for GroundWater<D> {
             },
             reference: reference.pressure,
             gradient: reference.gradient,
-            added_density: saturated * self.added_density[material],
+            added_density: self.saturated[material]
+                .map_or(0.0, |full| saturated * (full - site.density)),
             water_density: full * self.density,
         }
     }

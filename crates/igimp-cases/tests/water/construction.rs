@@ -153,7 +153,7 @@ fn wet() -> Case<2> {
         .to_vec();
     case.water_unit_weight = 10e3;
     case.materials[1].drainage = Drainage::Undrained {
-        stiffness: 50e6,
+        stiffness: 50e6.into(),
         flows: false,
     };
     case.stages[0].drained = true;

@@ -7,6 +7,7 @@ mod messages;
 #[path = "../common/resuming.rs"]
 mod resuming;
 
+mod column;
 mod construction;
 mod in_space;
 mod pore_water;

@@ -238,7 +238,8 @@ fn the_water_of_undrained_soil_follows_from_its_poisson_ratio() {
     };
     let (shear, drained) = (20e6 / 2.6, 20e6 / 1.2);
     let undrained = 2.0 * shear * 1.495 / (3.0 * 0.01);
-    assert!((stiffness / (undrained - drained) - 1.0).abs() < 1e-12);
+    assert!((stiffness.modulus / (undrained - drained) - 1.0).abs() < 1e-12);
+    assert!(stiffness.goes_with_soil);
     let stated = case(&[(
         "drainage = \"undrained\"",
         "drainage = \"undrained\"\npore_water = \"500 MPa\"",
@@ -247,7 +248,7 @@ fn the_water_of_undrained_soil_follows_from_its_poisson_ratio() {
     assert_eq!(
         own,
         Drainage::Undrained {
-            stiffness: 500e6,
+            stiffness: 500e6.into(),
             flows: false
         }
     );

@@ -59,7 +59,7 @@ pub(super) fn materials<const D: usize>(
         region: Arc::clone(&body.region),
         unit_weight,
         profile,
-        added: 0.0,
+        saturated: None,
     };
     let surface = Ground::of_layers(outlines.map(|body| layer(body, 0.0, None)));
     let weights: Vec<Option<Property>> = (stated.iter().enumerate())

@@ -221,12 +221,6 @@ impl Material {
         (self.profiles.young.as_ref()).map_or(self.young, |own| own.at(place, ground))
     }
 
-    /// By how much it is heavier below the water table \[N/m³\].
-    pub fn added_by_water(&self) -> f64 {
-        self.saturated
-            .map_or(0.0, |saturated| saturated - self.unit_weight)
-    }
-
     /// Permeability at a place over the greatest in its soil \[-\]; one where it does not vary.
     pub fn permeability_ratio_at<const D: usize>(
         &self,

@@ -119,7 +119,7 @@ pub(super) fn soils<const D: usize>(case: &Case<D>) -> SetupTable {
             Drainage::Undrained { stiffness, flows } => format!(
                 "{}; strength by effective stress, water of K_w/n = {}{}",
                 if flows { "coupled" } else { "undrained" },
-                kilo(stiffness, "Pa"),
+                kilo(stiffness.modulus, "Pa"),
                 own.permeability
                     .filter(|_| flows)
                     .map_or_else(String::new, |soil| format!(

@@ -125,7 +125,7 @@ impl Column {
     /// A step in statics with water of a stiffness that stays.
     fn statics(&mut self, stiffness: f64) {
         let mut conditions = self.conditions();
-        conditions.water.stiffness = vec![stiffness];
+        conditions.water.stiffness = vec![stiffness.into()];
         step(
             &mut self.body,
             &Method::igimp_bbar(),
@@ -422,7 +422,7 @@ pub(crate) fn flow<const D: usize>(
             must_resolve: false,
             soils: vec![PoreFlow::Flows(Permeable {
                 mobility,
-                stiffness,
+                stiffness: stiffness.into(),
                 follows: None,
             })],
             open_sides: Vec::new(),
@@ -547,7 +547,7 @@ fn under_strip(cells: usize, coupled: bool) -> [f64; 2] {
     if coupled {
         conditions = flow(conditions, [1e-12, 0.0], stiffness);
     } else {
-        conditions.water.stiffness = vec![stiffness];
+        conditions.water.stiffness = vec![stiffness.into()];
     }
     let mut workspace = workspace();
     step(

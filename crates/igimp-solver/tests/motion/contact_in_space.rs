@@ -138,7 +138,7 @@ fn a_slice_is_the_plane() {
             [sideways(10), thick, upward()],
             ground,
             bar,
-            [5.0, 0.0, BASE],
+            [5.0, 0.0, BASE - 1e-6],
         );
         let (grid, mut held) = (in_space.grid.clone(), in_space.constraints.clone());
         for upper in [false, true] {

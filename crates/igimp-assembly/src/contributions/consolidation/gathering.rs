@@ -169,7 +169,7 @@ impl<const D: usize> Gathering<'_, D> {
             * particles.ln_permeability_ratio[particle].exp();
         let [of_flow, of_rate] = self.flow.weights();
         let flows = of_flow * self.flow.duration * volume * share;
-        let stores = volume / soil.stiffness;
+        let stores = volume / soil.stiffness.of(&particles.ratios[particle]);
         let projects = volume * 0.5 / (ratio * bound.shear());
         let expected = self.flow.duration * particles.water_rate[particle];
         Ok(Gathered {

@@ -133,6 +133,9 @@ impl<'a, const D: usize> Contact<'a, D> {
             };
             let whole = tents[knot] * (sums.area / sums.length);
             row.carry_force(interface, &body.penalty, whole);
+            if interface.tension == Tension::None {
+                row.take_soil_that_came(sums.mean_gap(), interface, &body.penalty);
+            }
             if is_laid {
                 row.seat(&body.penalty);
             }
@@ -209,6 +212,10 @@ impl<'a, const D: usize> Contact<'a, D> {
                 gap,
                 is_closed,
                 slips: traction.slips && holds,
+                way: match geometry {
+                    Geometry::Moving => row.way(u),
+                    Geometry::Given => 0.0,
+                },
                 is_broken,
             };
         }

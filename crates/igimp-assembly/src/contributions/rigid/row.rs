@@ -95,6 +95,51 @@ impl<const D: usize> Row<D> {
         };
     }
 
+    /// Takes over the gap that is `measured` of soil that came in the place of other \[length\], by the share of a cell that slid by in the last
+    /// step (theory, eq. 50a). What slipped then is on its limit still.
+    pub(crate) fn take_soil_that_came(
+        &mut self,
+        measured: f64,
+        interface: &Interface,
+        penalty: &Penalty,
+    ) {
+        if self.before.area == 0.0 || !self.before.is_closed {
+            return;
+        }
+        let share = (self.before.way / self.cell).min(1.0);
+        self.gap += share * (measured - self.gap);
+        if let (Shear::Limited { friction, .. }, true) = (&interface.shear, self.before.slips) {
+            let limit = |pressure: f64| self.adhesion + friction * pressure.max(0.0);
+            let before = limit(self.before.pressure);
+            let now = limit(self.pressed(penalty, self.gap).0);
+            if before > 0.0 {
+                self.before.shear = self.before.shear.map(|shear| now / before * shear);
+            }
+        }
+    }
+
+    /// The pressure of a side without tension at a gap \[stress\], and its derivative \[stress/length\] (theory, eq. 46).
+    fn pressed(&self, penalty: &Penalty, gap: f64) -> (f64, f64) {
+        let stiffness = penalty.stiffness * self.young / self.cell;
+        let smoothing = penalty.smoothing * self.cell;
+        if gap >= 0.0 {
+            (0.0, 0.0)
+        } else if gap > -smoothing {
+            (
+                0.5 * stiffness * gap * gap / smoothing,
+                stiffness * gap / smoothing,
+            )
+        } else {
+            (stiffness * (-gap - 0.5 * smoothing), -stiffness)
+        }
+    }
+
+    /// The way by which soil slides along the knot by nodal step displacements `u` \[length\].
+    pub(crate) fn way(&self, u: &[[f64; D]]) -> f64 {
+        let slip = [0, 1].map(|k| value(&self.slip[k], u));
+        slip[0].hypot(slip[1])
+    }
+
     /// Begins where a body that a force pushes was laid on soil: with a pressure that is next to nothing, and stiff.
     /// Without it nothing holds the body before it has moved (theory, eq. 46).
     pub(crate) fn seat(&mut self, penalty: &Penalty) {
@@ -136,17 +181,7 @@ impl<const D: usize> Row<D> {
                 out.breaks = true;
             }
             _ => {
-                let smoothing = penalty.smoothing * self.cell;
-                (out.pressure, out.by_gap) = if gap >= 0.0 {
-                    (0.0, 0.0)
-                } else if gap > -smoothing {
-                    (
-                        0.5 * stiffness * gap * gap / smoothing,
-                        stiffness * gap / smoothing,
-                    )
-                } else {
-                    (stiffness * (-gap - 0.5 * smoothing), -stiffness)
-                };
+                (out.pressure, out.by_gap) = self.pressed(penalty, gap);
             }
         }
         let held = penalty.tangential * stiffness;

@@ -94,7 +94,7 @@ mod tests {
         let particles = Model::new(&case).unwrap().1.body.particles;
         assert_eq!(summary(&case, &particles), None);
         case.materials[0].drainage = Drainage::Undrained {
-            stiffness: 1e9,
+            stiffness: 1e9.into(),
             flows: false,
         };
         assert_eq!(summary(&case, &particles), None);
@@ -131,7 +131,7 @@ mod tests {
         };
         assert!(dilatant(&case).is_empty());
         case.materials[0].drainage = Drainage::Undrained {
-            stiffness: 1e9,
+            stiffness: 1e9.into(),
             flows: false,
         };
         assert_eq!(dilatant(&case).len(), 1);

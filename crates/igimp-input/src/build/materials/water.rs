@@ -1,6 +1,6 @@
 //! Water in the pores of a material: permeability, the weight of full pores, drainage.
 
-use igimp_assembly::VoidLaw;
+use igimp_assembly::{PoreStiffness, VoidLaw};
 use igimp_model::{Drainage, Profile, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::materials::{self as keys, MaterialCommon, Model};
@@ -200,11 +200,15 @@ pub(super) fn drainage(
     }
     if let Some(stiffness) = pore_water {
         return Some(Drainage::Undrained {
-            stiffness: **stiffness,
+            stiffness: (**stiffness).into(),
             flows,
         });
     }
     let stiffness = stiffness_of_pores(undrained.as_ref(), model, stiffness?, problems)?;
+    let stiffness = PoreStiffness {
+        modulus: stiffness,
+        goes_with_soil: true,
+    };
     Some(Drainage::Undrained { stiffness, flows })
 }
 

@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
-use igimp_model::{BodyPart, Drainage, PoreSource, Raster, SeepageCase, Strength, WaterCondition};
+use igimp_model::{
+    BodyPart, Drainage, PoreSource, Profile, Raster, SeepageCase, Strength, WaterCondition,
+};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::materials::MaterialCommon;
@@ -42,6 +44,7 @@ pub(crate) fn check<const D: usize>(
         unweighed: Vec::new(),
     };
     checker.scene(&sequence.start, None, problems);
+    strengths(around, conditions, problems);
     for (index, end) in sequence.ends.iter().enumerate() {
         if end != sequence.before(index) {
             checker.scene(end, Some(index), problems);
@@ -65,6 +68,28 @@ pub(crate) fn check<const D: usize>(
                 )
                 .help("write water = \"NAME\" in a stage of type construction; the first condition holds from the start");
         }
+    }
+}
+
+/// Refuses strengths by the effective stress at rest where that is of water which flows: it is not known as the file is read.
+fn strengths<const D: usize>(
+    around: &Around<'_, D>,
+    conditions: &[Option<WaterCondition>],
+    problems: &mut Problems,
+) {
+    let (Some(Some(first)), Some(Some(own))) = (conditions.first(), around.own.first()) else {
+        return;
+    };
+    let by_stress = |own: &&Material| matches!(&own.profiles.strength, Some(Profile::StressShare(share)) if share.water_level.is_none());
+    let mut materials = around.materials.iter().flatten().filter(by_stress);
+    if let (PoreSource::Seepage(_), Some(material)) = (&first.source, materials.next()) {
+        let (water, soil) = (clip(&own.name, 40), clip(&material.name, 40));
+        let text = format!(
+            "the strength of `{soil}` goes with the effective stress, and the water `{water}` that counts for it flows"
+        );
+        problems.error(own.name.place, text).help(
+            "add water_level = \"5 m\" to the strength, or begin with a condition that has a level",
+        );
     }
 }
 

@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use igimp_assembly::{
-    Drive, Particles, RigidBody, RigidMotion, Shear, Stencils, StepConditions, Tension,
+    Drive, Interface, Particles, RigidBody, RigidMotion, Shear, Stencils, StepConditions, Tension,
 };
 
 use super::outline::in_frame;
@@ -176,13 +176,53 @@ fn shear_by_law(
     };
     let covered = |area: f64| area.max(CRUMB * whole);
     let growth = (covered(before.area) / covered(sums.area.min(whole))).min(2.0);
-    let stiffness = body.penalty.tangential * body.penalty.stiffness * sums.young / sums.cell;
+    let normal = body.penalty.stiffness * sums.young / sums.cell;
+    let stiffness = body.penalty.tangential * normal;
+    let taken = match &body.interfaces[side] {
+        Interface {
+            shear: Shear::Limited { friction, .. },
+            tension: Tension::None,
+        } if before.is_closed && before.slips => {
+            let depth = body.penalty.smoothing * sums.cell / sums.area;
+            let carried = growth * before.pressure;
+            let now = slid(
+                carried,
+                sums.gap / sums.area,
+                before.way * sums.area / sums.cell,
+                [normal, depth],
+            );
+            let bound = |pressure: f64| sums.adhesion / sums.area + friction * pressure;
+            if bound(carried) > 0.0 {
+                bound(now) / bound(carried)
+            } else {
+                1.0
+            }
+        }
+        _ => 1.0,
+    };
     let slip: f64 = sums
         .slip
         .iter()
         .map(|(&node, share)| (share[0] * u[node][0] + share[1] * u[node][1]) / sums.area)
         .sum();
-    (growth * before.shear[0] - stiffness * slip).clamp(-limit, limit)
+    (taken * growth * before.shear[0] - stiffness * slip).clamp(-limit, limit)
+}
+
+/// A pressure with the gap of a share of the soil that slid by (theory, eqs. 46 and 50a), from the stiffness and the smoothing length of contact.
+fn slid(pressure: f64, measured: f64, share: f64, [stiffness, depth]: [f64; 2]) -> f64 {
+    let gap = if pressure > 0.5 * stiffness * depth {
+        -pressure / stiffness - 0.5 * depth
+    } else {
+        -(2.0 * pressure.max(0.0) * depth / stiffness).sqrt()
+    };
+    let gap = gap + share.min(1.0) * (measured - gap);
+    if gap >= 0.0 {
+        0.0
+    } else if gap > -depth {
+        0.5 * stiffness * gap * gap / depth
+    } else {
+        stiffness * (-gap - 0.5 * depth)
+    }
 }
 
 /// The sides of a body between its knots.

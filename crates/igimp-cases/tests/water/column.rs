@@ -1,0 +1,165 @@
+//! GOAL: the weight and the stiffness of water in ground whose properties vary, and ground that is level without any.
+//! CASE: columns in one dimension.
+//! ORACLE: sums over their depth by hand.
+
+use igimp_cases::run::{Run, in_memory};
+use igimp_input::CaseFile;
+
+/// A column 6 m high of one soil, with what else a case says.
+fn column(soil: &str, rest: &str) -> String {
+    format!(
+        r#"
+igimp = 1
+[case]
+title = "a column"
+[grid]
+cell = "0.25 m"
+domain = {{ x = ["0 m", "0.75 m"], y = ["0 m", "7 m"] }}
+[materials.soil]
+model = "elastic"
+poisson = 0.25
+{soil}
+[[bodies]]
+name = "column"
+material = "soil"
+points_per_cell = 4
+polygon = [["0 m", "0 m"], ["0.75 m", "0 m"], ["0.75 m", "6 m"], ["0 m", "6 m"]]
+{rest}
+[[monitors]]
+name = "left"
+point = ["0.0625 m", "0.375 m"]
+record = ["sigma_yy", "sigma_eff_yy", "sigma_eff_xx"]
+[[monitors]]
+name = "right"
+point = ["0.6875 m", "0.375 m"]
+record = ["sigma_yy", "sigma_eff_yy", "sigma_eff_xx"]
+[[monitors]]
+name = "top"
+point = ["0.375 m", "6 m"]
+record = ["displacement_y"]
+[output]
+report = false
+figures = []
+"#
+    )
+}
+
+fn ran(soil: &str, rest: &str) -> Run<2> {
+    let file = CaseFile::parse("column.toml", &column(soil, rest), &[]);
+    let run = in_memory(file.unwrap_or_else(|error| panic!("{error}")).case()).unwrap();
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    run
+}
+
+/// The last row of a monitor, without stage, step and progress; stresses with compression positive.
+fn last(run: &Run<2>, monitor: &str) -> Vec<f64> {
+    let table = run.monitors.iter().find(|own| own.name == monitor).unwrap();
+    table.rows.last().unwrap()[3..].to_vec()
+}
+
+const K0: &str = "[[stages]]\nname = \"rest\"\ntype = \"k0\"\nsteps = 1\n";
+
+/// GOAL: soil under a table weighs what it weighs saturated, also where its unit weight varies above; on either side of the ground alike.
+/// ORACLE: 20 kN/m³ over 5.625 m, less 9.81 kN/m³ of water.
+#[test]
+fn saturated_soil_of_varied_weight_weighs_one() {
+    let soil = "unit_weight = { levels = [\"0 m\", \"6 m\"], values = [\"20 kN/m3\", \"14 kN/m3\"] }\nsaturated_unit_weight = \"20 kN/m3\"\nyoung = \"20 MPa\"\nk0 = 0.5";
+    let water = "[[water]]\nname = \"full\"\nlevel = \"6 m\"\n";
+    for stage in [
+        K0,
+        "[[stages]]\nname = \"weight\"\ntype = \"gravity\"\nsteps = 1\n",
+    ] {
+        let run = ran(soil, &format!("{water}{stage}"));
+        for side in ["left", "right"] {
+            let own = last(&run, side);
+            assert!(
+                (own[0] / 112.5e3 - 1.0).abs() < 0.01,
+                "{stage} {side}: {own:?}"
+            );
+            assert!(
+                (own[1] / 57.319e3 - 1.0).abs() < 0.015,
+                "{stage} {side}: {own:?}"
+            );
+        }
+    }
+}
+
+/// GOAL: pressures that are a share of the weight are the same on both sides of the ground, and level ground without a table begins at rest.
+/// ORACLE: 18 kN/m³ over 5.625 m, effective stress 0.7 and 1 of it, half of that sideways.
+#[test]
+fn level_ground_without_a_table_is_at_rest() {
+    let soil = "unit_weight = \"18 kN/m3\"\nyoung = \"20 MPa\"\nk0 = 0.5";
+    for (water, share) in [("r_u = 0.3", 0.7), ("dry = true", 1.0)] {
+        let run = ran(soil, &format!("[[water]]\nname = \"water\"\n{water}\n{K0}"));
+        for side in ["left", "right"] {
+            let own = last(&run, side);
+            let exact = [101.25e3, share * 101.25e3, 0.5 * share * 101.25e3];
+            for (own, exact) in own.iter().zip(exact) {
+                assert!(
+                    (own / exact - 1.0).abs() < 5e-3,
+                    "{water} {side}: {own} {exact}"
+                );
+            }
+        }
+    }
+}
+
+/// GOAL: water of a stiffness that is stated has it wherever the soil is stiff or soft, in stages that take time too; one that follows from
+/// Poisson's ratio goes with the soil.
+/// ORACLE: Σ q dz / (M + K_w/n) over particles, M and, if it follows, K_w in proportion to E.
+#[test]
+fn stated_water_does_not_vary_with_the_soil() {
+    let soil = |water: &str, drainage: &str| {
+        format!(
+            "unit_weight = \"17 kN/m3\"\nyoung = {{ levels = [\"0 m\", \"6 m\"], values = [\"40 MPa\", \"4 MPa\"] }}\ndrainage = \"{drainage}\"\npermeability = \"1e-14 m/s\"\n{water}"
+        )
+    };
+    let load = |more: &str| {
+        format!(
+            "[[loads]]\nname = \"fill\"\ntype = \"pressure\"\nfrom = [\"0 m\", \"6 m\"]\nto = [\"0.75 m\", \"6 m\"]\npressure = \"10 kPa\"\n[[stages]]\nname = \"fill\"\ntype = \"load\"\nload = \"fill\"\nsteps = 1\n{more}"
+        )
+    };
+    let in_time = "consolidation = { duration = \"1 s\" }\n";
+    // M over E, and K_w/n over E that makes a Poisson's ratio of 0.45 of one of 0.25.
+    let confined = 0.75 / (1.25 * 0.5);
+    let shear = 1.0 / 2.5;
+    let follows = 2.0 * shear * 1.45 / (3.0 * 0.1) - 1.0 / 1.5;
+    let exact = |water: &dyn Fn(f64) -> f64| -> f64 {
+        let parts = (0..48).map(|k| {
+            let young = 40e6 - 6e6 * (0.0625 + 0.125 * f64::from(k));
+            1e4 * 0.125 / (confined * young + water(young))
+        });
+        parts.sum()
+    };
+    let stated = exact(&|_| 30e6);
+    let derived = exact(&|young| follows * young);
+    for (water, expected) in [
+        ("pore_water = \"30 MPa\"", stated),
+        ("undrained_poisson = 0.45", derived),
+    ] {
+        for (drainage, time) in [("undrained", ""), ("coupled", ""), ("coupled", in_time)] {
+            let run = ran(&soil(water, drainage), &load(time));
+            let found = -last(&run, "top")[0];
+            assert!(
+                (found / expected - 1.0).abs() < 0.01,
+                "{water} {drainage} {time}: {found} {expected}"
+            );
+        }
+    }
+}
+
+/// GOAL: a strength by the effective stress at rest asks for a level where the water of the case flows.
+#[test]
+fn strength_by_stress_in_flowing_water_asks_for_a_level() {
+    let soil = "unit_weight = \"18 kN/m3\"\nyoung = \"20 MPa\"\ncu = { ratio = 0.25 }\nk0 = 0.5\npermeability = \"1e-8 m/s\"";
+    let text = column(soil, &format!("[[water]]\nname = \"flow\"\n[water.seepage]\nfree_water = [[\"0 m\", \"6 m\"], [\"0.75 m\", \"6 m\"]]\n{K0}")).replace("elastic", "tresca");
+    let error = CaseFile::parse("column.toml", &text, &[])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("goes with the effective stress") && error.contains("add water_level"),
+        "{error}"
+    );
+    let stated = text.replace("ratio = 0.25", "ratio = 0.25, water_level = \"6 m\"");
+    CaseFile::parse("column.toml", &stated, &[]).unwrap_or_else(|error| panic!("{error}"));
+}
