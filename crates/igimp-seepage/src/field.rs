@@ -179,6 +179,12 @@ impl<const D: usize> Through<D> {
             velocities: vec![[0.0; D]; grid.cell_count()],
             sections: asked.iter().map(section).collect(),
         };
+        let mut upper = [f64::NEG_INFINITY; D];
+        for cell in &system.cells {
+            for (own, end) in upper.iter_mut().zip(ends_of(grid, cell.place)[1]) {
+                *own = own.max(end);
+            }
+        }
         for cell in 0..system.cells.len() {
             let place = system.cells[cell].place;
             let ends = ends_of(grid, place);
@@ -195,7 +201,7 @@ impl<const D: usize> Through<D> {
                     sum[axis] += point.volume * velocity[axis];
                 }
                 for (section, (_, extent)) in std::iter::zip(&mut found.sections, asked) {
-                    if let Some(axis) = crosses(extent, ends, &point.x) {
+                    if let Some(axis) = crosses(extent, (ends, upper), &point.x) {
                         let thick = ends[1][axis] - ends[0][axis];
                         section.inflow += point.volume * velocity[axis] / thick;
                     }
@@ -222,13 +228,19 @@ fn discharges<const D: usize>(system: &System<'_, D>, flows: &Flows) -> Vec<Disc
     names.enumerate().map(of).collect()
 }
 
-/// The axis of a section that a point of a cell counts for.
-fn crosses<const D: usize>(extent: &Extent<D>, ends: [[f64; D]; 2], x: &[f64; D]) -> Option<usize> {
+/// The axis of a section that a point of a cell counts for; `upper` is where cells with soil end. A section on a line counts the cell behind
+/// it, and at the end that before it.
+fn crosses<const D: usize>(
+    extent: &Extent<D>,
+    (ends, upper): ([[f64; D]; 2], [f64; D]),
+    x: &[f64; D],
+) -> Option<usize> {
     let axis = (0..D).find(|&axis| extent.upper[axis] <= extent.lower[axis])?;
     let at = extent.lower[axis];
     let others = (0..D).filter(|other| *other != axis);
     let is_along = { others }.all(|d| extent.lower[d] <= x[d] && x[d] <= extent.upper[d]);
-    (ends[0][axis] <= at && at < ends[1][axis] && is_along).then_some(axis)
+    let is_last = at >= upper[axis] && at <= ends[1][axis];
+    (ends[0][axis] <= at && (at < ends[1][axis] || is_last) && is_along).then_some(axis)
 }
 
 /// Gives nodes beyond the ground the mean of their neighbours, outwards from it.
