@@ -237,7 +237,8 @@ fn add_energy(stage: &mut StageSummary, step: &StepEnergy, duration: f64) {
     let own = stage.energy.get_or_insert_default();
     own.time += duration;
     own.kinetic = step.kinetic;
-    own.most_kinetic = own.most_kinetic.max(step.kinetic);
+    let before = step.kinetic - step.kinetic_gain;
+    own.most_kinetic = own.most_kinetic.max(before).max(step.kinetic);
     own.kinetic_gain += step.kinetic_gain;
     own.elastic += step.elastic_gain;
     own.plastic += step.plastic;

@@ -24,6 +24,15 @@ fn begins_a_formula(text: &str) -> bool {
     text.starts_with(['=', '+', '-', '@', '\t', '\r'])
 }
 
+/// A number in a column: ten digits, of times all that there are, for steps may be short beside the time that has passed.
+pub(crate) fn number(column: &str, value: f64) -> String {
+    if column.starts_with("time") {
+        format!("{value:e}")
+    } else {
+        format!("{value:.9e}")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::cells::{cell, text_of};
+use super::cells::{cell, number, text_of};
 use crate::atomic::{at, create, temporary_name};
 use crate::error::ResultsError;
 use crate::tables::table::Table;
@@ -15,7 +15,7 @@ use crate::tables::table::Table;
 pub struct RowWriter {
     path: PathBuf,
     file: File,
-    columns: usize,
+    columns: Vec<String>,
     rows: usize,
 }
 
@@ -31,7 +31,7 @@ impl RowWriter {
         Ok(Self {
             path: path.to_path_buf(),
             file,
-            columns: header.len(),
+            columns: header.to_vec(),
             rows: 0,
         })
     }
@@ -66,7 +66,7 @@ impl RowWriter {
         Ok(Self {
             path: path.to_path_buf(),
             file: beginning(path, file, end).map_err(at(path))?,
-            columns: header.len(),
+            columns: header.to_vec(),
             rows,
         })
     }
@@ -79,7 +79,10 @@ impl RowWriter {
     /// # Panics
     /// If the row is not as long as the header.
     pub fn push(&mut self, row: &[f64]) -> Result<(), ResultsError> {
-        let entries: Vec<String> = row.iter().map(|value| format!("{value:.9e}")).collect();
+        let entries = row.iter().enumerate();
+        let entries: Vec<String> = entries
+            .map(|(k, value)| number(&self.columns[k], *value))
+            .collect();
         self.push_text(&entries)
     }
 
@@ -91,7 +94,11 @@ impl RowWriter {
     /// # Panics
     /// If the row is not as long as the header.
     pub fn push_text(&mut self, row: &[String]) -> Result<(), ResultsError> {
-        assert_eq!(row.len(), self.columns, "a row has one entry a column");
+        assert_eq!(
+            row.len(),
+            self.columns.len(),
+            "a row has one entry a column"
+        );
         let line = text_line(&self.path, row)?;
         // One write without a buffer: a reader sees the row as soon as it is pushed.
         self.file.write_all(&line).map_err(at(&self.path))?;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::atomic::create;
 use crate::error::ResultsError;
-use crate::tables::cells::cell;
+use crate::tables::cells::{cell, number};
 
 /// A named table of numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,7 +58,8 @@ impl Table {
             let mut writer = csv::Writer::from_writer(create(&path)?);
             writer.write_record(self.header.iter().map(|column| cell(column).into_owned()))?;
             for row in &self.rows {
-                writer.write_record(row.iter().map(|value| format!("{value:.9e}")))?;
+                let entries = std::iter::zip(&self.header, row);
+                writer.write_record(entries.map(|(own, value)| number(own, *value)))?;
             }
             Ok(writer.flush()?)
         };

@@ -2,7 +2,7 @@
 //! gaps, bodies thinner than three cells, and stiffness out of proportion to the weight.
 
 use igimp_geometry::polygon::{bounding_box, contains};
-use igimp_model::{BodyPart, Ground, Material, Stage, StageKind, Strength};
+use igimp_model::{BodyPart, Drainage, Ground, Material, Stage, StageKind, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::bodies::Body;
@@ -10,6 +10,7 @@ use igimp_schema::schema::grid::{Fit, MixedCells};
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number, point};
 use igimp_schema::tree::Node;
+use igimp_seepage::Soil;
 use igimp_text::short;
 
 use crate::build::Thing;
@@ -148,6 +149,18 @@ fn check_pairs(
                     (within.error(ordered), within)
                 })
                 .max_by(|a, b| a.0.total_cmp(&b.0));
+            let soils = [a, b].map(|body| materials[body.material]);
+            if let (Some((_, within)), true) = (&worst, unlike_for_water(soils)) {
+                let text = format!(
+                    "water flows by the mean of `{}` and `{}` in the cells at {} that they share",
+                    clip(&a.name, 40),
+                    clip(&b.name, 40),
+                    point(within.ends[0])
+                );
+                let problem = problems.warning(place, text);
+                problem
+                    .help("fit = \"layers\" in [grid] puts lines of the grid on level boundaries");
+            }
             if let Some((error, within)) = worst.filter(|(error, _)| *error > WORTH && !is_shared) {
                 let names = [&a.name, &b.name].map(|name| clip(name, 40));
                 within.warn(&names, error, is_fitted, Report { place, problems });
@@ -156,6 +169,18 @@ fn check_pairs(
     }
     neighbours
 }
+
+/// Whether water flows through two soils as they consolidate, and through one much faster.
+fn unlike_for_water(soils: [&Material; 2]) -> bool {
+    let flows = |own: &Material| matches!(own.drainage, Drainage::Undrained { flows: true, .. });
+    let [a, b] = soils.map(|own| own.permeability.filter(|_| flows(own)));
+    let fast = |own: Soil| own.along.max(own.across);
+    a.zip(b)
+        .is_some_and(|(a, b)| (fast(a) / fast(b)).ln().abs() > UNLIKE.ln())
+}
+
+/// Permeabilities that differ by this factor in a cell are told of \[-\].
+const UNLIKE: f64 = 3.0;
 
 /// What a body touches.
 #[derive(Clone, Copy, Debug, Default)]
