@@ -69,14 +69,15 @@ impl<const D: usize> Ground<D> {
         tops.reduce(f64::max)
     }
 
-    /// A place on a side of the ground as one hardly within it: the soil of a side is on its left.
+    /// A place on a side of the ground as one hardly within it: lines through it cross the soil on its right alone.
     fn within(&self, place: &[f64; D]) -> [f64; D] {
+        let crossed = |layer: &Layer<D>| !layer.region.crossings(place).is_empty();
         let mut within = *place;
         for (axis, own) in within.iter_mut().enumerate().take(D - 1) {
             for layer in &self.layers {
                 let (lower, upper) = layer.region.bounds();
                 let off = BESIDE * (upper[axis] - lower[axis]);
-                if (place[axis] - upper[axis]).abs() < off && self.surface(place).is_none() {
+                if (place[axis] - upper[axis]).abs() < off && !self.layers.iter().any(crossed) {
                     *own = upper[axis] - off;
                 }
             }

@@ -96,7 +96,7 @@ fn level_ground_without_a_table_is_at_rest() {
             let exact = [101.25e3, share * 101.25e3, 0.5 * share * 101.25e3];
             for (own, exact) in own.iter().zip(exact) {
                 assert!(
-                    (own / exact - 1.0).abs() < 1e-2,
+                    (own / exact - 1.0).abs() < 1e-6,
                     "{water} {side}: {own} {exact}"
                 );
             }
