@@ -369,6 +369,10 @@ pub enum RigidQuantity {
     Resistance,
     /// Moment on the body from outside about the reference point, about an axis \[N\], in space \[N m\].
     Moment(usize),
+    /// Velocity of the centre of mass along an axis, in motion \[m/s\].
+    Velocity(usize),
+    /// Angular velocity about an axis, in motion \[rad/s\].
+    Spin(usize),
     /// Length of its sides that soil touches \[m\]; in space their area \[m²\].
     ContactWidth,
     /// Largest penetration as a share of the cell \[-\].

@@ -299,7 +299,7 @@ mod tests {
             row(&tables, "Rigid bodies", 1),
             "footing | (0.9, 2) (2.1, 2) (2.1, 2.6) (0.9, 2.6) | 1.2 × 0.6 | (1.5, 2) | \
              side 1 smooth, others rough | up to 3 kPa | \
-             2; forces are those modelled times 2 | \
+             2 at (1.5, 2.3); forces are those modelled times 2 | \
              seat: y by -2.000e-3 m; load: x free, force in y to -50 kN/m, moment to 5 kN m/m"
         );
     }

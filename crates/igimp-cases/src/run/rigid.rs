@@ -169,6 +169,8 @@ pub(crate) fn quantity<const D: usize>(
         RigidQuantity::Force(axis) => track.force[axis],
         RigidQuantity::Resistance => -track.force[D - 1] + 0.0,
         RigidQuantity::Moment(axis) => track.force[D + axis],
+        RigidQuantity::Velocity(axis) => body.motion.velocity[axis],
+        RigidQuantity::Spin(axis) => body.motion.spin[axis],
         RigidQuantity::ContactWidth => {
             let closed = knots().filter(|knot| knot.is_closed);
             closed
@@ -207,6 +209,16 @@ pub(crate) fn recorded<const D: usize>(case: &Case<D>) -> Vec<(String, RigidQuan
     for (axis, about) in turns.iter().enumerate() {
         let label = format!("moment{about}_[N m{per_run}]");
         add(label, RigidQuantity::Moment(axis));
+    }
+    if case.has_motion() {
+        for (axis, name) in axes() {
+            let label = format!("velocity_{name}_[m/s]");
+            add(label, RigidQuantity::Velocity(axis));
+        }
+        for (axis, about) in turns.iter().enumerate() {
+            let label = format!("spin{about}_[rad/s]");
+            add(label, RigidQuantity::Spin(axis));
+        }
     }
     let contact = if case.is_whole() {
         "contact_area_[m2]"

@@ -1,7 +1,7 @@
 //! The quantities that curves and checks name, such as `footing.reaction`, as the reference lists them.
 
 /// Quantities and what they mean, for the reference.
-pub(crate) const QUANTITY_DOCS: [(&str, &str); 26] = [
+pub(crate) const QUANTITY_DOCS: [(&str, &str); 27] = [
     ("FOOTING.settlement", "settlement of a rigid footing [m]"),
     (
         "FOOTING.reaction",
@@ -28,6 +28,10 @@ pub(crate) const QUANTITY_DOCS: [(&str, &str); 26] = [
     (
         "rigid.BODY.force_z, .moment_x, .moment_y, .moment_z, .contact_area",
         "in space: force in z, moments about the axes, area that soil touches [N, N m, m2]; forces are in N",
+    ),
+    (
+        "rigid.BODY.velocity_x, .velocity_y, .spin",
+        "velocity of its centre of mass [m/s] and angular velocity, anticlockwise [rad/s], in motion; in space .velocity_z, .spin_x, .spin_y, .spin_z",
     ),
     (
         "rigid.BODY.contact_width",

@@ -13,7 +13,7 @@ use crate::build::AllNames;
 const RIGID_PREFIX: &str = "rigid.";
 
 /// Quantities of a rigid body, and in how many dimensions they are; none: in any.
-const RIGID: [(&str, RigidQuantity, &str, Option<usize>); 21] = [
+const RIGID: [(&str, RigidQuantity, &str, Option<usize>); 28] = [
     ("x", RigidQuantity::Displacement(0), "m", None),
     ("y", RigidQuantity::Displacement(1), "m", None),
     ("z", RigidQuantity::Displacement(2), "m", Some(3)),
@@ -30,6 +30,13 @@ const RIGID: [(&str, RigidQuantity, &str, Option<usize>); 21] = [
     ("moment_x", RigidQuantity::Moment(0), "N m/m", Some(3)),
     ("moment_y", RigidQuantity::Moment(1), "N m/m", Some(3)),
     ("moment_z", RigidQuantity::Moment(2), "N m/m", Some(3)),
+    ("velocity_x", RigidQuantity::Velocity(0), "m/s", None),
+    ("velocity_y", RigidQuantity::Velocity(1), "m/s", None),
+    ("velocity_z", RigidQuantity::Velocity(2), "m/s", Some(3)),
+    ("spin", RigidQuantity::Spin(0), "rad/s", Some(2)),
+    ("spin_x", RigidQuantity::Spin(0), "rad/s", Some(3)),
+    ("spin_y", RigidQuantity::Spin(1), "rad/s", Some(3)),
+    ("spin_z", RigidQuantity::Spin(2), "rad/s", Some(3)),
     ("contact_width", RigidQuantity::ContactWidth, "m", Some(2)),
     ("contact_area", RigidQuantity::ContactWidth, "m2", Some(3)),
     ("penetration", RigidQuantity::Penetration, "-", None),
