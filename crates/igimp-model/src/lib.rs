@@ -4,14 +4,13 @@
 //! strain, per metre run). The second axis points up; gravity acts along its negative direction.
 
 mod axes;
-mod calm;
 pub mod check;
 mod grid;
 mod ground;
-mod ground_motion;
 mod load;
 mod material;
 pub mod meshes;
+mod motion;
 mod plane;
 mod record;
 mod reinforcement;
@@ -28,10 +27,8 @@ use igimp_linear::{LinearSolver, SolverKind};
 use serde::{Deserialize, Serialize};
 
 pub use axes::{front, in_space};
-pub use calm::Calm;
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use ground::{Ground, Layer};
-pub use ground_motion::{Base, GroundMotion, Piece};
 pub use igimp_schema::field::Field;
 pub use load::{Load, LoadKind, Plan};
 pub use material::profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
@@ -39,6 +36,8 @@ pub use material::raster::Raster;
 pub use material::softening::{BAND_CELLS, Softens, StrengthCurves};
 pub use material::strength::{Flow, Parameter, ParameterValue, Strength};
 pub use material::{GivenLaw, Material};
+pub use motion::calm::Calm;
+pub use motion::ground_motion::{Base, GroundMotion, Piece};
 pub use plane::in_plane;
 pub use record::{
     Average, CaseCheck, CheckTime, CheckValue, Curve, CurveAxis, Monitor, Quantity, Reference,

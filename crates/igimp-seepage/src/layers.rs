@@ -141,13 +141,15 @@ fn is_same(a: f64, b: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
     use super::*;
 
     /// GOAL: a thin wall in the middle of its cell resists across, whichever way it stands.
     /// ORACLE: permeabilities in series across, side by side along; the soils have one middle.
     #[test]
     fn a_wall_in_the_middle_of_its_cell() {
-        for angle in [0.0_f64, 0.5, 0.785_398, 1.2, std::f64::consts::FRAC_PI_2] {
+        for angle in [0.0, 0.5, FRAC_PI_4, 1.2, FRAC_PI_2] {
             let (sin, cos) = angle.sin_cos();
             // Squares of a disc about the middle, whose wall takes a fifth of the way across.
             let points: Vec<Point<2>> = (0..1600)

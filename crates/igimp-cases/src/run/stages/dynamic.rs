@@ -5,7 +5,7 @@
 //! many as the stage has steps. No factor of safety follows from motion.
 
 use igimp_assembly::{Method, Remedy, SmallCuts};
-use igimp_model::{Case, Dynamic, Stage, StageKind};
+use igimp_model::{Calm, Case, Dynamic, Stage, StageKind};
 use igimp_results::ending::EndReason;
 use igimp_results::summary::{NewmarkSummary, StageSummary};
 use igimp_solver::{MarchSettings, Pace};
@@ -48,11 +48,7 @@ pub(crate) fn dynamic<const D: usize>(
     let model = session.model;
     let stage = &model.case.stages[number];
     if resumption.is_none() {
-        for text in rigid_begin::begin(model, state, &dynamic.bodies)? {
-            session.warn(text);
-        }
-        reinforcement::begin(model.case, state, stage);
-        state.controls.last_step = 0.0;
+        place(session, state, dynamic, stage)?;
     }
     let method = method(model, dynamic, stage);
     if resumption.is_none() {
@@ -87,8 +83,6 @@ pub(crate) fn dynamic<const D: usize>(
         ..StagePath::of_equilibria((&from, &to), method, settings)
     };
     let mut calm = resumption.and_then(|left| left.calm).unwrap_or_default();
-    let record = dynamic.ground_motion.as_ref();
-    let shakes_until = record.and_then(|own| own.times.last().copied());
     let ended = march_path(
         session,
         state,
@@ -102,10 +96,7 @@ pub(crate) fn dynamic<const D: usize>(
             })?;
             let time = taken.controls.time - from.time;
             let share = energy.map_or(1.0, |own| own.kinetic / own.most_kinetic);
-            let at_rest = dynamic.at_rest.filter(|at_rest| {
-                calm.take(time, share / at_rest) && shakes_until.is_none_or(|end| time >= end)
-            });
-            let at_rest = at_rest.map(|_| EndReason::CameToRest { time, share });
+            let at_rest = at_rest(dynamic, &mut calm, (time, share));
             let resumption = Resumption {
                 from: from.clone(),
                 march: *taken.accepted.state,
@@ -126,6 +117,31 @@ pub(crate) fn dynamic<const D: usize>(
         StageEnd::Stopped(reason @ EndReason::CameToRest { .. }) => StageEnd::Completed(reason),
         other => other,
     })
+}
+
+/// Puts rigid bodies and reinforcement where a stage begins with them.
+fn place<const D: usize>(
+    session: &mut Session<'_, D>,
+    state: &mut State<D>,
+    dynamic: &Dynamic,
+    stage: &Stage,
+) -> Result<(), CaseError> {
+    let model = session.model;
+    for text in rigid_begin::begin(model, state, &dynamic.bodies)? {
+        session.warn(text);
+    }
+    reinforcement::begin(model.case, state, stage);
+    state.controls.last_step = 0.0;
+    Ok(())
+}
+
+/// Whether soil has come to rest by a time of a stage \[s\], with a share of the largest kinetic energy: no sooner than the ground.
+fn at_rest(dynamic: &Dynamic, calm: &mut Calm, (time, share): (f64, f64)) -> Option<EndReason> {
+    let is_calm = calm.take(time, share / dynamic.at_rest?);
+    let record = dynamic.ground_motion.as_ref();
+    let shakes_until = record.and_then(|own| own.times.last());
+    let rests = is_calm && shakes_until.is_none_or(|end| time >= *end);
+    rests.then_some(EndReason::CameToRest { time, share })
 }
 
 /// The controls that motion begins with; none where the factor of safety that the strength refers to was not found.

@@ -36,9 +36,9 @@ pub(crate) fn run_out<const D: usize>(
     resumption: Option<&Resumption>,
 ) -> Result<StageEnd, CaseError> {
     let model = session.model;
-    let case = model.case;
+    let (case, stage) = (model.case, &model.case.stages[number]);
     let mut to = state.controls.clone();
-    to.drained = case.stages[number].drained;
+    to.drained = stage.drained;
     let Some(factor) = divisor(session, &run_out.reduction) else {
         return Ok(StageEnd::Stopped(EndReason::NoFactorOfSafety));
     };
@@ -48,7 +48,6 @@ pub(crate) fn run_out<const D: usize>(
     if resumption.is_none() {
         begin(session, state, number)?;
     }
-    let stage = &case.stages[number];
     let steps = stage.steps;
     let cell = case.grid.smallest_cell();
     let target = run_out.move_per_step * cell.into_iter().fold(f64::INFINITY, f64::min);

@@ -149,20 +149,12 @@ fn check_pairs(
                     (within.error(ordered), within)
                 })
                 .max_by(|a, b| a.0.total_cmp(&b.0));
+            let names = [&a.name, &b.name].map(|name| clip(name, 40));
             let soils = [a, b].map(|body| materials[body.material]);
-            if let (Some((_, within)), true) = (&worst, unlike_for_water(soils)) {
-                let text = format!(
-                    "water flows by the mean of `{}` and `{}` in the cells at {} that they share",
-                    clip(&a.name, 40),
-                    clip(&b.name, 40),
-                    point(within.ends[0])
-                );
-                let problem = problems.warning(place, text);
-                problem
-                    .help("fit = \"layers\" in [grid] puts lines of the grid on level boundaries");
+            if let Some((_, within)) = worst.as_ref().filter(|_| unlike_for_water(soils)) {
+                within.warn_of_flow(&names, Report { place, problems });
             }
             if let Some((error, within)) = worst.filter(|(error, _)| *error > WORTH && !is_shared) {
-                let names = [&a.name, &b.name].map(|name| clip(name, 40));
                 within.warn(&names, error, is_fitted, Report { place, problems });
             }
         }
@@ -175,8 +167,8 @@ fn unlike_for_water(soils: [&Material; 2]) -> bool {
     let flows = |own: &Material| matches!(own.drainage, Drainage::Undrained { flows: true, .. });
     let [a, b] = soils.map(|own| own.permeability.filter(|_| flows(own)));
     let fast = |own: Soil| own.along.max(own.across);
-    a.zip(b)
-        .is_some_and(|(a, b)| (fast(a) / fast(b)).ln().abs() > UNLIKE.ln())
+    let ratio = |(a, b)| (fast(a) / fast(b)).ln().abs();
+    a.zip(b).is_some_and(|own| ratio(own) > UNLIKE.ln())
 }
 
 /// Permeabilities that differ by this factor in a cell are told of \[-\].
@@ -233,6 +225,16 @@ impl Within {
         let mean = share * moduli[0] + (1.0 - share) * moduli[1];
         let errors = moduli.map(|own| (own / mean - 1.0).abs());
         errors[0].max(errors[1])
+    }
+
+    fn warn_of_flow(&self, [a, b]: &[String; 2], report: Report<'_>) {
+        let Report { place, problems } = report;
+        let at = point(self.ends[0]);
+        let text =
+            format!("water flows by the mean of `{a}` and `{b}` in cells that both share at {at}");
+        problems
+            .warning(place, text)
+            .help("fit = \"layers\" in [grid] puts lines of the grid on level boundaries");
     }
 
     fn warn(&self, names: &[String; 2], error: f64, is_fitted: bool, problem: Report<'_>) {
