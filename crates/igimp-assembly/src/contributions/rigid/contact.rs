@@ -133,7 +133,7 @@ impl<'a, const D: usize> Contact<'a, D> {
             };
             let whole = tents[knot] * (sums.area / sums.length);
             row.carry_force(interface, &body.penalty, whole);
-            if interface.tension == Tension::None {
+            if interface.tension == Tension::None && !rolls {
                 row.take_soil_that_came(sums.mean_gap(), interface, &body.penalty);
             }
             if is_laid {
