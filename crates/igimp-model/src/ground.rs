@@ -65,7 +65,8 @@ impl<const D: usize> Ground<D> {
 
     /// The level of the surface above or below a place: the highest soil on its upright line \[m\], if there is any.
     pub fn surface(&self, place: &[f64; D]) -> Option<f64> {
-        let tops = self.layers.iter().filter_map(|own| own.region.top(place));
+        let place = self.within(place);
+        let tops = self.layers.iter().filter_map(|own| own.region.top(&place));
         tops.reduce(f64::max)
     }
 
