@@ -6,8 +6,8 @@
 
 use std::path::Path;
 
-use igimp_cases::estimate::estimate;
 use igimp_cases::run::in_memory;
+use igimp_estimate::estimate;
 use igimp_input::CaseFile;
 use igimp_results::summary::StageSummary;
 

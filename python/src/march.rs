@@ -7,9 +7,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use igimp_cases::estimate::Expectation;
-use igimp_cases::estimate::room::refuse_beyond;
-use igimp_cases::estimate::watch::lacks_memory;
+use igimp_estimate::Expectation;
+use igimp_estimate::room::refuse_beyond;
+use igimp_estimate::watch::lacks_memory;
 use igimp_cases::run::{self as engine, Start, Target};
 use igimp_cases::{CaseError, chain};
 use igimp_model::{AnyCase, Case, in_any_dimension};
@@ -249,7 +249,7 @@ fn run<const D: usize>(case: &Case<D>, order: &Order, relay: &mut Relay) -> Resu
 where
     Relay: engine::Listener<D>,
 {
-    refuse_beyond(case)?;
+    refuse_beyond(case).map_err(CaseError::from)?;
     let mut target = order.target.clone();
     if let Some(target) = &mut target {
         std::fs::create_dir_all(&target.folder).map_err(|source| ResultsError::File {

@@ -4,6 +4,7 @@ use std::error::Error;
 use std::fmt::Write as _;
 
 use igimp_assembly::{AssemblyError, SurfaceError};
+use igimp_estimate::EstimateError;
 use igimp_figures::FigureError;
 use igimp_geometry::SeedError;
 use igimp_input::InputError;
@@ -13,7 +14,6 @@ use igimp_report::ReportError;
 use igimp_results::ResultsError;
 use igimp_results::checkpoint::CheckpointError;
 use igimp_shape::ShapeError;
-use igimp_text::NoAmount;
 
 /// Errors of stating or running a case.
 #[derive(Debug, thiserror::Error)]
@@ -101,29 +101,9 @@ pub enum CaseError {
     /// The elimination of the unknowns cannot be planned.
     #[error(transparent)]
     LinearSolver(#[from] LinearSolverError),
-    /// A variable of the environment is not what it should be.
-    #[error("{name} is \"{value}\": {expected}")]
-    Variable {
-        /// Its name.
-        name: &'static str,
-        /// Its value.
-        value: String,
-        /// What it should be.
-        expected: NoAmount,
-    },
-    /// The run cannot have the memory that it needs.
-    #[error(
-        "the run is thought to need {needed} of memory, and {limit} can be had, {by}; a larger cell, \
-         fewer points per cell or fewer threads need less"
-    )]
-    Memory {
-        /// What it is thought to need, in words.
-        needed: String,
-        /// What can be had, in words.
-        limit: String,
-        /// Who sets the limit.
-        by: &'static str,
-    },
+    /// The cost of the case cannot be told, or is more than can be had.
+    #[error(transparent)]
+    Estimate(#[from] EstimateError),
 }
 
 /// Whether files, memory or another program stand in the way, rather than the input.
@@ -133,7 +113,7 @@ pub fn is_of_the_system(error: &(dyn Error + 'static)) -> bool {
         let is_file = error.is::<std::io::Error>() || error.is::<csv::Error>();
         let refused = error
             .downcast_ref::<CaseError>()
-            .is_some_and(|own| matches!(own, CaseError::Memory { .. }) || own.is_in_use());
+            .is_some_and(|own| own.lacks_memory() || own.is_in_use());
         if is_file || refused {
             return true;
         }
@@ -143,6 +123,11 @@ pub fn is_of_the_system(error: &(dyn Error + 'static)) -> bool {
 }
 
 impl CaseError {
+    /// Whether the run would need more memory than can be had.
+    fn lacks_memory(&self) -> bool {
+        matches!(self, Self::Estimate(EstimateError::Memory { .. }))
+    }
+
     /// What is wrong with results, if that is what stands in the way.
     pub fn of_results(&self) -> Option<&ResultsError> {
         match self {

@@ -7,7 +7,6 @@
 //! |---|---|
 //! | [`run`](mod@run) | the engine: stages, strength reduction, run-out, resuming |
 //! | [`mesh_study`] | what the runs of a case on several meshes say together |
-//! | [`estimate`] | size, memory and time of a case before it runs |
 //! | [`exact`] | exact solutions |
 //!
 //! # The factor of safety of a slope
@@ -19,12 +18,13 @@
 #![doc = include_str!("../examples/slope.rs")]
 //! ```
 
-pub mod estimate;
 pub mod exact;
 pub(crate) mod limit;
 pub mod mesh_study;
 pub mod run;
 
 mod error;
+#[cfg(test)]
+mod fixture;
 
 pub use error::{CaseError, chain, is_of_the_system, on_one_line};

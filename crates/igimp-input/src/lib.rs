@@ -1,7 +1,7 @@
 //! Case files: from TOML to a [`Case`](igimp_model::Case), with messages that name place, text and remedy.
 //!
 //! A file is parsed, checked against the schema and completed with its defaults in `igimp-schema`, given what it takes from
-//! other files (`files`), and built into a [`Case`](igimp_model::Case) with the checks that need more than one value
+//! other files (`igimp-files`), and built into a [`Case`](igimp_model::Case) with the checks that need more than one value
 //! (`build`). Every problem is collected on the way and shown in the order of the file.
 //!
 //! ```
@@ -14,8 +14,6 @@
 //! ```
 
 mod build;
-pub mod bytes;
-mod files;
 mod geometry;
 mod in_time;
 mod materials_file;

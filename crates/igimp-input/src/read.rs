@@ -3,6 +3,7 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use igimp_files::bytes;
 use igimp_model::{AnyCase, Case, meshes};
 use igimp_results::folder::provenance::Origin;
 use igimp_schema::complete::complete;
@@ -15,7 +16,7 @@ use igimp_schema::tree::{Node, Value};
 use thiserror::Error;
 
 use super::build::build;
-use super::{bytes, files, in_time};
+use super::in_time;
 
 /// Most bytes of a case file.
 const LARGEST: usize = 8 << 20;
@@ -140,7 +141,7 @@ impl CaseFile {
         }
         in_time::expand(&mut tree);
         let mut completed = complete(&tree, &sources, &mut problems);
-        files::read(&mut completed, Path::new(name), &mut problems);
+        igimp_files::read(&mut completed, Path::new(name), &mut problems);
         let case = build(&mut completed, Path::new(name), &mut problems);
         match case {
             Some(case) if problems.errors() == 0 => Ok(Self {

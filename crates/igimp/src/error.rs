@@ -5,6 +5,7 @@ use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use igimp_cases::{CaseError, is_of_the_system};
+use igimp_estimate::EstimateError;
 use igimp_input::InputError;
 use igimp_report::ReportError;
 use igimp_results::ResultsError;
@@ -70,6 +71,12 @@ impl From<ResultsError> for ProgramError {
 
 impl From<ReportError> for ProgramError {
     fn from(error: ReportError) -> Self {
+        Self::Case(error.into())
+    }
+}
+
+impl From<EstimateError> for ProgramError {
+    fn from(error: EstimateError) -> Self {
         Self::Case(error.into())
     }
 }

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use igimp_cases::estimate::speed::Speed;
-use igimp_cases::estimate::{readable, time, watch};
+use igimp_estimate::speed::Speed;
+use igimp_estimate::{readable, time, watch};
 use igimp_results::folder::overwrite_guard::Replace;
 use igimp_study::sweep::{Resources, Sweep, Words, numbers};
 

@@ -3,7 +3,7 @@
 use crate::metadata::{Metadata, Package};
 
 /// Crates of the project with those that they may depend on, for tests too.
-const LAYERS: [(&str, &[&str]); 23] = [
+const LAYERS: [(&str, &[&str]); 25] = [
     ("igimp-shape", &[]),
     ("igimp-material", &[]),
     ("igimp-linear", &[]),
@@ -14,14 +14,16 @@ const LAYERS: [(&str, &[&str]); 23] = [
     ("igimp-figures", &[]),
     ("igimp-text", &[]),
     ("igimp-schema", &["igimp-text"]),
-    ("igimp-geometry", LIBRARIES.split_at(10).0),
-    ("igimp-seepage", LIBRARIES.split_at(11).0),
-    ("igimp-model", LIBRARIES.split_at(12).0),
-    ("igimp-results", LIBRARIES.split_at(13).0),
-    ("igimp-input", LIBRARIES.split_at(14).0),
-    ("igimp-report", LIBRARIES.split_at(15).0),
-    ("igimp-cases", LIBRARIES.split_at(16).0),
-    ("igimp-study", LIBRARIES.split_at(17).0),
+    ("igimp-files", &["igimp-text", "igimp-schema"]),
+    ("igimp-geometry", LIBRARIES.split_at(11).0),
+    ("igimp-seepage", LIBRARIES.split_at(12).0),
+    ("igimp-model", LIBRARIES.split_at(13).0),
+    ("igimp-results", LIBRARIES.split_at(14).0),
+    ("igimp-input", LIBRARIES.split_at(15).0),
+    ("igimp-estimate", LIBRARIES.split_at(16).0),
+    ("igimp-report", LIBRARIES.split_at(17).0),
+    ("igimp-cases", LIBRARIES.split_at(18).0),
+    ("igimp-study", LIBRARIES.split_at(19).0),
     ("igimp", LIBRARIES),
     ("igimp-benchmarks", LIBRARIES),
     ("igimp-validation", LIBRARIES),
@@ -55,11 +57,13 @@ const LIBRARIES: &[&str] = &[
     "igimp-figures",
     "igimp-text",
     "igimp-schema",
+    "igimp-files",
     "igimp-geometry",
     "igimp-seepage",
     "igimp-model",
     "igimp-results",
     "igimp-input",
+    "igimp-estimate",
     "igimp-report",
     "igimp-cases",
     "igimp-study",
@@ -128,7 +132,7 @@ mod tests {
 
     type Row<'a> = (&'a str, bool, Option<&'a str>, &'a [&'a str]);
 
-    const SOUND: [Row<'_>; 24] = [
+    const SOUND: [Row<'_>; 26] = [
         ("igimp-shape", true, None, &["thiserror"]),
         ("igimp-material", true, None, &[]),
         ("igimp-linear", true, None, &[]),
@@ -144,11 +148,13 @@ mod tests {
         ("igimp-figures", true, None, &[]),
         ("igimp-text", true, None, &[]),
         ("igimp-schema", true, None, &["igimp-text"]),
+        ("igimp-files", true, None, &["igimp-schema"]),
         ("igimp-geometry", true, None, &["igimp-text"]),
         ("igimp-seepage", true, None, &["igimp-geometry"]),
         ("igimp-model", true, None, &["igimp-seepage"]),
         ("igimp-results", true, None, &["igimp-model"]),
         ("igimp-input", true, None, &["igimp-results"]),
+        ("igimp-estimate", true, None, &["igimp-model"]),
         ("igimp-report", true, None, &["igimp-figures"]),
         ("igimp-cases", true, None, &["igimp-solver", "igimp-report"]),
         ("igimp-study", true, None, &["igimp-cases"]),

@@ -27,8 +27,8 @@ use super::state::State;
 use super::water::pores;
 use super::{Event, Failure, Listener, Run, Start, Target, failure, reinforcement};
 use crate::error::CaseError;
-use crate::estimate::Expectation;
-use crate::estimate::time::time_of_steps_taken;
+use igimp_estimate::Expectation;
+use igimp_estimate::time::time_of_steps_taken;
 
 /// Runs a case on its own grid.
 pub(super) fn one_mesh<const D: usize>(

@@ -31,7 +31,7 @@ use igimp_results::tables::table::Table;
 use igimp_solver::{Accepted, Body, StepError, StepFailure, StepReport};
 
 use crate::error::CaseError;
-use crate::estimate::Expectation;
+use igimp_estimate::Expectation;
 
 pub(crate) use crate::run::start::run_entered;
 pub use crate::run::start::{in_memory, run};

@@ -20,7 +20,7 @@ use super::state::{Controls, State};
 use super::water::seepage::{Flows, Followed};
 use super::water::{GroundWater, Seeded};
 use crate::error::CaseError;
-use crate::estimate::factor_memory::FactorMemory;
+use igimp_estimate::factor_memory::FactorMemory;
 
 /// Load points per cell along a loaded segment.
 const POINTS_PER_CELL: f64 = 4.0;

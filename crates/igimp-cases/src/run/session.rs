@@ -30,8 +30,8 @@ use super::state::{Controls, RigidTrack, State, WallTrack};
 use super::water::flow;
 use super::{Event, Listener, rigid};
 use crate::error::CaseError;
-use crate::estimate::factor_memory::decides;
 use crate::run::output::records::AcceptedStep;
+use igimp_estimate::factor_memory::decides;
 
 /// Share of the load from which on a false support at dropped nodes is worth a warning \[-\].
 const FALSE_SUPPORT: f64 = 1e-3;

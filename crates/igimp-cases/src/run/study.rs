@@ -21,11 +21,11 @@ use super::engine::one_mesh;
 use super::resources::{memory, processor};
 use super::{Event, Listener, Run, Start, Target};
 use crate::error::CaseError;
-use crate::estimate::time::time_of_steps_taken;
-use crate::estimate::watch::side_by_side;
-use crate::estimate::{Estimate, estimate};
 use crate::mesh_study::{check_rows, remarks, study};
 use crate::on_one_line;
+use igimp_estimate::time::time_of_steps_taken;
+use igimp_estimate::watch::side_by_side;
+use igimp_estimate::{Estimate, estimate};
 
 /// Runs a case on all meshes of its study.
 pub(super) fn run<const D: usize>(

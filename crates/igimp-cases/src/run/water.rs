@@ -338,7 +338,7 @@ impl<const D: usize> PoreWater<D> for GroundWater<D> {
 
 #[cfg(test)]
 mod tests {
-    use crate::estimate::tests::case;
+    use crate::fixture::case;
     use crate::run::Model;
     use igimp_assembly::{PoreState, PoreWater as _};
     use igimp_model::{PoreSource, WaterCondition};

@@ -20,7 +20,7 @@ use igimp_model::Case;
 
 /// A block of soil, 4 m by 2 m.
 fn block() -> Case<2> {
-    let text = include_str!("../data/block.toml");
+    let text = include_str!("../../../igimp-estimate/tests/data/block.toml");
     let file = CaseFile::parse("block.toml", text, &[]);
     file.unwrap().case().clone()
 }

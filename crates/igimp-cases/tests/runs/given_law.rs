@@ -130,7 +130,7 @@ fn a_law_in_batches_gives_the_same_bits() {
 /// surface q = σ_y, which only holds where the memory of the step before was the one at its end.
 #[test]
 fn a_law_remembers_from_step_to_step() {
-    let text = include_str!("../data/block.toml");
+    let text = include_str!("../../../igimp-estimate/tests/data/block.toml");
     let file = CaseFile::parse("block.toml", text, &[]).unwrap();
     let mut case = file.into_case();
     let soil = &mut case.materials[0];

@@ -162,7 +162,7 @@ fn computers_with_room_for_factors_are_counted() {
         let set = [format!("solver.memory={memory}")];
         let file = igimp_input::shipped::find("landslide_3d").unwrap();
         let file = file.case_file(set).unwrap();
-        igimp_cases::estimate::estimate(file.case_in_space())
+        igimp_estimate::estimate(file.case_in_space())
             .unwrap()
             .systems
             .on_several

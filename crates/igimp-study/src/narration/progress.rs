@@ -1,7 +1,7 @@
 //! How much of a whole run is done, from its events.
 
-use igimp_cases::estimate::time::shares;
 use igimp_cases::run::Event;
+use igimp_estimate::time::shares;
 use igimp_model::{AnyCase, in_any_dimension, meshes};
 
 /// Trials of a search that are shown as progress: how many it makes is not known before it ends, and each

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use igimp_cases::CaseError;
-use igimp_cases::estimate::speed::Speed;
-use igimp_cases::estimate::watch::side_by_side;
-use igimp_cases::estimate::{Estimate, estimate, readable, time, together};
+use igimp_estimate::speed::Speed;
+use igimp_estimate::watch::side_by_side;
+use igimp_estimate::{Estimate, estimate, readable, time, together};
 use igimp_model::{Case, Every, Stage, StageKind, meshes};
 use igimp_text::{count, on_a_line};
 

@@ -29,10 +29,11 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use igimp_cases::estimate::room;
 use igimp_cases::run::{self, Account, AnyListener, Entered, Start, Target, run_any_entered};
 use igimp_cases::{CaseError, on_one_line};
-use igimp_input::{CaseFile, InputError, bytes};
+use igimp_estimate::room;
+use igimp_files::bytes;
+use igimp_input::{CaseFile, InputError};
 use igimp_model::{AnyCase, GivenSolver};
 use igimp_report::ReportError;
 use igimp_results::ending::Ending;
@@ -319,7 +320,8 @@ impl Sweep {
             date: self.date.clone(),
             ..Target::of(&file, &task.folder)
         };
-        igimp_model::in_any_dimension!(&case, case => room::refuse_beyond(case))?;
+        igimp_model::in_any_dimension!(&case, case => room::refuse_beyond(case))
+            .map_err(CaseError::from)?;
         refuse_link(&task.folder)?;
         let entered =
             igimp_model::in_any_dimension!(&case, case => Entered::new(case, &target, start))?;

@@ -1,8 +1,8 @@
 //! Resources requested from a scheduler: memory and time of the largest tasks, with a margin.
 
 use igimp_cases::CaseError;
-use igimp_cases::estimate::speed::Speed;
-use igimp_cases::estimate::{self, time};
+use igimp_estimate::speed::Speed;
+use igimp_estimate::{estimate, time};
 use igimp_model::{Case, meshes};
 use rayon::prelude::*;
 
@@ -105,7 +105,7 @@ fn of_case<const D: usize>(
 ) -> Result<[f64; 2], CaseError> {
     let (mut memory, mut seconds) = (0.0_f64, 0.0);
     for mesh in meshes::meshes(case) {
-        let size = estimate::estimate(&mesh)?;
+        let size = estimate(&mesh)?;
         // Several threads run meshes side by side.
         memory = if threads > 1 {
             memory + size.most_bytes

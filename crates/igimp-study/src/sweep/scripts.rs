@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use igimp_cases::estimate::{readable, time};
+use igimp_estimate::{readable, time};
 use igimp_report::pictures::file_name;
 use igimp_results::atomic::write_whole;
 use igimp_schema::syntax::toml_text;

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use igimp_cases::estimate::Expectation;
-use igimp_cases::estimate::room::refuse_beyond;
-use igimp_cases::estimate::watch::{exceeded, lacks_memory};
 use igimp_cases::run::{self as engine, Start, Target};
+use igimp_estimate::Expectation;
+use igimp_estimate::room::refuse_beyond;
+use igimp_estimate::watch::{exceeded, lacks_memory};
 use igimp_model::{GivenSolver, in_any_dimension};
 use igimp_results::ending::Ending;
 use igimp_results::folder::overwrite_guard::Replace;

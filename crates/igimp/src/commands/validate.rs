@@ -1,7 +1,7 @@
 //! `igimp validate`: the cases that come with the program, held against their references.
 
-use igimp_cases::estimate::estimate;
 use igimp_cases::run::{self, Nobody, Start, Target};
+use igimp_estimate::estimate;
 use igimp_input::CaseFile;
 use igimp_input::shipped::{SHIPPED, Shipped, find, nearest};
 use igimp_model::{AnyCase, in_any_dimension};

@@ -323,7 +323,7 @@ mod tests {
     use igimp_assembly::{LoadPoint, Particles};
 
     use super::*;
-    use crate::estimate::tests::case;
+    use crate::fixture::case;
     use crate::run::Model;
 
     /// GOAL: a state that names what the case does not have is refused before a step looks for it.

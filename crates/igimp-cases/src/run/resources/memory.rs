@@ -2,7 +2,7 @@
 
 use igimp_results::summary::MemoryShare;
 
-use crate::estimate::Estimate;
+use igimp_estimate::Estimate;
 
 /// Resident memory at the beginning of a run \[MiB\].
 #[derive(Clone, Copy, Debug)]
@@ -42,8 +42,8 @@ fn resident_mib(name: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::estimate;
-    use crate::estimate::tests::case;
+    use crate::fixture::case;
+    use igimp_estimate::estimate;
 
     #[test]
     fn shares_add_up_to_what_was_used() {

@@ -45,7 +45,7 @@ fn whole<const D: usize>(case: &Case<D>) -> Case<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::tests::case;
+    use crate::fixture::case;
 
     /// GOAL: a run can be taken up after its report got another author, on a machine with other memory, and not after another
     /// cohesion.

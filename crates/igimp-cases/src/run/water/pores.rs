@@ -83,7 +83,7 @@ pub(crate) fn dilatant<const D: usize>(case: &Case<D>) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::tests::case;
+    use crate::fixture::case;
     use crate::run::Model;
     use igimp_assembly::ParticleFields;
 

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use igimp_files::text_of;
 use igimp_model::{Curve, CurveAxis, Load, Quantity, Reference, ReferenceValues};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::outputs as keys;
@@ -11,7 +12,6 @@ use igimp_schema::tree::read::{At, Found};
 
 use super::quantities::{divisor, quantity};
 use crate::build::AllNames;
-use crate::files::text_of;
 
 /// Most bytes of a reference file.
 const LARGEST: u64 = 1 << 20;

@@ -7,8 +7,8 @@ use igimp_schema::quantity::Dimension;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::{Entry, Node, Value};
 
-use super::columns::{Columns, columns};
-use super::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
+use crate::columns::{Columns, columns};
+use crate::named::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
 
 /// What the file has.
 const COLUMNS: [&str; 3] = ["x", "y", "value"];
@@ -18,7 +18,7 @@ const MOST: usize = 100_000;
 const SAME: f64 = 1e-9;
 
 /// Puts the points in place of the file that has them, in a table that names one in `raster`.
-pub(super) fn resolve(property: &mut Node, key: &str, folder: &Path, problems: &mut Problems) {
+pub(crate) fn resolve(property: &mut Node, key: &str, folder: &Path, problems: &mut Problems) {
     let Some(value) = property.get("raster") else {
         return;
     };

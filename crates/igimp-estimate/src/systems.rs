@@ -10,7 +10,7 @@ use igimp_linear::{AutoSolver, Forecast, Pattern, Reason, SolverKind};
 use igimp_model::Case;
 
 use super::factor_memory::{FactorMemory, decides};
-use crate::error::CaseError;
+use crate::error::EstimateError;
 
 /// Factors in the plane, for each unknown and each doubling of the unknowns \[bytes\].
 const PER_FILL: f64 = 1.5e2;
@@ -79,11 +79,11 @@ impl Systems {
     /// Those of a case in space whose nodes will be coupled like this.
     ///
     /// # Errors
-    /// [`CaseError`] where no elimination can be planned, or the environment allows no amount of memory.
+    /// [`EstimateError`] where no elimination can be planned, or the environment allows no amount of memory.
     pub(super) fn in_space<const D: usize>(
         case: &Case<D>,
         pattern: &Arc<Pattern>,
-    ) -> Result<Self, CaseError> {
+    ) -> Result<Self, EstimateError> {
         let symmetric = is_symmetric(case);
         let kind = case.solver.linear;
         let mut solver = match kind {

@@ -3,7 +3,7 @@
 //!
 //! Where factors have no room systems are solved by iteration, whose last digits are others. The limit is therefore one that
 //! stays as long as the machine does: not what is free at the moment, which differs from run to run. A run says where it
-//! decided (`crate::run::session`).
+//! decided (`run::session` of `igimp-cases`).
 
 use igimp_linear::Reason;
 use igimp_model::Case;
@@ -11,7 +11,7 @@ use igimp_text::MemoryLimit;
 
 use super::readable;
 use super::room::{Limit, lasting_limit};
-use crate::error::CaseError;
+use crate::error::EstimateError;
 
 /// The variable of the environment that states the limit where no case does.
 pub const VARIABLE: &str = "IGIMP_MEMORY";
@@ -38,8 +38,8 @@ impl FactorMemory {
     /// That of a case on this machine.
     ///
     /// # Errors
-    /// [`CaseError::Variable`] for a variable of the environment that is no amount of memory.
-    pub fn of<const D: usize>(case: &Case<D>) -> Result<Self, CaseError> {
+    /// [`EstimateError::Variable`] for a variable of the environment that is no amount of memory.
+    pub fn of<const D: usize>(case: &Case<D>) -> Result<Self, EstimateError> {
         let variable = std::env::var(VARIABLE).ok();
         resolve(case.solver.memory, variable.as_deref(), lasting_limit())
     }
@@ -69,11 +69,11 @@ fn resolve(
     stated: Option<MemoryLimit>,
     variable: Option<&str>,
     machine: Option<Limit>,
-) -> Result<FactorMemory, CaseError> {
-    let from_environment = || -> Result<Option<MemoryLimit>, CaseError> {
+) -> Result<FactorMemory, EstimateError> {
+    let from_environment = || -> Result<Option<MemoryLimit>, EstimateError> {
         variable
             .map(|text| {
-                text.parse().map_err(|expected| CaseError::Variable {
+                text.parse().map_err(|expected| EstimateError::Variable {
                     name: VARIABLE,
                     value: text.to_owned(),
                     expected,

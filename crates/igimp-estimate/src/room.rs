@@ -3,7 +3,7 @@
 use igimp_model::{Case, meshes};
 
 use super::readable;
-use crate::error::CaseError;
+use crate::error::EstimateError;
 
 /// An estimate is trusted to this factor: a run that is thought to need more than so many times what
 /// can be had is not begun \[-\].
@@ -20,8 +20,8 @@ pub(crate) struct Limit {
 /// mesh. Nobody knows what a given solver needs, and where.
 ///
 /// # Errors
-/// [`CaseError::Memory`]; those of [`estimate`](super::estimate()).
-pub fn refuse_beyond<const D: usize>(case: &Case<D>) -> Result<(), CaseError> {
+/// [`EstimateError::Memory`]; those of [`estimate`](super::estimate()).
+pub fn refuse_beyond<const D: usize>(case: &Case<D>) -> Result<(), EstimateError> {
     let Some(limit) = limit().filter(|_| case.given_solver.is_none()) else {
         return Ok(());
     };
@@ -31,11 +31,11 @@ pub fn refuse_beyond<const D: usize>(case: &Case<D>) -> Result<(), CaseError> {
     Ok(())
 }
 
-fn check(needed: f64, limit: Limit) -> Result<(), CaseError> {
+fn check(needed: f64, limit: Limit) -> Result<(), EstimateError> {
     if needed <= TRUST * limit.bytes {
         return Ok(());
     }
-    Err(CaseError::Memory {
+    Err(EstimateError::Memory {
         needed: readable(needed),
         limit: readable(limit.bytes),
         by: limit.by,

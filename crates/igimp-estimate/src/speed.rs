@@ -15,7 +15,7 @@ use igimp_linear::{LinearSolver as _, MultifrontalCholesky};
 use igimp_material::{Elasticity, TangentKind, VonMises};
 use igimp_shape::{Axis, Grid};
 
-use crate::error::CaseError;
+use crate::error::EstimateError;
 
 /// Cells of the block along each axis.
 const CELLS: usize = 24;
@@ -44,9 +44,9 @@ impl Speed {
     /// Measures this computer.
     ///
     /// # Errors
-    /// [`CaseError`] if the block cannot be made or its equations not be solved: never on a sound
+    /// [`EstimateError`] if the block cannot be made or its equations not be solved: never on a sound
     /// computer.
-    pub fn measured() -> Result<Self, CaseError> {
+    pub fn measured() -> Result<Self, EstimateError> {
         let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
         let [assembly, factor] = match alone {
             Ok(pool) => pool.install(kernels)?,
@@ -60,7 +60,7 @@ impl Speed {
 }
 
 /// The quickest pass over the particles of the block, and the quickest factorisation.
-fn kernels() -> Result<[Duration; 2], CaseError> {
+fn kernels() -> Result<[Duration; 2], EstimateError> {
     let axis = Axis::uniform(0.0, 1.0, CELLS)?;
     let grid = Grid::new([axis.clone(), axis]);
     let seeds: Vec<ParticleSeed<2>> = (0..4 * CELLS * CELLS)

@@ -6,15 +6,15 @@ use igimp_schema::diagnostic::Problems;
 use igimp_schema::quantity::Dimension;
 use igimp_schema::tree::{Entry, Node, Value};
 
-use super::columns::columns;
-use super::record::ascending;
-use super::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
+use crate::columns::columns;
+use crate::named::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
+use crate::record::ascending;
 
 /// What the file has.
 const COLUMNS: [&str; 2] = ["time", "value"];
 
 /// Puts the samples of heads and rain on the faces of a condition in place of the files that have them.
-pub(super) fn of_faces(condition: &mut Node, folder: &Path, problems: &mut Problems) {
+pub(crate) fn of_faces(condition: &mut Node, folder: &Path, problems: &mut Problems) {
     let faces = condition
         .get_mut("seepage")
         .and_then(|own| own.get_mut("faces"));

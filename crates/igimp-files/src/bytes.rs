@@ -22,8 +22,11 @@ pub fn of_file(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     of(File::open(path)?, most)
 }
 
-/// What a reader gives, one byte more than `most` at most.
-pub(crate) fn of(reader: impl Read, most: u64) -> io::Result<Vec<u8>> {
+/// The bytes of a reader, one more than `most` at most.
+///
+/// # Errors
+/// Errors of the reader.
+pub fn of(reader: impl Read, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     reader
         .take(most.saturating_add(1))

@@ -9,6 +9,7 @@
 //! reduction of strength keeps several states.
 
 mod couplings;
+mod error;
 pub mod factor_memory;
 mod flows;
 pub mod room;
@@ -23,8 +24,8 @@ use igimp_model::{Case, Drainage, LoadKind, ReductionPath, Side, StageKind, mesh
 use igimp_results::summary::Expected;
 use igimp_shape::{Grid, Scratch, supports};
 
-use crate::error::CaseError;
 use couplings::Couplings;
+pub use error::EstimateError;
 pub use flows::Flows;
 use speed::Speed;
 pub use systems::Systems;
@@ -91,7 +92,7 @@ struct Survey<'g, const D: usize> {
 }
 
 impl<'g, const D: usize> Survey<'g, D> {
-    fn of(case: &Case<D>, grid: &'g Grid<D>) -> Result<Self, CaseError> {
+    fn of(case: &Case<D>, grid: &'g Grid<D>) -> Result<Self, EstimateError> {
         let mut own = Self {
             touched: vec![false; grid.node_count()],
             pressed: vec![false; grid.node_count()],
@@ -153,8 +154,8 @@ impl<'g, const D: usize> Survey<'g, D> {
 /// The size of a case.
 ///
 /// # Errors
-/// [`CaseError`] for a grid that cannot be made and bodies that do not lie on it.
-pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, CaseError> {
+/// [`EstimateError`] for a grid that cannot be made and bodies that do not lie on it.
+pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, EstimateError> {
     let grid = case.grid.grid()?;
     let survey = Survey::of(case, &grid)?;
     let particles = survey.most_particles(case);
@@ -222,7 +223,7 @@ impl Expectation {
     ///
     /// # Errors
     /// As [`estimate`] and [`Speed::measured`].
-    pub fn of<const D: usize>(case: &Case<D>) -> Result<Self, CaseError> {
+    pub fn of<const D: usize>(case: &Case<D>) -> Result<Self, EstimateError> {
         let speed = Speed::measured()?;
         let meshes = meshes::meshes(case);
         let sizes = meshes.iter().map(estimate).collect::<Result<Vec<_>, _>>()?;
@@ -245,7 +246,7 @@ impl Expectation {
     }
 
     /// As reported after a run, with the time of the steps that it took if that is known.
-    pub(crate) fn told(&self, seconds_of_steps_taken: Option<f64>) -> Expected {
+    pub fn told(&self, seconds_of_steps_taken: Option<f64>) -> Expected {
         Expected {
             seconds: self.time.seconds,
             open_ended: self.time.open_ended,

@@ -2,21 +2,21 @@
 
 use igimp_schema::text::clip;
 
-use super::Trouble;
+use crate::named::Trouble;
 
 /// What a file holds.
 #[derive(Debug)]
-pub(super) struct Columns {
+pub(crate) struct Columns {
     /// The unit of each column, if the header says one: `ft` in `x [ft]` and `x (ft)`.
-    pub(super) units: Vec<Option<String>>,
+    pub(crate) units: Vec<Option<String>>,
     /// Rows of as many numbers as there are columns.
-    pub(super) rows: Vec<Vec<f64>>,
+    pub(crate) rows: Vec<Vec<f64>>,
     /// The line of each row.
-    pub(super) lines: Vec<usize>,
+    pub(crate) lines: Vec<usize>,
 }
 
 /// Reads columns of these names; a header may be missing, and may not name them in another order.
-pub(super) fn columns(text: &str, names: &[&str]) -> Result<Columns, Trouble> {
+pub(crate) fn columns(text: &str, names: &[&str]) -> Result<Columns, Trouble> {
     let mut found = Columns {
         units: vec![None; names.len()],
         rows: Vec::new(),
@@ -104,7 +104,7 @@ fn header(cells: &[&str], names: &[&str], found: &mut Columns) -> Result<(), Tro
 
 #[cfg(test)]
 mod tests {
-    use super::columns;
+    use crate::columns;
 
     #[test]
     fn headers_say_units_and_may_be_missing() {

@@ -6,15 +6,15 @@ use igimp_schema::diagnostic::Problems;
 use igimp_schema::quantity::Dimension;
 use igimp_schema::tree::{Node, Value, Wrong};
 
-use super::columns::columns;
-use super::dxf::{self, Line};
-use super::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
+use crate::columns::columns;
+use crate::dxf::{self, Line};
+use crate::named::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
 
 /// Ends of two lines closer than this share of their extent are one \[-\].
 const SAME: f64 = 1e-9;
 
 /// Puts the corners in place of the table that says where they come from.
-pub(super) fn resolve(polygon: &mut Node, folder: &Path, problems: &mut Problems) {
+pub(crate) fn resolve(polygon: &mut Node, folder: &Path, problems: &mut Problems) {
     if !matches!(polygon.value, Value::Table(_)) {
         return;
     }

@@ -5,7 +5,7 @@
 
 use igimp_schema::text::{clip, number, row};
 
-use super::Trouble;
+use crate::named::Trouble;
 
 /// How a binary drawing begins.
 const BINARY: &str = "AutoCAD Binary DXF";
@@ -18,11 +18,11 @@ const WORDS: [&str; 3] = ["TEXT", "MTEXT", "ATTDEF"];
 
 /// A line of a drawing in its own unit.
 #[derive(Debug, PartialEq)]
-pub(super) struct Line {
+pub(crate) struct Line {
     /// Its corners; the first is not repeated in a closed one.
-    pub(super) points: Vec<[f64; 2]>,
+    pub(crate) points: Vec<[f64; 2]>,
     /// Whether it ends where it began.
-    pub(super) is_closed: bool,
+    pub(crate) is_closed: bool,
 }
 
 /// Something drawn.
@@ -90,7 +90,7 @@ impl<'t> Entity<'t> {
 }
 
 /// The line on a layer of a drawing: one polyline, or several and lines that join to one.
-pub(super) fn line_on(text: &str, layer: Option<&str>) -> Result<Line, Trouble> {
+pub(crate) fn line_on(text: &str, layer: Option<&str>) -> Result<Line, Trouble> {
     if text.starts_with(BINARY) {
         return Err(Trouble::new(
             "it is a binary DXF file",
@@ -150,7 +150,7 @@ pub(super) fn line_on(text: &str, layer: Option<&str>) -> Result<Line, Trouble> 
 }
 
 /// The unit that a drawing says of itself, `$INSUNITS` in its header, if it is one of length that case files know.
-pub(super) fn unit_of_header(text: &str) -> Option<&'static str> {
+pub(crate) fn unit_of_header(text: &str) -> Option<&'static str> {
     let mut lines = text.lines().map(str::trim);
     lines.find(|line| *line == "$INSUNITS")?;
     // Group 70, then the code (AutoCAD DXF reference, "header group codes").
@@ -307,7 +307,7 @@ fn joined(mut pieces: Vec<Line>) -> Result<Line, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{line_on, unit_of_header};
+    use crate::{line_on, unit_of_header};
 
     fn drawn(entities: &str) -> String {
         format!("0\nSECTION\n2\nENTITIES\n{entities}0\nENDSEC\n0\nEOF\n")

@@ -283,9 +283,9 @@ pub fn readable(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::estimate;
-    use super::super::tests::case;
     use super::*;
+    use crate::estimate;
+    use crate::tests::case;
 
     fn seconds(case: &Case<2>) -> f64 {
         time(case, &estimate(case).unwrap(), Speed::REFERENCE).seconds

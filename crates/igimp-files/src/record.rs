@@ -8,8 +8,8 @@ use igimp_schema::schema::ground_motion::RecordUnit;
 use igimp_schema::text::{clip, number, row};
 use igimp_schema::tree::{Entry, Node, Value};
 
-use super::columns::{Columns, columns};
-use super::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
+use crate::columns::{Columns, columns};
+use crate::named::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
 
 /// What the file has; the second column may be a velocity as well.
 const COLUMNS: [&str; 2] = ["time", "acceleration"];
@@ -17,7 +17,7 @@ const COLUMNS: [&str; 2] = ["time", "acceleration"];
 const MOST: usize = 100_000;
 
 /// Puts the samples in place of the file that has them.
-pub(super) fn resolve(motion: &mut Node, folder: &Path, problems: &mut Problems) {
+pub(crate) fn resolve(motion: &mut Node, folder: &Path, problems: &mut Problems) {
     let Some(value) = motion.get("file") else {
         return;
     };
@@ -86,7 +86,7 @@ fn samples(file: &Named, table: &Node) -> Result<Vec<Entry>, Trouble> {
 }
 
 /// Refuses a time that is not after the one before.
-pub(super) fn ascending(found: &Columns) -> Result<(), Trouble> {
+pub(crate) fn ascending(found: &Columns) -> Result<(), Trouble> {
     let pairs = found.rows.windows(2).zip(found.lines.windows(2));
     for (rows, lines) in pairs {
         if rows[1][0] <= rows[0][0] {

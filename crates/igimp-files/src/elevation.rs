@@ -8,8 +8,8 @@ use igimp_schema::quantity::Dimension;
 use igimp_schema::text::clip;
 use igimp_schema::tree::{Entry, Node, Value};
 
-use super::columns::columns;
-use super::{LARGEST, Named, Trouble, quantity, text_of, unit_beside, unit_of};
+use crate::columns::columns;
+use crate::named::{LARGEST, Named, Trouble, quantity, text_of, unit_beside, unit_of};
 
 /// Most points.
 const MOST: usize = 100_000;
@@ -17,7 +17,7 @@ const MOST: usize = 100_000;
 const COLUMNS: [&str; 3] = ["x", "y", "z"];
 
 /// Puts the heights in place of the file that has them, in a table that names one in `raster` or `points`.
-pub(super) fn resolve(surface: &mut Node, folder: &Path, problems: &mut Problems) {
+pub(crate) fn resolve(surface: &mut Node, folder: &Path, problems: &mut Problems) {
     let named = |key: &'static str| {
         let value = surface.get(key)?;
         value.text().map(|_| (key, value))
@@ -255,7 +255,7 @@ fn number(word: &str) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::EsriGrid;
+    use crate::EsriGrid;
 
     const GRID: &str = "ncols 3\nnrows 2\nXLLCORNER 100\nyllcenter -50\ncellsize 10\nNODATA_value -9999\n1 2 3\n4 -9999 6.5\n";
 

@@ -9,8 +9,8 @@ use igimp_schema::quantity::Dimension;
 use igimp_schema::text::clip;
 use igimp_schema::tree::{Entry, Node, Value};
 
-use super::{LARGEST, Named, Trouble, quantity, unit_beside};
 use crate::bytes;
+use crate::named::{LARGEST, Named, Trouble, quantity, unit_beside};
 
 /// Most triangles.
 const MOST: usize = 100_000;
@@ -19,7 +19,7 @@ const HEAD: usize = 84;
 const TRIANGLE: usize = 50;
 
 /// Puts corners and triangles in place of the file that has them, in a table that names one in `file`.
-pub(super) fn resolve(surface: &mut Node, folder: &Path, problems: &mut Problems) {
+pub(crate) fn resolve(surface: &mut Node, folder: &Path, problems: &mut Problems) {
     let Some(value) = surface.get("file") else {
         return;
     };
@@ -162,7 +162,7 @@ fn read(bytes: Vec<u8>) -> Result<Vec<[[f32; 3]; 3]>, Trouble> {
 
 #[cfg(test)]
 mod tests {
-    use super::triangles;
+    use crate::triangles;
 
     const FACET: &str = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1.5 0\nendloop\nendfacet\n";
 
