@@ -104,7 +104,7 @@ fn header(cells: &[&str], names: &[&str], found: &mut Columns) -> Result<(), Tro
 
 #[cfg(test)]
 mod tests {
-    use crate::columns;
+    use super::columns;
 
     #[test]
     fn headers_say_units_and_may_be_missing() {

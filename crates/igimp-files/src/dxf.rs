@@ -307,7 +307,7 @@ fn joined(mut pieces: Vec<Line>) -> Result<Line, String> {
 
 #[cfg(test)]
 mod tests {
-    use crate::{line_on, unit_of_header};
+    use super::{line_on, unit_of_header};
 
     fn drawn(entities: &str) -> String {
         format!("0\nSECTION\n2\nENTITIES\n{entities}0\nENDSEC\n0\nEOF\n")
@@ -368,7 +368,7 @@ mod tests {
     // ORACLE: the codes of the AutoCAD DXF reference; a drawing of ezdxf, in metres.
     #[test]
     fn the_header_names_the_unit() {
-        let drawing = include_str!("../../../igimp-cases/tests/data/drawings/r2000.dxf");
+        let drawing = include_str!("../../igimp-cases/tests/data/drawings/r2000.dxf");
         assert_eq!(unit_of_header(drawing), Some("m"));
         let header =
             |code: &str| format!("0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n 70\n{code}\n0\nENDSEC\n");
@@ -386,14 +386,14 @@ mod tests {
             assert_eq!(unit_of_header(&header(code)), None);
         }
         assert_eq!(unit_of_header("9\n$INSUNITS\n"), None);
-        let old = include_str!("../../../igimp-cases/tests/data/drawings/r12.dxf");
+        let old = include_str!("../../igimp-cases/tests/data/drawings/r12.dxf");
         assert_eq!(unit_of_header(old), None);
     }
 
     /// GOAL: a damaged drawing is read or refused, and nothing else.
     #[test]
     fn damaged_drawings_do_no_harm() {
-        let whole = include_str!("../../../igimp-cases/tests/data/drawings/r12.dxf");
+        let whole = include_str!("../../igimp-cases/tests/data/drawings/r12.dxf");
         for at in (0..whole.len()).filter(|&at| whole.is_char_boundary(at)) {
             let (before, after) = whole.split_at(at);
             let rest = after.get(1..).unwrap_or_default();

@@ -255,7 +255,7 @@ fn number(word: &str) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use crate::EsriGrid;
+    use super::EsriGrid;
 
     const GRID: &str = "ncols 3\nnrows 2\nXLLCORNER 100\nyllcenter -50\ncellsize 10\nNODATA_value -9999\n1 2 3\n4 -9999 6.5\n";
 

@@ -162,7 +162,7 @@ fn read(bytes: Vec<u8>) -> Result<Vec<[[f32; 3]; 3]>, Trouble> {
 
 #[cfg(test)]
 mod tests {
-    use crate::triangles;
+    use super::triangles;
 
     const FACET: &str = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1.5 0\nendloop\nendfacet\n";
 
