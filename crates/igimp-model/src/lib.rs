@@ -155,6 +155,11 @@ impl<const D: usize> Case<D> {
         let moves = |stage: &Stage| matches!(stage.kind, StageKind::Dynamic(_));
         self.stages.iter().any(moves)
     }
+
+    /// Whether a stage of it takes time, to move or for water to flow.
+    pub fn takes_time(&self) -> bool {
+        self.stages.iter().any(Stage::takes_time)
+    }
 }
 
 /// A case in the dimension that its file states.

@@ -6,7 +6,7 @@ use crate::basis::{Basis, CORNERS, apply, nodes_of};
 use crate::conditions::Extent;
 use crate::curve::Relative;
 use crate::ground::ends_of;
-use crate::system::{Flows, System};
+use crate::system::{Flows, System, largest};
 
 /// Water through a condition or a section \[m³/s\], in the plane by the metre run \[m²/s\].
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +48,7 @@ pub struct Seepage<const D: usize> {
     pub width: f64,
     /// Corrections that it took.
     pub corrections: usize,
-    /// Largest imbalance of a node over all that enters \[-\].
+    /// Largest imbalance of a node over all that enters; at rest over a tenth of what its heads would drive through a cell \[-\].
     pub residual: f64,
     /// Number of heads.
     pub unknowns: usize,
@@ -74,9 +74,6 @@ impl<const D: usize> Seepage<D> {
         let through = Through::of(system, heads, &relative);
         let sum = |own: &[f64]| own.iter().sum::<f64>();
         let (inflow, outflow) = (sum(&flows.inwards), sum(&flows.outwards));
-        let largest = residual
-            .iter()
-            .fold(0.0, |most: f64, own| most.max(own.abs()));
         Self {
             heads: by_node(system, heads),
             is_ground,
@@ -90,7 +87,7 @@ impl<const D: usize> Seepage<D> {
             floor: relative.floor,
             width: relative.width,
             corrections,
-            residual: largest / inflow.max(outflow).max(f64::MIN_POSITIVE),
+            residual: largest(residual) / system.scale(heads, flows, 0.0),
             unknowns: heads.len(),
             confined: relative.confined,
             axisymmetric: system.conditions.axisymmetric,

@@ -9,14 +9,12 @@ use crate::curve::{Curve, Relative};
 use crate::error::SeepageError;
 use crate::ground::{Bodies, SeepageBody, cells};
 use crate::storage::{Moved, Storing};
-use crate::system::{Flows, System};
+use crate::system::{Flows, System, largest};
 
 /// Imbalance of a node over the largest flow at which heads are found \[-\].
 pub(crate) const TOLERANCE: f64 = 1e-12;
 /// The same of the imbalance of all nodes together, in time: a tenth of it counts \[-\].
 const ALL_OVER_ONE: f64 = 0.1;
-/// Share of what heads could drive through a cell that counts as flow \[-\]: below it round-off would decide.
-const AT_REST: f64 = 0.1;
 /// The same for flows on the way to the one that is asked for \[-\].
 pub(crate) const ON_THE_WAY: f64 = 1e-3;
 /// From one fall of permeability to the next \[-\].
@@ -147,21 +145,6 @@ impl<'a, const D: usize> Search<'a, D> {
         Ok(())
     }
 
-    /// The flow that an imbalance is held against \[m^D/s\]: that through the ground or into storage, or where hardly any
-    /// water flows what its heads would drive through a cell.
-    fn scale(&self, flows: &Flows, moved: f64) -> f64 {
-        let sum = |own: &[f64]| own.iter().sum::<f64>();
-        let through = sum(&flows.inwards).max(sum(&flows.outwards)).max(moved);
-        let soils = self.system.conditions.soils.iter();
-        let permeability = soils.map(|soil| soil.along.max(soil.across));
-        let size = self.system.grid.cell_size([0; D]);
-        let size = size.into_iter().fold(f64::INFINITY, f64::min);
-        let driven = permeability.fold(0.0, f64::max)
-            * largest(&self.heads).max(size)
-            * size.powi(D as i32 - 2);
-        through.max(AT_REST * driven)
-    }
-
     /// Residual with what goes into storage, and flows.
     fn residual(
         &self,
@@ -186,7 +169,7 @@ impl<'a, const D: usize> Search<'a, D> {
             storing.add(&self.system, at, &mut residual, Some(matrix))
         });
         Balanced {
-            scale: self.scale(&flows, moved.rate),
+            scale: self.system.scale(&self.heads, &flows, moved.rate),
             moved,
             residual,
             flows,
@@ -262,16 +245,6 @@ impl<'a, const D: usize> Search<'a, D> {
             residual: off(&found),
         })
     }
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most, own| {
-        if own.is_nan() {
-            f64::INFINITY
-        } else {
-            own.abs().max(most)
-        }
-    })
 }
 
 fn norm(values: &[f64]) -> f64 {

@@ -19,6 +19,8 @@ const NITSCHE: f64 = 10.0;
 const REGION: f64 = 1e3;
 /// Penalty on jumps of the gradient at cells that are cut \[-\].
 const GHOST: f64 = 0.01;
+/// Share of what heads could drive through a cell that counts as flow \[-\]: below it round-off would decide.
+const AT_REST: f64 = 0.1;
 /// Equations of a cell or of two.
 struct Local<'a> {
     unknowns: &'a [usize],
@@ -454,6 +456,31 @@ impl<'a, const D: usize> System<'a, D> {
         own.whole
             .unwrap_or_else(|| own.points.first().map_or(0, |point| point.soil))
     }
+
+    /// The flow that an imbalance is held against \[m^D/s\]: that through the ground or into storage, or where hardly any
+    /// water flows what its heads would drive through a cell.
+    pub(crate) fn scale(&self, heads: &[f64], flows: &Flows, moved: f64) -> f64 {
+        let sum = |own: &[f64]| own.iter().sum::<f64>();
+        let through = sum(&flows.inwards).max(sum(&flows.outwards)).max(moved);
+        let soils = self.conditions.soils.iter();
+        let permeability = soils.map(|soil| soil.along.max(soil.across));
+        let size = self.grid.cell_size([0; D]);
+        let size = size.into_iter().fold(f64::INFINITY, f64::min);
+        let driven =
+            permeability.fold(0.0, f64::max) * largest(heads).max(size) * size.powi(D as i32 - 2);
+        through.max(AT_REST * driven)
+    }
+}
+
+/// The largest of some values without their signs; infinite with one that is no number.
+pub(crate) fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, own| {
+        if own.is_nan() {
+            f64::INFINITY
+        } else {
+            own.abs().max(most)
+        }
+    })
 }
 
 fn add(local: &Local<'_>, residual: &mut [f64], matrix: Option<&mut TangentMatrix>) {

@@ -15,7 +15,8 @@ use igimp_solver::StepError;
 
 use super::model::Model;
 use super::output::export::Export;
-use super::output::records::{Moment, Records, largest_displacement};
+use super::output::moment::{Moment, largest_displacement};
+use super::output::records::Records;
 use super::output::seepage;
 use super::output::{Output, checks, sections};
 use super::resources::memory::{self, Before};

@@ -25,7 +25,7 @@ use super::model::Model;
 use super::resume::{End, Notes, Resumption, Search};
 use super::state::State;
 use crate::error::CaseError;
-use crate::run::output::records::AcceptedStep;
+use crate::run::output::moment::AcceptedStep;
 use records::{Records, Rows};
 
 pub(crate) mod checks;
@@ -34,6 +34,7 @@ mod drawn;
 pub(crate) mod entry;
 pub(crate) mod export;
 mod in_time;
+pub(crate) mod moment;
 mod motion;
 pub(crate) mod outlines;
 pub(crate) mod place;

@@ -4,7 +4,6 @@ use igimp_assembly::{Drive, Interface, Particles, RigidBody, RigidMotion, Shear}
 use igimp_model::{
     Adhesion, Case, RigidInterface, RigidPart, RigidQuantity, RigidShear, components, in_space,
 };
-use igimp_results::tables::table::Table;
 use igimp_solver::{Accepted, StepFailure};
 
 use super::state::{Controls, RigidTrack, State};
@@ -232,19 +231,6 @@ pub(crate) fn recorded<const D: usize>(case: &Case<D>) -> Vec<(String, RigidQuan
     let label = format!("resistance_down_+_[N{per_run}]");
     add(label, RigidQuantity::Resistance);
     recorded
-}
-
-/// An empty history of a rigid body.
-pub(crate) fn table<const D: usize>(case: &Case<D>, name: &str) -> Table {
-    let moment = ["stage", "step", "progress_[-]"];
-    let place = ["x_[m]", "y_[m]", "z_[m]"].into_iter().take(D);
-    let header = moment.into_iter().chain(place).map(str::to_owned);
-    let labels = recorded(case).into_iter().map(|(label, _)| label);
-    Table {
-        name: name.to_owned(),
-        header: header.chain(labels).collect(),
-        rows: Vec::new(),
-    }
 }
 
 /// The failure of a step that left soil further in a body than the case allows.

@@ -24,13 +24,14 @@ use igimp_text::short;
 use super::model::Model;
 use super::output::Output;
 use super::output::export::Export;
-use super::output::records::{Moment, Records, largest_displacement};
+use super::output::moment::{Moment, largest_displacement};
+use super::output::records::Records;
 use super::resume::Resumption;
 use super::state::{Controls, RigidTrack, State, WallTrack};
 use super::water::flow;
 use super::{Event, Listener, rigid};
 use crate::error::CaseError;
-use crate::run::output::records::AcceptedStep;
+use crate::run::output::moment::AcceptedStep;
 use igimp_estimate::factor_memory::decides;
 
 /// Share of the load from which on a false support at dropped nodes is worth a warning \[-\].

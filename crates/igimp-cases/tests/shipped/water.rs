@@ -3,6 +3,8 @@
 use crate::resuming::{assert_done, assert_equal, everything, folder, run_into};
 use crate::{Ran, between, file, ran};
 use igimp_cases::run::Start;
+use igimp_input::CaseFile;
+use igimp_input::shipped::find;
 use igimp_results::summary::StageOutcome::Completed;
 
 #[test]
@@ -217,4 +219,23 @@ fn a_slower_push_carries_more() {
     };
     assert!((minute / undrained - 1.0).abs() < 0.02 && (years / drained - 1.0).abs() < 0.02);
     assert!(minute < half && half < years);
+}
+
+/// GOAL: drains that drain nothing, and pressure that would go both at once and in time, are refused at their place.
+/// ORACLE: the key and the words.
+#[test]
+fn drains_without_thickness_and_two_ways_of_water_are_refused() {
+    let refused = |settings: &[&str]| {
+        let text = find("consolidation").unwrap().text;
+        let settings: Vec<String> = settings.iter().map(|&own| own.to_owned()).collect();
+        CaseFile::parse("consolidation", text, &settings)
+            .unwrap_err()
+            .to_string()
+    };
+    let flat =
+        "stages.2.consolidation.drains=[{ from = [\"0 m\", \"2 m\"], to = [\"0.5 m\", \"2 m\"] }]";
+    let text = refused(&[flat]);
+    assert!(text.contains("this drain is flat"), "{text}");
+    let text = refused(&["stages.2.type=construction", "stages.2.dissipate=true"]);
+    assert!(text.contains("a stage with `dissipate`"), "{text}");
 }

@@ -262,3 +262,15 @@ fn what_makes_no_flow_is_refused() {
     let error = flow(&grid, &ground, &conditions).unwrap_err();
     assert!(matches!(error, SeepageError::NotFed), "{error}");
 }
+
+/// GOAL: water at rest says how well its heads balance, though nothing flows. ORACLE: one head all over; round-off.
+#[test]
+fn water_at_rest_balances() {
+    let grid = grid([0.0, 0.0], 0.25, [4, 16]);
+    let mut conditions = confined(&[1e-9]);
+    conditions.faces = vec![faces("top", [0.0, 4.0], [1.0, 4.0], OnFaces::Head(4.0))];
+    let found = flow(&grid, &[rectangle([0.0, 0.0], [1.0, 4.0])], &conditions).unwrap();
+    assert!(found.heads.iter().all(|head| (head - 4.0).abs() < 1e-9));
+    assert!(found.residual < 1e-9, "{}", found.residual);
+    assert!(found.inflow.max(found.outflow) < 1e-15);
+}

@@ -5,7 +5,8 @@ use igimp_model::{Case, CheckTime, Reference, ReferenceValues};
 use igimp_results::summary::CheckRow;
 use igimp_results::tables::table::Table;
 
-use super::records::{Moment, Records};
+use super::moment::Moment;
+use super::records::Records;
 use super::sections::before_fields;
 
 /// The checks that the case asks for at the end of a stage.

@@ -5,7 +5,8 @@ use igimp_report::pictures::{self, Shown};
 use igimp_results::paraview::frames::Scene;
 use igimp_results::summary::{FigureNote, StageSummary};
 
-use super::records::{AcceptedStep, Records};
+use super::moment::AcceptedStep;
+use super::records::Records;
 use super::{Output, outlines};
 use crate::error::CaseError;
 use crate::run::model::Model;

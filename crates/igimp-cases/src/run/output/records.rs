@@ -1,66 +1,17 @@
 //! The records of a run: curves and the histories at monitors, one row per recorded moment.
 
-use igimp_assembly::{Particles, Reinforcement, RigidBody, SharedLaw};
+use igimp_assembly::{Particles, SharedLaw};
 use igimp_geometry::SeedError;
 use igimp_model::{Case, CheckTime, Field, Quantity};
 use igimp_results::fields;
 use igimp_results::summary::EnergySummary;
 use igimp_results::tables::table::Table;
-use igimp_solver::Accepted;
 
+use super::moment::{Moment, kinetic_energy, moment_columns};
 use super::place::Place;
 use crate::error::CaseError;
 use crate::run::model::reduced;
-use crate::run::state::Controls;
 use crate::run::{reinforcement, rigid};
-
-/// A state that is recorded: the end of a step, or of a trial in a strength reduction.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Moment<'a, const D: usize> {
-    /// Number of the stage, from 0.
-    pub(crate) stage: usize,
-    /// Number of the step (or trial) in its stage, from 1; 0 before the first.
-    pub number: usize,
-    /// Share of the stage that is done \[-\].
-    pub(crate) progress: f64,
-    /// The particles.
-    pub(crate) particles: &'a Particles<D>,
-    /// The rigid bodies that are there.
-    pub(crate) rigid: &'a [RigidBody<D>],
-    /// The reinforcement that is there.
-    pub(crate) reinforcement: &'a [Reinforcement<D>],
-    /// The controls that act on them.
-    pub(crate) controls: &'a Controls,
-    /// Resistance of the footing \[N/m\].
-    pub(crate) resistance: f64,
-    /// Share of particles that yield \[-\].
-    pub(crate) plastic_share: f64,
-    /// Where the work of its stage went so far, of a stage that takes time.
-    pub(crate) energy: Option<&'a EnergySummary>,
-}
-
-impl<const D: usize> Moment<'_, D> {
-    /// Length of the largest particle displacement \[m\].
-    pub(crate) fn largest_displacement(&self) -> f64 {
-        largest_displacement(self.particles)
-    }
-}
-
-/// Kinetic energy of soil and rigid bodies \[J/m; J in space\].
-fn kinetic_energy<const D: usize>(particles: &Particles<D>, rigid: &[RigidBody<D>]) -> f64 {
-    let soil = std::iter::zip(&particles.mass, &particles.velocity)
-        .map(|(mass, velocity)| 0.5 * mass * fields::length(velocity).powi(2));
-    soil.sum::<f64>() + rigid.iter().map(RigidBody::kinetic_energy).sum::<f64>()
-}
-
-/// Length of the largest particle displacement \[m\].
-pub(crate) fn largest_displacement<const D: usize>(particles: &Particles<D>) -> f64 {
-    particles
-        .displacement
-        .iter()
-        .map(fields::length)
-        .fold(0.0, f64::max)
-}
 
 /// The tables of a run, and the material points that its monitors watch.
 #[derive(Debug)]
@@ -103,16 +54,15 @@ impl Records {
             .monitors
             .iter()
             .map(|monitor| {
-                let mut header = vec!["stage".into(), "step".into(), "progress_[-]".into()];
-                header.extend(monitor.record.iter().map(|&field| field.header()));
+                let fields = monitor.record.iter().map(|&field| field.header());
                 Table {
                     name: monitor.name.clone(),
-                    header,
+                    header: moment_columns(case).chain(fields).collect(),
                     rows: Vec::new(),
                 }
             })
             .collect();
-        let rigid = case.rigid.iter().map(|part| rigid::table(case, &part.name));
+        let rigid = case.rigid.iter().map(|part| rigid_table(case, &part.name));
         let watched = case
             .monitors
             .iter()
@@ -263,11 +213,7 @@ impl Records {
         }
         for (k, monitor) in case.monitors.iter().enumerate().filter(|_| !reopens) {
             let laws = self.laws_at(case, moment);
-            let mut row = vec![
-                moment.stage as f64 + 1.0,
-                moment.number as f64,
-                moment.progress,
-            ];
+            let mut row = moment.row(case);
             let recorded = monitor.record.iter();
             row.extend(recorded.map(|&field| self.at_monitor(k, field, moment, &laws)));
             self.monitors[k].push(row.clone());
@@ -298,36 +244,6 @@ pub(crate) struct Rows {
     pub(crate) peaks: Vec<f64>,
 }
 
-/// An accepted step as a stage sees it.
-pub(crate) struct AcceptedStep<'a, const D: usize> {
-    /// The step in the solver's terms.
-    pub(crate) accepted: &'a Accepted<'a, D>,
-    /// The controls that act on the body now.
-    pub(crate) controls: &'a Controls,
-    /// Resistance of the footing \[N/m\].
-    pub(crate) resistance: f64,
-    /// Whether the user wants the run to end here.
-    pub(crate) interrupted: bool,
-}
-
-impl<'a, const D: usize> AcceptedStep<'a, D> {
-    /// The step as a moment to be recorded.
-    pub(crate) fn moment(&self, stage: usize, number: usize) -> Moment<'a, D> {
-        Moment {
-            stage,
-            number,
-            progress: self.accepted.report.to,
-            particles: &self.accepted.body.particles,
-            rigid: &self.accepted.body.rigid,
-            reinforcement: &self.accepted.body.reinforcement,
-            controls: self.controls,
-            resistance: self.resistance,
-            plastic_share: self.accepted.report.plastic_share,
-            energy: None,
-        }
-    }
-}
-
 /// An empty table of energy.
 fn energy_table(per_metre: &str) -> Table {
     let moment = ["stage", "step", "time_[s]"].map(str::to_owned);
@@ -354,6 +270,18 @@ fn energy_row<const D: usize>(moment: &Moment<'_, D>, own: &EnergySummary) -> Ve
     place.into_iter().chain(parts).collect()
 }
 
+/// An empty history of a rigid body.
+fn rigid_table<const D: usize>(case: &Case<D>, name: &str) -> Table {
+    let place = ["x_[m]", "y_[m]", "z_[m]"].into_iter().take(D);
+    let labels = rigid::recorded(case).into_iter().map(|(label, _)| label);
+    let header = moment_columns(case).chain(place.map(str::to_owned));
+    Table {
+        name: name.to_owned(),
+        header: header.chain(labels).collect(),
+        rows: Vec::new(),
+    }
+}
+
 /// The row of a rigid body that is there.
 pub(crate) fn rigid_row<const D: usize>(
     case: &Case<D>,
@@ -362,11 +290,7 @@ pub(crate) fn rigid_row<const D: usize>(
 ) -> Vec<f64> {
     let (controls, bodies) = (moment.controls, moment.rigid);
     let slot = controls.placed().take_while(|&k| k < index).count();
-    let mut row = vec![
-        moment.stage as f64 + 1.0,
-        moment.number as f64,
-        moment.progress,
-    ];
+    let mut row = moment.row(case);
     row.extend(bodies[slot].pose.origin);
     let recorded = rigid::recorded(case).into_iter();
     row.extend(recorded.map(|(_, of)| rigid::quantity(case, controls, bodies, index, of)));

@@ -16,7 +16,7 @@ use super::run_out::{divisor, flowing};
 use super::walls;
 use crate::error::CaseError;
 use crate::run::model::Model;
-use crate::run::output::records::Moment;
+use crate::run::output::moment::Moment;
 use crate::run::reinforcement;
 use crate::run::resume::Resumption;
 use crate::run::session::{Session, StageEnd, StagePath, TimeIntegration, march_path};
@@ -112,11 +112,15 @@ pub(crate) fn dynamic<const D: usize>(
             Ok(resumption.end)
         },
     )?;
-    summary.newmark = sliding_block(session, dynamic);
-    Ok(match ended {
+    let ended = match ended {
         StageEnd::Stopped(reason @ EndReason::CameToRest { .. }) => StageEnd::Completed(reason),
         other => other,
-    })
+    };
+    // The whole record moves the block: beside soil that it moved in part there is nothing to hold it against.
+    if let StageEnd::Completed(_) = ended {
+        summary.newmark = sliding_block(session, dynamic);
+    }
+    Ok(ended)
 }
 
 /// Puts rigid bodies and reinforcement where a stage begins with them.

@@ -16,7 +16,7 @@ use igimp_text::short;
 use crate::error::CaseError;
 use crate::limit;
 use crate::run::model::displacement_scale;
-use crate::run::output::records::Moment;
+use crate::run::output::moment::Moment;
 use crate::run::session::{Session, StageEnd};
 use crate::run::state::{Controls, RigidTrack, State};
 use crate::run::{Event, rigid};

@@ -9,7 +9,7 @@ use igimp_results::summary::StageSummary;
 
 use super::{limit_load, rigid_begin};
 use crate::error::CaseError;
-use crate::run::output::records::{AcceptedStep, Moment};
+use crate::run::output::moment::{AcceptedStep, Moment};
 use crate::run::reinforcement;
 use crate::run::resume::Resumption;
 use crate::run::session::{Session, StageEnd, StagePath, march_path};

@@ -28,12 +28,17 @@ pub(super) fn consolidation<const D: usize>(
         }
         return Ok(None);
     };
-    let refused = match **form {
+    let refused = match &**form {
         StageForm::StrengthReduction(_) | StageForm::RunOut(_) => {
             Some("water does not flow while strength is reduced")
         }
         StageForm::Dynamic(_) => Some("soil with inertia is drained or undrained"),
         StageForm::K0(_) => Some("ground at rest has had its time"),
+        StageForm::Construction(Ok(changes))
+            if changes.dissipate.as_ref().is_ok_and(|gone| gone.value) =>
+        {
+            Some("all excess pressure is gone at once in a stage with `dissipate`")
+        }
         _ if common.drained.as_ref().is_ok_and(|drained| drained.value) => {
             Some("all soil drains at once in a stage with `drained`")
         }
@@ -69,6 +74,13 @@ pub(super) fn consolidation<const D: usize>(
     for drain in own.drains.iter() {
         let keys::Drain { from, to } = &drain.as_ref().map_err(|_| Wrong)?.value;
         let within = extent::<D>(from, to, problems)?;
+        let is_flat = (0..D).any(|axis| within.lower[axis] >= within.upper[axis]);
+        if is_flat {
+            problems
+                .error(from.place, "this drain is flat: it drains no soil")
+                .help("water leaves from the soil within the box: give it the thickness of the drain, or a cell");
+            return Err(Wrong);
+        }
         drains.push([within.lower, within.upper]);
     }
     Ok(Some(Consolidation {

@@ -9,7 +9,7 @@ use igimp_results::summary::SafetySummary;
 use igimp_text::short;
 
 use super::{at_full_strength, stands_nowhere};
-use crate::run::output::records::largest_displacement;
+use crate::run::output::moment::largest_displacement;
 use crate::run::state::State;
 
 /// A particle moves when its displacement exceeds this share of the largest \[-\].

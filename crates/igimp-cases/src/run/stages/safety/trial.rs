@@ -8,7 +8,7 @@ use igimp_text::short;
 use super::Trials;
 use crate::error::CaseError;
 use crate::run::model::Model;
-use crate::run::output::records::Moment;
+use crate::run::output::moment::Moment;
 use crate::run::session::Session;
 use crate::run::state::{Controls, State};
 
