@@ -104,9 +104,7 @@ impl<const D: usize> Particles<D> {
         let own = (&mut fields.velocity, &mut fields.acceleration).into_par_iter();
         (own.enumerate().with_min_len(CHUNK)).for_each(|(particle, (velocity, acceleration))| {
             *velocity = motion.of_particle(velocity, stencils.of(particle));
-            if motion.carries_acceleration {
-                *acceleration = interpolate(stencils, particle, &motion.acceleration);
-            }
+            *acceleration = interpolate(stencils, particle, &motion.acceleration);
         });
     }
 
@@ -242,6 +240,41 @@ fn updated_half_length<const D: usize>(
             std::array::from_fn(|axis| right_stretch[axis][axis])
         }
         DomainUpdate::RootJ => [determinant(def_grad).powf(1.0 / D as f64); D],
+        DomainUpdate::Moments => {
+            return def_grad.map(|row| {
+                let sides = std::iter::zip(row, half_length0);
+                sides
+                    .map(|(f, side)| (f * side).powi(2))
+                    .sum::<f64>()
+                    .sqrt()
+            });
+        }
     };
     std::array::from_fn(|axis| half_length0[axis] * stretch[axis])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// GOAL: the domain that has the second moments of a deformed one keeps its height where soil is sheared along a floor, turns with the
+    /// soil, and follows a stretch along the axes.
+    /// ORACLE: second moments of parallelograms by hand; the diagonal of U as the control, which grows across the shear.
+    #[test]
+    fn domains_have_the_second_moments_of_deformed_ones() {
+        let sides = [2.0, 1.0];
+        let moments = |f: [[f64; 2]; 2]| updated_half_length(DomainUpdate::Moments, &sides, &f);
+        let near = |found: [f64; 2], exact: [f64; 2]| {
+            assert!(
+                std::iter::zip(found, exact).all(|(a, b)| (a - b).abs() < 1e-12),
+                "{found:?}"
+            );
+        };
+        let shear = [[1.0, 3.0], [0.0, 1.0]];
+        near(moments(shear), [13.0_f64.sqrt(), 1.0]);
+        near(moments([[0.0, -1.0], [1.0, 0.0]]), [1.0, 2.0]);
+        near(moments([[0.5, 0.0], [0.0, -3.0]]), [1.0, 3.0]);
+        let across = updated_half_length(DomainUpdate::DiagonalU, &sides, &shear)[1];
+        assert!(across > 3.0, "{across}");
+    }
 }

@@ -77,6 +77,8 @@ pub enum DomainUpdate {
     DiagonalU,
     /// `l_d = (det F)^(1/D) l_d0`.
     RootJ,
+    /// `l_d² = Σ_j (F_dj l_j0)²`: the second moments of the deformed domain along the axes.
+    Moments,
 }
 
 /// What is done about nodes that a body only touches at a corner (theory, "small cuts").

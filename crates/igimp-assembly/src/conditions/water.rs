@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use crate::body::particles::Particles;
 use crate::error::AssemblyError;
+use crate::method::Section;
 use igimp_material::Ratios;
 
 /// What given water is at a particle, at full gravity.
@@ -61,17 +62,21 @@ impl<const D: usize> Particles<D> {
     /// # Panics
     /// If there is no such particle.
     #[inline]
-    pub fn pore_site(&self, particle: usize) -> PoreSite<'_, D> {
+    pub fn pore_site(&self, particle: usize, section: Section) -> PoreSite<'_, D> {
         let domain0: f64 = (self.half_length0[particle].iter())
             .map(|half_length| 2.0 * half_length)
             .product();
+        // Soil of a body of revolution was seeded at the radius of its centroid.
+        let radius =
+            self.x[particle][0] + self.centroid[particle][0] * self.half_length[particle][0];
+        let radius0 = radius / (1.0 + self.hoop_strain[particle]);
         PoreSite {
             number: self.number[particle],
             law: self.law[particle],
             density: self.mass[particle] / self.volume0[particle],
             x: &self.x[particle],
             half_length: &self.half_length[particle],
-            filled: self.volume0[particle] / domain0,
+            filled: self.volume0[particle] / (domain0 * section.thickness(radius0)),
         }
     }
 }

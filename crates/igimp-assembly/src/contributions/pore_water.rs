@@ -91,7 +91,7 @@ impl Pores {
         let states: Vec<PoreState<D>> = (0..n)
             .into_par_iter()
             .with_min_len(CHUNK)
-            .map(|particle| given.at(particles.pore_site(particle)))
+            .map(|particle| given.at(particles.pore_site(particle, method.section)))
             .collect();
         let gravity = &conditions.loads.gravity;
         let mut pores = Self {

@@ -493,10 +493,19 @@ fn histories<const D: usize>(
     let title = &case.title;
     let curves = (&case.curves, &records.curves)
         .into_par_iter()
-        .map(|(curve, table)| Ok(vec![pictures::curve_picture(root, title, curve, table)?]));
+        .map(|(curve, table)| {
+            Ok(vec![pictures::curve_picture(
+                root,
+                title,
+                curve,
+                &table.as_written(),
+            )?])
+        });
     let monitors = (&case.monitors, &records.monitors)
         .into_par_iter()
-        .map(|(monitor, table)| pictures::monitor_pictures(root, case, monitor, table));
+        .map(|(monitor, table)| {
+            pictures::monitor_pictures(root, case, monitor, &table.as_written())
+        });
     let drawn = curves.chain(monitors).collect::<Result<Vec<_>, _>>()?;
     Ok(drawn.concat())
 }

@@ -357,7 +357,7 @@ mod tests {
         }];
         let (model, state) = Model::new(&case).unwrap();
         let water = model.ground_water(0).unwrap();
-        let found = water.at(state.body.particles.pore_site(0));
+        let found = water.at(state.body.particles.pore_site(0, case.method.section));
         assert_eq!(found, PoreState::dry());
     }
 }

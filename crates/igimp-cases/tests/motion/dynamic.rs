@@ -201,7 +201,7 @@ fn threads_change_no_bit_of_a_motion() {
     }
 }
 
-/// GOAL: in space a block falls freely, and time is a quantity.
+/// GOAL: in space a block falls freely, its acceleration is told by either scheme, and time is a quantity.
 #[test]
 fn a_block_falls_in_space() {
     let text = r#"
@@ -236,13 +236,22 @@ fn a_block_falls_in_space() {
         tolerance = 1e-12
         source = "the duration of the stage"
     "#;
-    let file = CaseFile::parse("fall.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"));
-    let run = in_memory(file.case_in_space()).unwrap();
-    let particles = &run.body.particles;
-    for (displacement, velocity) in std::iter::zip(&particles.displacement, &particles.velocity) {
+    let particles = |scheme: &str| {
+        let text = text.replace("newmark", scheme);
+        let file = CaseFile::parse("fall.toml", &text, &[]);
+        let file = file.unwrap_or_else(|error| panic!("{error}"));
+        in_memory(file.case_in_space()).unwrap().body.particles
+    };
+    let own = particles("newmark");
+    for (displacement, velocity) in std::iter::zip(&own.displacement, &own.velocity) {
         assert!((displacement[2] + 1.8).abs() < 1e-9, "{displacement:?}");
         assert!((velocity[2] + 6.0).abs() < 1e-9, "{velocity:?}");
         assert!(displacement[0].abs() < 1e-9 && velocity[1].abs() < 1e-9);
+    }
+    for scheme in ["newmark", "backward-euler"] {
+        let own = particles(scheme);
+        let falls = |a: &[f64; 3]| (a[2] + 10.0).abs() < 1e-8;
+        assert!(own.acceleration.iter().all(falls), "{scheme}");
     }
 }
 

@@ -1,6 +1,8 @@
 //! Motion in time.
 
-use crate::{between, ran};
+use crate::{between, ran, ran_case};
+use igimp_input::CaseFile;
+use igimp_input::shipped::find;
 use igimp_results::summary::StageOutcome::{Completed, Stopped};
 
 #[test]
@@ -54,6 +56,38 @@ fn a_boulder_falls_freely_and_digs_itself_in() {
     // smooth, 7.1 (w/D)^0.33 D c_u rough) takes up that of the weight at 0.197 and 0.180 m; a little goes into waves and elastic strain.
     println!("impact settles by {}", ran.end_of("settlement"));
     between(ran.end_of("settlement"), 0.66, 0.7);
+}
+
+// GOAL: a block that falls flat, whose whole base meets the ground at once, digs itself in as far with steps that the program chooses as
+// with short ones, and contact takes energy.
+// CASE: the boulder of `impact` as a square.
+// ORACLE: the same in steps of 4 ms; friction gives no energy.
+#[test]
+fn a_block_that_falls_flat_is_not_thrown_back() {
+    for drop in [0.5, 0.7] {
+        let dug = ["1 s", "4 ms"].map(|longest| {
+            let shape = format!(
+                "type = \"rectangle\"\nfrom = [\"-0.5 m\", \"{} m\"]\nto = [\"0.5 m\", \"{} m\"]",
+                2.0 + drop,
+                3.0 + drop
+            );
+            let circle = "type = \"circle\"\ncentre = [\"0 m\", \"3 m\"]                  # it falls by 0.5 m\nradius = \"0.5 m\"";
+            let text = find("impact").unwrap().text;
+            assert!(text.contains(circle));
+            let changes = [
+                "grid.domain.y=[\"0 m\", \"4 m\"]".to_owned(),
+                format!("stages.1.longest_step={longest}"),
+            ];
+            let file = CaseFile::parse("block", &text.replace(circle, &shape), &changes);
+            let ran = ran_case(file.unwrap().case());
+            let energy = ran.run.summary.stages[1].energy.unwrap();
+            assert!(energy.contact > 0.0, "{energy:?}");
+            let way = ran.curve("settlement");
+            way.iter().map(|own| own[1]).fold(0.0, f64::max) - drop
+        });
+        println!("a block that falls by {drop} m digs itself in by {dug:?}");
+        between(dug[0] / dug[1], 0.97, 1.03);
+    }
 }
 
 // GOAL: a ball that falls, as a body of revolution, digs itself in as far on coarse cells as on fine ones.

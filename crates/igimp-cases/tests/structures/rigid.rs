@@ -201,6 +201,77 @@ fn bodies_end_where_their_stages_say() {
     assert!(first > 1e3, "{first}");
 }
 
+/// GOAL: a body that no soil is near on a geometry that stays as it is drawn is told of, with the gap; one that is near, or moves, is not.
+/// ORACLE: elastic soil 3 m high, bodies 0.2 m and 4 cm above it on cells of 0.5 m; the force where nothing can touch.
+#[test]
+fn a_gap_that_never_closes_is_told() {
+    let ran = |gap: f64, geometry: &str| {
+        let text = format!(
+            r#"
+igimp = 1
+[case]
+title = "a plate above a slab"
+gravity = "0 m/s2"
+[grid]
+cell = "0.5 m"
+domain = {{ x = ["0 m", "6 m"], y = ["0 m", "6 m"] }}
+[materials.slab]
+model = "elastic"
+unit_weight = "20 kN/m3"
+young = "100 MPa"
+poisson = 0.3
+[[bodies]]
+name = "slab"
+material = "slab"
+polygon = [["0 m", "0 m"], ["6 m", "0 m"], ["6 m", "3 m"], ["0 m", "3 m"]]
+[boundaries]
+bottom = "fixed"
+[[rigid]]
+name = "plate"
+type = "rectangle"
+from = ["2 m", "{base} m"]
+to = ["4 m", "5 m"]
+interface = "smooth"
+rounding = 0
+[[stages]]
+name = "press"
+type = "rigid"
+bodies = [{{ body = "plate", y = "-{way} m" }}]
+steps = 5
+geometry = "{geometry}"
+{curve}
+[output]
+report = false
+figures = []
+"#,
+            base = 3.0 + gap,
+            way = gap + 0.005,
+            curve = curve("plate.resistance"),
+        );
+        let file = CaseFile::parse("plate.toml", &text, &[]).unwrap();
+        let run = in_memory(file.case()).unwrap();
+        assert!(run.failure.is_none(), "{:?}", run.failure);
+        let force = ends(&run, "plate resistance")[1];
+        (force, run.summary.warnings.join("\n"))
+    };
+    let (force, told) = ran(0.2, "given");
+    assert!(force.abs() < 1e-6, "{force}");
+    assert!(
+        told.contains("\"plate\" stands 0.2 m off all soil"),
+        "{told}"
+    );
+    let (force, told) = ran(0.2, "moving");
+    assert!(
+        force > 1e5 && !told.contains("off all soil"),
+        "{force} {told}"
+    );
+    let (force, told) = ran(0.04, "given");
+    assert!(
+        force > 1e5 && !told.contains("off all soil"),
+        "{force} {told}"
+    );
+}
+
 /// GOAL: soil that went too far into a body ends the run with what may help.
 #[test]
 fn too_deep_a_penetration_ends_the_run() {

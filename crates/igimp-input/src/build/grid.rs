@@ -420,6 +420,7 @@ pub(super) fn method(own: &keys::Method) -> Option<Method> {
             keys::DomainUpdate::DiagonalF => DomainUpdate::DiagonalF,
             keys::DomainUpdate::Stretch => DomainUpdate::DiagonalU,
             keys::DomainUpdate::RootJ => DomainUpdate::RootJ,
+            keys::DomainUpdate::Moments => DomainUpdate::Moments,
         },
         small_cuts: SmallCuts {
             below: **cuts.below.as_ref()?,

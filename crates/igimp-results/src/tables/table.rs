@@ -43,6 +43,21 @@ impl Table {
         self.rows.push(row);
     }
 
+    /// The table with the digits that its file holds. Pictures are drawn from it: a run that is taken up reads the rows before, and
+    /// draws the same.
+    pub fn as_written(&self) -> Self {
+        let digits =
+            |(column, value): (&String, &f64)| number(column, *value).parse().unwrap_or(*value);
+        let rows = self.rows.iter();
+        Self {
+            name: self.name.clone(),
+            header: self.header.clone(),
+            rows: rows
+                .map(|row| std::iter::zip(&self.header, row).map(digits).collect())
+                .collect(),
+        }
+    }
+
     /// Two columns as points of a curve.
     pub fn points(&self, x: usize, y: usize) -> Vec<[f64; 2]> {
         self.rows.iter().map(|row| [row[x], row[y]]).collect()

@@ -122,6 +122,7 @@ choices! {
     DiagonalF "diagonal-f", "diagonal of the deformation gradient F";
     Stretch "stretch", "diagonal of the stretch U, free of rotation";
     RootJ "root-j", "square root of det F";
+    Moments "moments", "second moments of the deformed domain, as in run-outs and in motion";
 }
 
 table! {

@@ -206,7 +206,6 @@ impl<const D: usize> Inertia<D> {
             acceleration: Vec::with_capacity(u.len()),
             before: self.velocity.clone(),
             keeps_rest: self.step.scheme == TimeScheme::Newmark,
-            carries_acceleration: self.step.asks_for_acceleration(),
         };
         for (u, (before, acceleration)) in std::iter::zip(
             &*centred,
@@ -414,8 +413,6 @@ pub struct Motion<const D: usize> {
     pub acceleration: Vec<[f64; D]>,
     /// Whether a particle keeps the part of its velocity that the grid does not carry.
     pub keeps_rest: bool,
-    /// Whether particles carry accelerations on to the next step.
-    pub carries_acceleration: bool,
 }
 
 impl<const D: usize> Motion<D> {

@@ -17,6 +17,10 @@ const LEAST_HEIGHT: f64 = 0.5;
 /// within the body, and the way back could lead through its other side.
 const MOST_DEPTH: f64 = 1.0;
 
+/// Soil that a body did not see as a step of time began comes no nearer than this in it, in half-lengths as seeded \[-\]: nearer
+/// its domain would lie within the body before contact has acted.
+const UNSEEN_HEIGHT: f64 = 1.0;
+
 /// In a notch, or between two bodies, the way off one side leads to another: the sides are looked at so often.
 const MOST_PASSES: usize = 20;
 
@@ -98,9 +102,9 @@ pub(crate) fn push_out<const D: usize>(
         for (extent, old) in extents.iter().zip(before) {
             let from = old.pose.into_body(&particles.x[particle]);
             let depth = deepest(extent, &from, &x, half);
-            let is_close = takes_time && depth > -LEAST_HEIGHT * half;
+            let is_close = takes_time && depth > -UNSEEN_HEIGHT * half;
             let most = if is_close && !is_seen(old, particles, particle) {
-                -LEAST_HEIGHT
+                -UNSEEN_HEIGHT
             } else {
                 MOST_DEPTH
             };
@@ -158,7 +162,7 @@ fn deepest<const D: usize>(
     half: f64,
 ) -> f64 {
     let to = extent.body.pose.into_body(x);
-    if !extent.may_reach(from, &to, LEAST_HEIGHT * half) {
+    if !extent.may_reach(from, &to, UNSEEN_HEIGHT * half) {
         return f64::NEG_INFINITY;
     }
     let way = minus(&to, from);

@@ -160,7 +160,9 @@ impl<'a, const D: usize> Contact<'a, D> {
 
     /// How far soil came near in a step by nodal displacements `u` \[length\] where a gap closed, at most, in cells \[-\].
     pub(crate) fn closing(&self, u: &[[f64; D]]) -> f64 {
-        let closes = |row: &&Row<D>| row.gap > 0.0 && row.gap_at(u) < 0.0;
+        // Soil that the body did not see before may overlap it already: its gap begins at zero.
+        let was_open = |row: &&Row<D>| row.gap > 0.0 || row.before.area == 0.0;
+        let closes = |row: &&Row<D>| was_open(row) && row.gap_at(u) < 0.0;
         let ways = self.rows.iter().filter(closes);
         ways.map(|row| (row.gap - row.gap_at(u)) / row.cell)
             .fold(0.0, f64::max)

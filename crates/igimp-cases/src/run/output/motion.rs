@@ -53,7 +53,11 @@ impl<const D: usize> Output<D> {
         records: &Records,
     ) -> Result<Vec<FigureNote>, CaseError> {
         let root = self.folder.root();
-        Ok(pictures::energy_pictures(root, case, &records.energy)?)
+        Ok(pictures::energy_pictures(
+            root,
+            case,
+            &records.energy.as_written(),
+        )?)
     }
 }
 

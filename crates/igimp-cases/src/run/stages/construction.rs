@@ -122,7 +122,10 @@ fn drain_as<const D: usize>(
         let given = water.map_or(0.0, |water| {
             let site = PoreSite {
                 law,
-                ..state.body.particles.pore_site(particle)
+                ..state
+                    .body
+                    .particles
+                    .pore_site(particle, model.case.method.section)
             };
             state.controls.gravity * water.at(site).pressure
         });

@@ -55,7 +55,10 @@ pub(crate) fn level_ground<const D: usize>(
             });
         };
         if let Some(water) = &water {
-            let site = state.body.particles.pore_site(particle);
+            let site = state
+                .body
+                .particles
+                .pore_site(particle, model.case.method.section);
             // At full gravity, as the stress.
             fields.pore_pressure[particle] = water.at(site).pressure;
         }

@@ -1,5 +1,6 @@
 //! Rigid bodies at the beginning of a stage that moves them.
 
+use igimp_assembly::Geometry;
 use igimp_model::{RigidDrive, RigidMove};
 use igimp_text::short;
 
@@ -8,11 +9,12 @@ use crate::run::rigid::{cell_near, gap_below, made};
 use crate::run::{Model, State};
 
 /// Prepares a state for a stage that moves rigid bodies: those that are not there are placed, and what
-/// held a component hands over to the force that will drive it. Tells of bodies that were shifted.
+/// held a component hands over to the force that will drive it. Tells of bodies that were shifted, and of those that soil is never near.
 pub(crate) fn begin<const D: usize>(
     model: &Model<'_, D>,
     state: &mut State<D>,
     moves: &[RigidMove],
+    geometry: Geometry,
 ) -> Result<Vec<String>, CaseError> {
     let mut told = Vec::new();
     for own in moves {
@@ -30,8 +32,46 @@ pub(crate) fn begin<const D: usize>(
             }
         }
     }
+    if geometry == Geometry::Given {
+        told.extend(
+            moves
+                .iter()
+                .filter_map(|own| out_of_reach(model, state, own.body)),
+        );
+    }
     Ok(told)
 }
+
+/// What is said of a body that touches no soil as a geometry is drawn that stays as it is: the gap never closes.
+fn out_of_reach<const D: usize>(
+    model: &Model<'_, D>,
+    state: &State<D>,
+    index: usize,
+) -> Option<String> {
+    let part = &model.case.rigid[index];
+    let slot = state.controls.placed().position(|own| own == index)?;
+    let (body, particles) = (&state.body.rigid[slot], &state.body.particles);
+    // From the nearest place of the body to the domain.
+    let gap = |(x, half): (&[f64; D], &[f64; D])| {
+        let (distance, normal) = body.nearest(x);
+        let apart = std::iter::zip(half, normal)
+            .map(|(half, normal)| ((distance * normal).abs() - half).max(0.0));
+        apart.map(|apart| apart * apart).sum::<f64>().sqrt()
+    };
+    let soil = std::iter::zip(&particles.x, &particles.half_length);
+    let nearest = soil.map(gap).fold(f64::INFINITY, f64::min);
+    (nearest > TOUCHES * cell_near(model.case, part)).then(|| {
+        format!(
+            "the rigid body \"{}\" stands {} m off all soil, and on a given geometry a gap stays as it is drawn: nothing will touch it; \
+             let the body begin at the soil, or write geometry = \"moving\"",
+            part.name,
+            short(nearest)
+        )
+    })
+}
+
+/// On a given geometry soil within this share of a cell touches a body from the start \[-\].
+const TOUCHES: f64 = 0.1;
 
 /// Puts a rigid body where it starts, or by as much lower as the soil beneath it settled.
 pub(crate) fn place<const D: usize>(

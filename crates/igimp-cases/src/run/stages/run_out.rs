@@ -10,7 +10,7 @@
 
 use std::cell::Cell;
 
-use igimp_assembly::{Geometry, Locking, Method};
+use igimp_assembly::{DomainUpdate, Geometry, Locking, Method};
 use igimp_model::{Reduction, RunOut};
 use igimp_results::ending::EndReason;
 use igimp_results::fields::length;
@@ -133,12 +133,16 @@ fn largest_motion<const D: usize>(u: &[[f64; D]], nodes: usize) -> f64 {
     lengths.fold(0.0, f64::max)
 }
 
-/// The method of a body that flows: on its way cells are filled in part, and modes that a shared strain
-/// does not see add up from step to step. There B-bar serves better.
+/// The method of a body that flows. On its way cells are filled in part, and modes that a shared strain does not see add up from
+/// step to step: there B-bar serves better. Soil is sheared many times its height over a floor, and domains by U would grow across
+/// the shear: they have the second moments of the deformed ones (theory, eq. 29).
 pub(crate) fn flowing<const D: usize>(model: &Model<'_, D>) -> Method {
     let mut method = model.method(Geometry::Moving);
     if method.locking == Locking::SharedStrain {
         method.locking = Locking::BBar;
+    }
+    if method.domain_update == DomainUpdate::DiagonalU {
+        method.domain_update = DomainUpdate::Moments;
     }
     method
 }
