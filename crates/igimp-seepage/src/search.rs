@@ -9,7 +9,7 @@ use crate::curve::{Curve, Relative};
 use crate::error::SeepageError;
 use crate::ground::{Bodies, SeepageBody, cells};
 use crate::storage::{Moved, Storing};
-use crate::system::{Flows, System, largest};
+use crate::system::{Flows, System};
 
 /// Imbalance of a node over the largest flow at which heads are found \[-\].
 pub(crate) const TOLERANCE: f64 = 1e-12;
@@ -25,6 +25,8 @@ const INSERTED: usize = 12;
 const CORRECTIONS: usize = 30;
 /// Corrections in time that are taken whole.
 const FREE: usize = 15;
+/// Digits of the flow between two nodes that their heads do not resolve \[-\].
+const ROUND_OFF: f64 = f64::EPSILON;
 /// Halvings of a correction.
 const HALVINGS: usize = 8;
 
@@ -81,6 +83,8 @@ pub(crate) struct Search<'a, const D: usize> {
 pub(crate) struct Balanced {
     pub(crate) residual: Vec<f64>,
     pub(crate) flows: Flows,
+    /// Largest imbalance of a node beyond the round-off of its flows \[m^D/s\].
+    beyond: f64,
     /// The flow that an imbalance is held against \[m^D/s\].
     pub(crate) scale: f64,
     moved: Moved,
@@ -164,12 +168,14 @@ impl<'a, const D: usize> Search<'a, D> {
         let matrix = &mut self.matrix;
         let (mut residual, flows) =
             (self.system).assemble(&self.heads, relative, Some(&mut *matrix));
+        let round_off = round_off(matrix, &self.heads);
         let moved = storing.map_or_else(Moved::default, |storing| {
             let at = (&self.heads[..], relative);
             storing.add(&self.system, at, &mut residual, Some(matrix))
         });
         Balanced {
             scale: self.system.scale(&self.heads, &flows, moved.rate),
+            beyond: largest_beyond(&residual, &round_off),
             moved,
             residual,
             flows,
@@ -223,7 +229,7 @@ impl<'a, const D: usize> Search<'a, D> {
         let off = |own: &Balanced| {
             let sum = own.residual.iter().sum::<f64>().abs();
             let sum = storing.map_or(0.0, |_| ALL_OVER_ONE * (sum - own.moved.all_round_off));
-            (largest(&own.residual) - own.moved.round_off).max(sum) / own.scale
+            (own.beyond - own.moved.round_off).max(sum) / own.scale
         };
         let mut found = self.linearised(relative, storing);
         for correction in 0..CORRECTIONS {
@@ -245,6 +251,32 @@ impl<'a, const D: usize> Search<'a, D> {
             residual: off(&found),
         })
     }
+}
+
+/// Round-off of the flow out of each node \[m^D/s\], from the tangent of that flow and the heads \[m\].
+fn round_off(matrix: &TangentMatrix, heads: &[f64]) -> Vec<f64> {
+    let pattern = &matrix.pattern;
+    let mut found = vec![0.0; heads.len()];
+    for (column, head) in heads.iter().enumerate() {
+        let values = &matrix.values[pattern.first_value[column]..];
+        for (&row, value) in std::iter::zip(pattern.coupled_to(column), values) {
+            found[row as usize] += ROUND_OFF * (value * head).abs();
+        }
+    }
+    found
+}
+
+/// The largest of some imbalances without their signs, each less its round-off; infinite with one that is no number.
+fn largest_beyond(imbalances: &[f64], round_off: &[f64]) -> f64 {
+    let pairs = std::iter::zip(imbalances, round_off);
+    pairs.fold(0.0, |most, (own, below)| {
+        let beyond = own.abs() - below;
+        if beyond.is_nan() {
+            f64::INFINITY
+        } else {
+            beyond.max(most)
+        }
+    })
 }
 
 fn norm(values: &[f64]) -> f64 {

@@ -90,6 +90,34 @@ fn a_well_with_a_free_surface() {
     }
 }
 
+/// GOAL: ground around an axis in which water rests, or hardly flows, is solved however far out it is and whatever its cells: its
+/// heads differ by little more than their round-off. ORACLE: at rest the head of both faces; else Q = π k (h₂² − h₁²)/ln(r₂/r₁).
+#[test]
+fn water_that_hardly_flows_far_from_the_axis() {
+    let (width, height, level): (f64, f64, f64) = (8.0, 3.0, 2.1);
+    for (inner, band) in [(0.5, 1e-2), (50.0, 1e-3), (2e3, 1e-3), (1e5, 1e-3)] {
+        for (cell, count) in [(0.5, [16, 6]), (0.25, [32, 12]), (0.125, [64, 24])] {
+            let grid = grid([inner, 0.0], cell, count);
+            let at = |far: f64| {
+                let (ground, conditions) =
+                    around([inner, inner + width], height, [level, level + far]);
+                flow(&grid, &[ground], &conditions).unwrap()
+            };
+            let rest = at(0.0);
+            for k in 0..8 {
+                let head = rest.head(&[inner + f64::from(k), 0.7]);
+                assert!((head - level).abs() < 1e-12, "{head}");
+            }
+            for rise in [1e-4, 1e-8] {
+                let exact = PI * 1e-5 * rise * (2.0 * level + rise) / (width / inner).ln_1p();
+                let error = at(rise).outflow / exact - 1.0;
+                println!("from {inner} m, cells of {cell} m, {rise:.0e} m: Q {error:+.2e}");
+                assert!(error.abs() < band, "{error}");
+            }
+        }
+    }
+}
+
 /// GOAL: water that the ground gives back to a drain in time.
 /// ORACLE: the series of radial flow to a drain (Barron 1948) at r₂/r₁ = 10, computed apart from this program.
 #[test]
