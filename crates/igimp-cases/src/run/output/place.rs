@@ -10,15 +10,27 @@ const MARGIN: f64 = 0.25;
 /// The farthest place from a particle at which its value is carried on, over the half-lengths of its domain \[-\].
 const FARTHEST: f64 = 2.0;
 
+/// Particles are as near to a place as another one up to this share of the half-lengths of its domain \[-\].
+const TIED: f64 = 1e-9;
+
 /// Least change of a field for a unit of length that the particles can tell, as a share of their spread \[-\].
 const FLAT: f64 = 1e-12;
 
-/// A place in a body: its nearest particle, and those of the same soil around that. Directions that a plane problem does not
-/// have are zero.
+/// A place in a body: the particles nearest to it.
 #[derive(Clone, Debug)]
 pub(crate) struct Place {
     /// The number of the nearest particle.
     pub(crate) nearest: usize,
+    /// That particle, and those of the same soil that are as near.
+    anchors: Vec<Anchor>,
+}
+
+/// A particle whose value is carried on to a place, and those of the same soil around it. Directions that a plane problem does
+/// not have are zero.
+#[derive(Clone, Debug)]
+struct Anchor {
+    /// The number of the particle.
+    number: usize,
     /// From that particle to the place \[m\].
     offset: [f64; 3],
     /// Numbers of those around it, and the way to them \[m\].
@@ -41,14 +53,43 @@ impl Place {
         particle: usize,
         point: &[f64; D],
     ) -> Self {
-        let (x, half_length) = (&particles.x, &particles.half_length);
-        let way = |to: &[f64; D]| {
-            let mut way = [0.0; 3];
-            for axis in 0..D {
-                way[axis] = to[axis] - x[particle][axis];
-            }
-            way
+        let distance = |other: usize| {
+            let way = way(&particles.x[other], point);
+            way.iter().map(|own| own * own).sum::<f64>().sqrt()
         };
+        let own = distance(particle);
+        let half_length = particles.half_length[particle].iter().copied();
+        let apart = TIED * half_length.fold(0.0, f64::max);
+        let is_tied = |&other: &usize| {
+            particles.law[other] == particles.law[particle]
+                && (distance(other) - own).abs() <= apart
+        };
+        Self {
+            nearest: particles.number[particle],
+            anchors: (0..particles.len())
+                .filter(is_tied)
+                .map(|tied| Anchor::of(particles, tied, point))
+                .collect(),
+        }
+    }
+
+    /// The value of a field of particles at the place, the mean of those that its nearest particles tell; not a number where none
+    /// of them is there.
+    pub(crate) fn value<const D: usize>(
+        &self,
+        particles: &Particles<D>,
+        field: impl Fn(usize) -> f64,
+    ) -> f64 {
+        let values = self.anchors.iter();
+        let values = values.filter_map(|anchor| anchor.value(particles, &field));
+        let (sum, count) = values.fold((0.0, 0.0), |(sum, count), own| (sum + own, count + 1.0));
+        sum / count
+    }
+}
+
+impl Anchor {
+    fn of<const D: usize>(particles: &Particles<D>, particle: usize, point: &[f64; D]) -> Self {
+        let (x, half_length) = (&particles.x, &particles.half_length);
         let is_around = |other: usize| {
             other != particle
                 && particles.law[other] == particles.law[particle]
@@ -57,51 +98,68 @@ impl Place {
                     (x[other][axis] - x[particle][axis]).abs() <= (1.0 + MARGIN) * reach
                 })
         };
-        let mut offset = way(point);
+        let mut offset = way(&x[particle], point);
         for axis in 0..D {
             let farthest = FARTHEST * half_length[particle][axis];
             offset[axis] = offset[axis].clamp(-farthest, farthest);
         }
         Self {
-            nearest: particles.number[particle],
+            number: particles.number[particle],
             offset,
             around: (0..particles.len())
                 .filter(|&other| is_around(other))
-                .map(|other| (particles.number[other], way(&x[other])))
+                .map(|other| (particles.number[other], way(&x[particle], &x[other])))
                 .collect(),
         }
     }
 
-    /// The value of a field of particles at the place; not a number where its particle is not there.
-    pub(crate) fn value<const D: usize>(
+    /// The value that the particle tells of a field at the place; none where it is not there.
+    fn value<const D: usize>(
         &self,
         particles: &Particles<D>,
         field: impl Fn(usize) -> f64,
-    ) -> f64 {
-        let Some(particle) = particles.place_of(self.nearest) else {
-            return f64::NAN;
-        };
-        let own = field(particle);
+    ) -> Option<f64> {
+        let own = field(particles.place_of(self.number)?);
         if self.offset.iter().all(|&offset| offset == 0.0) {
-            return own;
+            return Some(own);
         }
         let changes = self.around.iter().filter_map(|(number, way)| {
             let change = field(particles.place_of(*number)?) - own;
             change.is_finite().then_some((*way, change))
         });
-        own + along_plane(&self.offset, &changes.collect::<Vec<_>>())
+        Some(own + along_plane(&self.offset, &changes.collect::<Vec<_>>()))
     }
 }
 
+/// The way from a point to another one \[m\].
+fn way<const D: usize>(from: &[f64; D], to: &[f64; D]) -> [f64; 3] {
+    let mut way = [0.0; 3];
+    for axis in 0..D {
+        way[axis] = to[axis] - from[axis];
+    }
+    way
+}
+
 /// How much a field changes on the way to an offset \[m\], from its changes on the ways to others: along the plane with the
-/// least squares, and by no more than on any of the ways. Directions that no way has have no slope.
+/// least squares through all of them and the start, and by no more than on any of the ways. Directions that no way has have
+/// no slope.
 fn along_plane(offset: &[f64; 3], changes: &[([f64; 3], f64)]) -> f64 {
-    let (mut squares, mut products) = ([[0.0; 3]; 3], [0.0; 3]);
+    // The start is one of the points, without way and change.
+    let count = changes.len() as f64 + 1.0;
+    let (mut middle, mut mean) = ([0.0; 3], 0.0);
     for (way, change) in changes {
+        mean += change / count;
+        for axis in 0..3 {
+            middle[axis] += way[axis] / count;
+        }
+    }
+    let (mut squares, mut products) = ([[0.0; 3]; 3], [0.0; 3]);
+    for (way, change) in changes.iter().chain(&[([0.0; 3], 0.0)]) {
+        let from_middle: [f64; 3] = std::array::from_fn(|axis| way[axis] - middle[axis]);
         for row in 0..3 {
-            products[row] += way[row] * change;
+            products[row] += from_middle[row] * (change - mean);
             for column in 0..3 {
-                squares[row][column] += way[row] * way[column];
+                squares[row][column] += from_middle[row] * from_middle[column];
             }
         }
     }
@@ -197,6 +255,41 @@ mod tests {
         let at_particle = Place::of(&particles, &[1.375, 0.875], 1.0).unwrap();
         assert!(at_particle.value(&particles, jump).abs() < 1e-15);
         assert!(Place::of(&particles, &[9.0, 0.9], 1.0).is_none());
+    }
+
+    /// GOAL: at walls, where particles have others on one side only, stress that is the same all over a cell is not tilted.
+    /// ORACLE: a field of height alone is the same at every place of one height.
+    #[test]
+    fn neighbours_on_one_side_do_not_tilt_a_field() {
+        let particles = body();
+        let by_cell = |p: usize| -10.0 * (particles.x[p][1] / 0.5).floor();
+        for y in [0.0, 0.3, 0.625, 0.9, 1.0, 2.0] {
+            let values = [0.0, 0.1, 0.125, 0.5, 1.3, 2.9, 3.0].map(|x| {
+                let place = Place::of(&particles, &[x, y], 1.0).unwrap();
+                place.value(&particles, by_cell)
+            });
+            let apart = values.map(|own| (own - values[4]).abs());
+            assert!(apart.iter().all(|own| *own < 1e-9), "{y}: {values:?}");
+        }
+    }
+
+    /// GOAL: a place that is as near to several particles takes no side. ORACLE: the mirror image of body and field.
+    #[test]
+    fn a_place_between_particles_takes_no_side() {
+        let particles = body();
+        let field = |p: usize| (3.0 * particles.x[p][0]).exp() * particles.x[p][1];
+        let mirrored = |p: usize| (3.0 * (3.0 - particles.x[p][0])).exp() * particles.x[p][1];
+        for point in [[0.75, 1.0], [1.5, 0.3], [1.0, 0.0], [0.1, 0.5]] {
+            let value = |x: f64, field: &dyn Fn(usize) -> f64| {
+                let place = Place::of(&particles, &[x, point[1]], 1.0).unwrap();
+                place.value(&particles, field)
+            };
+            let [own, image] = [value(point[0], &field), value(3.0 - point[0], &mirrored)];
+            assert!(
+                (own / image - 1.0).abs() < 1e-12,
+                "{point:?}: {own} {image}"
+            );
+        }
     }
 
     /// GOAL: soil of another law across a line does not count, and a row of particles knows its own direction.
