@@ -124,10 +124,7 @@ impl<const D: usize> System<'_, D> {
         energy.elastic_gain = energy.elastic - sum(|own| own.elastic_before);
         // Of particles, and of the grid that takes their motion over for the step.
         let Motion { before, after, .. } = &motion;
-        let gained: Vec<[f64; D]> = std::iter::zip(after, before)
-            .map(|(after, before)| std::array::from_fn(|a| after[a] - before[a]))
-            .collect();
-        let gained = inertia.times(&gained);
+        let gained = inertia.gained(&motion, u);
         let duration = inertia.step().duration;
         let centred = inertia.of_centres(u);
         let accelerating = product(&gained, &centred) / duration;
@@ -137,21 +134,25 @@ impl<const D: usize> System<'_, D> {
             - (energy.elastic_gain + energy.plastic + energy.water)
             - (contact + reinforcement + energy.damping + energy.boundaries);
         let of_grid = |v: &[[f64; D]]| 0.5 * product(&inertia.times(v), v);
+        // What the turn of bodies makes of their energy.
+        let turned = |a: &[[f64; D]], b: &[[f64; D]]| 0.5 * inertia.turned_product([a, b], u);
         let of_bodies = |v: &[[f64; D]]| {
             let mut v = v.to_vec();
             v[..self.conditions().grid.node_count()].fill([0.0; D]);
             of_grid(&v)
         };
         let kinetic_before = sum(|own| own.kinetic_before) + of_bodies(before);
-        energy.kinetic += of_bodies(after);
+        energy.kinetic += of_bodies(after) + turned(after, after);
         energy.kinetic_gain = energy.kinetic - kinetic_before;
-        energy.map = kinetic_before - of_grid(before) - (energy.kinetic - of_grid(after));
+        energy.map = kinetic_before
+            - of_grid(before)
+            - (energy.kinetic - of_grid(after) - turned(after, after));
         let mean: Vec<[f64; D]> = std::iter::zip(&*centred, std::iter::zip(after, before))
             .map(|(u, (after, before))| {
                 std::array::from_fn(|a| u[a] / duration - 0.5 * (after[a] + before[a]))
             })
             .collect();
-        energy.scheme = product(&gained, &mean);
+        energy.scheme = product(&gained, &mean) + turned(before, after);
         Ok(Some(energy))
     }
 

@@ -136,7 +136,7 @@ impl<const D: usize> Arm<D> {
 }
 
 /// The vector product of a rotation, whose first component counts in the plane, and a vector.
-fn cross<const D: usize>(rotation: &[f64; 3], v: &[f64; D]) -> [f64; D] {
+pub(crate) fn cross<const D: usize>(rotation: &[f64; 3], v: &[f64; D]) -> [f64; D] {
     std::array::from_fn(|a| match D {
         2 if a == 0 => -rotation[0] * v[1],
         2 => rotation[0] * v[0],

@@ -91,22 +91,6 @@ impl<const D: usize> RigidBody<D> {
         [*vector, turned]
     }
 
-    /// The moment −ω × I ω of a turning body at the start of a step, as a force at the distance of its size \[force\]; none in the
-    /// plane.
-    pub fn gyroscopic_force(&self) -> [f64; D] {
-        let mut force = [0.0; D];
-        if D == 3 {
-            let (spin, moments) = (self.motion.spin, self.moments_in_space());
-            let momentum: [f64; 3] =
-                std::array::from_fn(|a| (0..3).map(|b| moments[a][b] * spin[b]).sum());
-            for (a, own) in force.iter_mut().enumerate() {
-                let (b, c) = ((a + 1) % 3, (a + 2) % 3);
-                *own = (spin[c] * momentum[b] - spin[b] * momentum[c]) / self.surface.size();
-            }
-        }
-        force
-    }
-
     /// Takes all motion from the body, as before a step in statics.
     pub fn rest(&mut self) {
         self.motion = RigidInertia {

@@ -4,6 +4,7 @@
 mod arm;
 mod face;
 mod face_clipping;
+mod gyration;
 mod inertia;
 mod interface;
 mod pose;
@@ -16,6 +17,7 @@ use igimp_surface::Surface;
 pub use arm::Arm;
 pub use face::{Face, FacePoint};
 pub use face_clipping::{Piece, pieces, tents_within};
+pub use gyration::Gyration;
 pub use inertia::RigidInertia;
 pub use interface::{Interface, Penalty, Shear, Tension};
 pub use pose::Pose;

@@ -97,7 +97,7 @@ impl<const D: usize> Inertia<D> {
     }
 
     /// The components that are given of what a node stands for.
-    fn given_of(&self, node: usize) -> impl Iterator<Item = usize> + use<D> {
+    pub(super) fn given_of(&self, node: usize) -> impl Iterator<Item = usize> + use<D> {
         let is_given = self.is_given[node - self.mass.diagonal.len()];
         (0..D).filter(move |&axis| is_given[axis])
     }
@@ -179,9 +179,13 @@ impl<const D: usize> Inertia<D> {
         let pulled = arm.map_or([0.0; D], |arm| {
             arm.pulled(&arm.at_start(), &self.velocity[node + 1])
         });
+        let spinning = self.gyrations[body].as_ref().map_or([0.0; D], |own| {
+            own.rate(&of_turn, [&self.velocity[node + 1], &[0.0; D]])
+        });
         let driving = |row: usize| {
             let of_pull = |a: usize| mass(row, a) * pulled[a];
-            -force[node + row / D][row % D] - (0..D).map(of_pull).sum::<f64>()
+            let of_spin = if row < D { 0.0 } else { spinning[row - D] };
+            -force[node + row / D][row % D] - of_spin - (0..D).map(of_pull).sum::<f64>()
         };
         let len = free.len();
         let masses = DMatrix::from_fn(len, len, |row, column| mass(free[row], free[column]));
@@ -203,13 +207,19 @@ impl<const D: usize> Inertia<D> {
     pub(super) fn add_mass_of_bodies(
         &self,
         u: &[[f64; D]],
-        force: &[[f64; D]],
+        (motion, force): (&Motion<D>, &[[f64; D]]),
         blocks: &mut AddBlock<'_, D>,
     ) {
         let rate = self.mass_rate();
         for (node, mass) in self.of_bodies.iter().enumerate() {
+            let turning =
+                (node % NODES_PER_BODY == 1).then(|| self.gyrations[node / NODES_PER_BODY]);
             let node = self.mass.diagonal.len() + node;
-            blocks(node, node, &mass.map(|row| row.map(|own| rate * own)));
+            let block = turning.flatten().map_or_else(
+                || mass.map(|row| row.map(|own| rate * own)),
+                |own| self.slope_of_moments(&own, (node, u), motion),
+            );
+            blocks(node, node, &block);
         }
         for (node, arm) in self.with_arms() {
             let mass = self.of_bodies[node - self.mass.diagonal.len()][0][0];

@@ -7,9 +7,10 @@
 //! ```
 //!
 //! The particles are the quadrature of the mass, as they are of stress: momentum and energy of the map are exact. What rigid bodies add
-//! is in [`bodies`].
+//! is in [`bodies`], what their moments of inertia add as they turn in [`turning`].
 
 mod bodies;
+mod turning;
 
 use std::sync::OnceLock;
 
@@ -24,7 +25,7 @@ use crate::error::AssemblyError;
 use crate::method::Geometry;
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
-use igimp_rigid::{Arm, NODES_PER_BODY, RigidBody};
+use igimp_rigid::{Arm, Gyration, NODES_PER_BODY, RigidBody};
 
 /// Inertia of one step.
 #[derive(Debug)]
@@ -38,6 +39,8 @@ pub(crate) struct Inertia<const D: usize> {
     /// By rigid body whose centre of mass is not its reference point: from that to the centre. The motion of its nodes here is that
     /// of the centre.
     arms: Vec<Option<Arm<D>>>,
+    /// By rigid body: its moments of inertia, where they turn with it.
+    gyrations: Vec<Option<Gyration<D>>>,
     /// By node that stands for the motion of a rigid body: whether a component is given, and moves evenly.
     is_given: Vec<[bool; D]>,
     /// At the start, by node \[length/time\].
@@ -130,6 +133,9 @@ impl<const D: usize> Inertia<D> {
             of_bodies: bodies.iter().flat_map(RigidBody::nodal_mass).collect(),
             is_given: (nodes..velocity.len())
                 .map(|node| std::array::from_fn(|axis| unknowns.index(node, axis).is_none()))
+                .collect(),
+            gyrations: (bodies.iter())
+                .map(|body| body.gyration().filter(|_| turns))
                 .collect(),
             arms,
             step,
@@ -269,7 +275,7 @@ impl<const D: usize> Inertia<D> {
             }
         }
         if let Some(blocks) = blocks {
-            self.add_mass_of_bodies(u, &force, blocks);
+            self.add_mass_of_bodies(u, (&motion, &force), blocks);
         }
         squared.sqrt()
     }
@@ -286,7 +292,9 @@ impl<const D: usize> Inertia<D> {
             of_mass, of_force, ..
         } = self.step.scheme.weights();
         if of_mass == 0.0 && of_force == 0.0 {
-            return self.about_reference(self.times(&motion.acceleration), Some(u));
+            let mut force = self.times(&motion.acceleration);
+            self.turn_moments(u, (motion, &motion.acceleration), &mut force);
+            return self.about_reference(force, Some(u));
         }
         let mut between = motion.acceleration.clone();
         for (own, before) in between.iter_mut().zip(&self.acceleration) {
@@ -295,7 +303,9 @@ impl<const D: usize> Inertia<D> {
             });
         }
         self.accelerate_given(u, motion, &mut between);
-        let mut force = self.about_reference(self.times(&between), Some(u));
+        let mut force = self.times(&between);
+        self.turn_moments(u, (motion, &between), &mut force);
+        let mut force = self.about_reference(force, Some(u));
         add_scaled(
             &mut force,
             of_force / (1.0 - of_force),

@@ -175,14 +175,6 @@ impl<'a, const D: usize> System<'a, D> {
         )?;
         self.act_by_ground(&mut inertia);
         let damping = self.stiffness_damping()?;
-        let first = self.conditions.grid.node_count();
-        for (index, body) in self.beside.contact.bodies().iter().enumerate() {
-            // About its centre of mass.
-            let gyroscopic = body.gyroscopic_force();
-            for (axis, force) in gyroscopic.into_iter().enumerate() {
-                self.loads.f_ext[first + NODES_PER_BODY * index + 1][axis] += force;
-            }
-        }
         if time.asks_for_force_at_start() {
             let still = vec![[0.0; D]; self.node_count()];
             let mut force = self.evaluate(&still, TangentKind::Elastic)?.f_int;
@@ -198,6 +190,7 @@ impl<'a, const D: usize> System<'a, D> {
         self.beside.walls.set_in_motion(&inertia);
         self.damping = damping;
         self.round_off += inertia.round_off();
+        self.symmetric &= inertia.is_symmetric();
         self.inertia = Some(inertia);
         Ok(self)
     }
@@ -214,7 +207,9 @@ impl<'a, const D: usize> System<'a, D> {
     ) -> Result<(), AssemblyError> {
         conditions.validate(self.particles)?;
         self.symmetric_particles = are_symmetric(self.particles, &conditions);
-        self.symmetric = self.symmetric_particles && self.beside.are_symmetric();
+        self.symmetric = self.symmetric_particles
+            && self.beside.are_symmetric()
+            && (self.inertia.as_ref()).is_none_or(Inertia::is_symmetric);
         self.beside.reinforcement.control(&conditions.reinforcement);
         let (particles, stencils) = (self.particles, self.stencils);
         let bodies = self.beside.contact.bodies();
