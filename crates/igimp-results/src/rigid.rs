@@ -17,7 +17,7 @@ pub struct Standing<'a, const D: usize> {
     pub body: &'a RigidBody<D>,
 }
 
-/// Columns of a table of contact. Shear is that on the soil along the surface, anticlockwise about the body.
+/// Columns of a table of contact, of which one has a unit of its own ([`CONTACT`]). Shear is that on the soil along the surface, anticlockwise about the body.
 const HEADER: [&str; 10] = [
     "side",
     "distance_[m]",
@@ -26,10 +26,13 @@ const HEADER: [&str; 10] = [
     "pressure_[Pa]_compression_+",
     "shear_on_soil_[Pa]_anticlockwise_+",
     "gap_[m]",
-    "contact_[m]",
+    CONTACT[0],
     "closed_[-]",
     "slips_[-]",
 ];
+
+/// What soil covers: a length by the metre run, and the area of a whole body.
+const CONTACT: [&str; 2] = ["contact_[m]", "contact_[m2]"];
 
 /// A point of the outline of a body in space, with contact if it is a contact node.
 struct Place<'a> {
@@ -124,8 +127,12 @@ impl<'a> Standing<'a, 2> {
     }
 
     /// Contact at the nodes of its surface, side by side, as a table.
-    fn table_of_sides(&self, name: String) -> Table {
-        let mut table = Table::new(name, &HEADER);
+    fn table_of_sides(&self, name: String, is_whole: bool) -> Table {
+        let header = HEADER.map(|own| match own {
+            own if is_whole && own == CONTACT[0] => CONTACT[1],
+            own => own,
+        });
+        let mut table = Table::new(name, &header);
         for place in self.contact_nodes() {
             let Some(contact) = place.contact else {
                 continue;
@@ -156,7 +163,7 @@ const HEADER_IN_SPACE: [&str; 10] = [
     "pressure_[Pa]_compression_+",
     "shear_[Pa]",
     "gap_[m]",
-    "contact_[m2]",
+    CONTACT[1],
     "closed_[-]",
     "slips_[-]",
 ];
@@ -171,10 +178,10 @@ impl<'a, const D: usize> Standing<'a, D> {
         })
     }
 
-    /// Contact at the nodes of its surface, side by side, as a table.
-    pub fn table(&self, name: String) -> Table {
+    /// Contact at the nodes of its surface, side by side, as a table; of a `whole` body, not of a metre run.
+    pub fn table(&self, name: String, is_whole: bool) -> Table {
         if let Some(own) = self.in_plane() {
-            return own.table_of_sides(name);
+            return own.table_of_sides(name, is_whole);
         }
         let mut table = Table::new(name, &HEADER_IN_SPACE);
         let nodes = self.body.surface.knots();

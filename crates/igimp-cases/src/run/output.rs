@@ -347,7 +347,7 @@ impl<const D: usize> Output<D> {
             }
             let named = |name: &str| format!("{name}__{}", sections::stage_name(case, number));
             for body in &structures.rigid {
-                let table = body.table(named(&body.part.name));
+                let table = body.table(named(&body.part.name), case.is_whole());
                 table.write_csv(&self.folder.rigid())?;
             }
             for own in &structures.reinforcement {

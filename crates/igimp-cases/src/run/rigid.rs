@@ -120,6 +120,10 @@ pub(crate) fn tracks<const D: usize>(
                 (u[node + 1][k] / size, reactions[node + 1][k] * size)
             };
             track.displacement[k] += by;
+            // Around an axis there is a resultant along it, and no other.
+            if k != D - 1 && case.method.section.is_axisymmetric() {
+                continue;
+            }
             track.force[k] = own.loaded[k].unwrap_or(part.force_factor * reaction);
         }
         track.lowered = part.reference[D - 1] - body.pose.origin[D - 1];

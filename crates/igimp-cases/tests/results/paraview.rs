@@ -356,7 +356,12 @@ fn tractions_turn_with_the_body() {
             assert!((traction[3 * k + axis] - expected[axis]).abs() < 1e-9 * p);
         }
     }
-    let table = standing.table("plate__1-push".into());
+    let table = standing.table("plate__1-push".into(), false);
+    let whole = standing.table("plate__1-push".into(), true);
+    assert_eq!(
+        [&table, &whole].map(|own| own.header[7].as_str()),
+        ["contact_[m]", "contact_[m2]"]
+    );
     let along: Vec<f64> = table.rows.iter().take(2).map(|row| row[1]).collect();
     assert!(
         (along[0] - 0.1).abs() < 1e-12 && along[1] > along[0],

@@ -75,6 +75,63 @@ fn contact_along_the_sides_balances_the_force() {
     assert!((deepest[1] / around - 0.75).abs() < 0.1, "{deepest:?}");
 }
 
+/// A disc on ground around an axis, let go by its weight.
+const DISC: &str = r#"igimp = 1
+[case]
+title = "a disc on ground around an axis"
+analysis = "axisymmetric"
+[grid]
+cell = "0.5 m"
+domain = { x = ["0 m", "3 m"], y = ["0 m", "4 m"] }
+[materials.s]
+model = "elastic"
+unit_weight = "20 kN/m3"
+young = "100 MPa"
+poisson = 0.3
+[[bodies]]
+name = "ground"
+material = "s"
+polygon = [["0 m", "0 m"], ["3 m", "0 m"], ["3 m", "2 m"], ["0 m", "2 m"]]
+[[rigid]]
+name = "disc"
+type = "rectangle"
+from = ["0 m", "2 m"]
+to = ["1 m", "3 m"]
+interface = { friction = 0.4 }
+rounding = 0
+weight = "100 kN"
+[[stages]]
+name = "weight"
+type = "gravity"
+[[stages]]
+name = "seat"
+type = "rigid"
+bodies = [{ body = "disc", free = ["y"] }]
+[output]
+figures = []
+report = false
+"#;
+
+/// GOAL: around an axis contact is told by area, and the force on a body along the axis alone.
+/// ORACLE: the weight of the body, which the pressure on its base carries; all that points away from the axis sums to nothing.
+#[test]
+fn a_body_of_revolution_has_no_force_across_its_axis() {
+    let (folder, _) = with_report(("disc.toml", DISC), "rigid-of-revolution");
+    let (header, rows) = table(&folder.join("rigid/disc__2-seat.csv"));
+    assert_eq!(header[7], "contact_[m2]");
+    let base = rows.iter().filter(|row| row[0] < 1.5);
+    let carried: f64 = base.map(|row| row[4] * row[7]).sum();
+    assert!((carried / 100e3 - 1.0).abs() < 1e-6, "{carried}");
+    let (header, history) = table(&folder.join("rigid/disc.csv"));
+    let last = |name: &str| {
+        let column = header.iter().position(|own| own == name).unwrap();
+        history.last().unwrap()[column]
+    };
+    let across = [last("force_x_[N]"), last("moment_[N m]")];
+    assert!(across.iter().all(|own| own.abs() < 1e-15), "{across:?}");
+    assert!(last("force_y_[N]").abs() < 1e-6 * 100e3);
+}
+
 /// GOAL: bodies have frames beside those of the soil, at the same times.
 #[test]
 fn frames_show_the_bodies() {
