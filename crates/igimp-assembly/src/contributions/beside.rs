@@ -54,7 +54,7 @@ impl<'a, const D: usize> BesideParticles<'a, D> {
             ghost: ghost_penalty(grid, particles, stencils, young, penalty),
             drag: nodal_drag(grid, stencils, conditions.loads.drag),
             contact: Contact::find(bodies, particles, stencils, of_step, unknowns),
-            reinforcement: Members::find(members, stencils, conditions, method, unknowns)?,
+            reinforcement: Members::find(members, particles, stencils, of_step, unknowns)?,
             consolidation: Consolidation::find(
                 particles, bodies, stencils, of_step, unknowns, pores,
             )?,

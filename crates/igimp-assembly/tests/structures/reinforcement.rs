@@ -454,6 +454,35 @@ fn members_without_soil_are_named() {
     assert!(refused.is_err());
 }
 
+// GOAL: a member that soil has left is not held up by nodes that reach past the surface.
+// CASE: the end of a member above the body, whose domains reach to a height that their places tell.
+// ORACLE: half a cell from the nearest domain, less and more by a hundredth of it.
+#[test]
+fn soil_that_is_not_near_carries_nothing() {
+    let scene = scene::<2>();
+    let method = Method::igimp_bbar();
+    let stencils = Stencils::build(&scene.body, &method, &scene.conditions).unwrap();
+    let column = 3.0;
+    let tops = std::iter::zip(&scene.body.x, &scene.body.half_length);
+    let above = tops.filter(|(x, half)| (x[0] - column).abs() <= half[0] + 0.5);
+    let top = above.fold(0.0, |top: f64, (x, half)| top.max(x[1] + half[1]));
+    let cell = scene.grid.cell_at(&[column, top]).unwrap();
+    for (height, is_carried) in [(0.1, true), (0.49, true), (0.51, false), (0.9, false)] {
+        let mut member = scene.member.clone();
+        member.stations[9].points[0] = [column, top + height * scene.grid.cell_size(cell)[1]];
+        let members = [member];
+        let structures = Structures {
+            members: &members,
+            ..Structures::default()
+        };
+        let conditions = &scene.conditions;
+        let system =
+            System::with_structures(&scene.body, &structures, &stencils, conditions, &method);
+        let is_refused = matches!(system, Err(AssemblyError::UnsupportedReinforcement { .. }));
+        assert_eq!(is_refused, !is_carried, "{height}");
+    }
+}
+
 // GOAL: a station beneath a plate moves as the mean of its points, and its force spreads over them.
 // CASE: a member with a head of two points, and the same with four, in a body that all moves, and that stretches.
 // ORACLE: a rigid translation strains nothing; the forces of a member sum to nothing; the strain of a uniform stretch.

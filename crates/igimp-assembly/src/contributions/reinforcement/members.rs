@@ -6,7 +6,9 @@ use std::collections::BTreeMap;
 use igimp_shape::{Linear, Scratch, supports};
 
 use super::row::{Row, length};
+use super::soil_near::SoilNear;
 use super::{Reinforcement, Station};
+use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::conditions::reinforcement::ReinforcementControl;
 use crate::contributions::dropped::shares_of_carried;
@@ -37,11 +39,12 @@ impl<'a, const D: usize> Members<'a, D> {
     /// Finds the nodes that carry the members at the start of a step.
     pub(crate) fn find(
         members: &'a [Reinforcement<D>],
+        particles: &Particles<D>,
         stencils: &Stencils<D>,
-        conditions: &StepConditions<D>,
-        method: &Method,
+        (conditions, method): (&StepConditions<D>, &Method),
         unknowns: &Unknowns<D>,
     ) -> Result<Self, AssemblyError> {
+        let soil = (!members.is_empty()).then(|| SoilNear::new(particles, &conditions.grid));
         let is_small = method.kinematics_of_step() == Kinematics::SmallStrain;
         let mut points = Vec::with_capacity(members.len());
         let mut rows = Vec::new();
@@ -52,6 +55,10 @@ impl<'a, const D: usize> Members<'a, D> {
                 position: padded(x),
             };
             let of_station = |station: &Station<D>| -> Result<Vec<Shares>, AssemblyError> {
+                let position = station.position();
+                if !soil.as_ref().is_some_and(|soil| soil.reaches(&position)) {
+                    return Err(unsupported(&position));
+                }
                 let points = station.points.iter();
                 points
                     .map(|x| {

@@ -5,6 +5,7 @@
 
 mod members;
 mod row;
+mod soil_near;
 
 use crate::error::AssemblyError;
 
