@@ -48,11 +48,11 @@ impl fmt::Display for Ending {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PathEnd {
-    /// The increment is a mechanism, and the factor rises no longer.
+    /// The increment is a mechanism, and the factor changes no longer.
     Limit,
-    /// The factor fell below an earlier one.
+    /// The factor went back behind an earlier one.
     Fallen,
-    /// The increment is a mechanism, has been one for two doublings of the work, and the factor still rises.
+    /// The increment is a mechanism, has been one for two doublings of the work, and the factor still changes.
     StillRising,
     /// The displacement that the case states was exceeded.
     Displacement,
@@ -65,10 +65,10 @@ impl PathEnd {
     /// In words.
     pub fn sentence(self) -> &'static str {
         match self {
-            Self::Limit => "the body moves as a mechanism, and the factor rises no longer",
-            Self::Fallen => "the factor falls behind its largest value",
+            Self::Limit => "the body moves as a mechanism, and the factor changes no longer",
+            Self::Fallen => "the factor turns back from the furthest that it came to",
             Self::StillRising => {
-                "the body has moved as a mechanism for long, and the factor still rises"
+                "the body has moved as a mechanism for long, and the factor still changes"
             }
             Self::Displacement => "the displacement of the case is exceeded",
             Self::Lost => "no further equilibrium was found",

@@ -510,6 +510,9 @@ pub struct SafetySummary {
 pub struct PathSummary {
     /// Why it ended.
     pub end: PathEnd,
+    /// The factor at the beginning of the stage \[-\]; 0 of a search.
+    #[serde(default)]
+    pub from: f64,
     /// Where the body first moves as a mechanism: 99 % of the work of a step is dissipated.
     pub mechanism: Option<PathPoint>,
     /// The equilibrium that tells the factor.
@@ -517,7 +520,8 @@ pub struct PathSummary {
     pub limit: Option<PathPoint>,
     /// Where the rise of the factor over doublings of the work falls most.
     pub knee: Option<PathPoint>,
-    /// Rise of the factor in the doubling of the work up to the equilibrium that tells it, as a share of it \[-\].
+    /// Rise of the factor in the doubling of the work up to the equilibrium that tells it, as a share of it; of a factor that
+    /// the stage lowers, its fall \[-\].
     pub rise: Option<f64>,
     /// The displacement γH²/E that soil of this weight, height and stiffness is moved by before it fails \[m\].
     pub displacement_scale: Option<f64>,

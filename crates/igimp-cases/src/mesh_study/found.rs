@@ -6,6 +6,7 @@ use igimp_results::summary::{CheckRow, StageOutcome, StageSummary, Summary};
 use igimp_text::short;
 
 use super::known::{of_check, of_stage};
+use crate::driven::Driven;
 
 /// A value of a run.
 #[derive(Clone, Copy, Debug)]
@@ -181,15 +182,11 @@ fn at_stage<const D: usize>(case: &Case<D>, run: &Summary, number: usize) -> Opt
     let found = match &stage.kind {
         StageKind::StrengthReduction(_) => interval(summary),
         StageKind::Displacement { .. } => summary.peak_resistance.map(Found::computed),
-        StageKind::Gravity {
-            horizontal: Some(_),
-            ..
-        } => limit(case, run, number, Quantity::HorizontalFactor),
-        StageKind::Gravity { .. } => limit(case, run, number, Quantity::GravityFactor),
-        StageKind::Load { loads, .. } => {
-            limit(case, run, number, Quantity::LoadFactor(*loads.first()?))
+        kind => {
+            let reached = shares_of(run);
+            let driven = Driven::of(kind, |own| own.before(case, number, &reached))?;
+            limit(case, run, number, driven)
         }
-        _ => None,
     }?;
     Some(Found {
         ended_early: found.ended_early || has_ended_early(case, run, number),
@@ -234,25 +231,26 @@ fn limit<const D: usize>(
     case: &Case<D>,
     run: &Summary,
     number: usize,
-    of: Quantity,
+    of: Driven,
 ) -> Option<Found> {
     let (stage, summary) = (&case.stages[number], run.stages.get(number)?);
     if !stage.stop_when.no_equilibrium {
         return None;
     }
-    let reached = at_end(case, run, number, of);
+    let shares = shares_of(run);
+    let reached = of.after(case, number, &shares);
     if summary.outcome != StageOutcome::Stopped || summary.lost {
         return Some(Found::on_the_way(reached));
     }
-    if let Some(path) = &summary.path {
+    let driven = Driven::of(&stage.kind, |own| own.before(case, number, &shares));
+    let told = summary.path.as_ref().filter(|_| driven == Some(of));
+    if let Some(path) = told {
         return Some(match crate::limit::interval(path) {
-            (Some(low), Some(high)) => Found::within(0.5 * (low + high), 0.5 * (high - low)),
+            (Some(near), Some(far)) => Found::within(0.5 * (near + far), 0.5 * (far - near).abs()),
             _ => Found::on_the_way(reached),
         });
     }
-    let from = stage
-        .start_from
-        .map_or(0.0, |before| at_end(case, run, before, of));
+    let from = of.before(case, number, &shares);
     let solver = &case.solver;
     // A displacement is passed in a planned step.
     let cuts = match stage.stop_when.displacement {
@@ -260,31 +258,13 @@ fn limit<const D: usize>(
         None => i32::try_from(solver.cuts).ok()?,
     };
     let smallest = solver.cut_factor.powi(cuts) / stage.steps as f64;
-    let whole = (aim(&stage.kind, of)? - from).abs();
+    let whole = (of.aim(&stage.kind)? - from).abs();
     Some(Found::within(reached, smallest * whole))
 }
 
-/// A multiple of gravity, an acceleration or a load factor at the end of a stage of a run.
-fn at_end<const D: usize>(case: &Case<D>, run: &Summary, number: usize, of: Quantity) -> f64 {
-    let stage = &case.stages[number];
-    let from = stage
-        .start_from
-        .map_or(0.0, |before| at_end(case, run, before, of));
-    let reached = run.stages.get(number).map_or(0.0, |stage| stage.reached);
-    aim(&stage.kind, of).map_or(from, |to| from + reached * (to - from))
-}
-
-/// Where a stage takes a multiple of gravity, an acceleration or a load factor, if it changes it.
-fn aim(kind: &StageKind, of: Quantity) -> Option<f64> {
-    match (kind, of) {
-        (StageKind::Gravity { factor, .. }, Quantity::GravityFactor) => Some(*factor),
-        (StageKind::Gravity { horizontal, .. }, Quantity::HorizontalFactor) => *horizontal,
-        (StageKind::K0, Quantity::GravityFactor) => Some(1.0),
-        (StageKind::Load { loads, factor }, Quantity::LoadFactor(load)) => {
-            loads.contains(&load).then_some(*factor)
-        }
-        _ => None,
-    }
+/// The shares of its stages that a run reached \[-\].
+fn shares_of(run: &Summary) -> impl Fn(usize) -> f64 {
+    |number| run.stages.get(number).map_or(0.0, |stage| stage.reached)
 }
 
 /// A check of a run: with the interval of the search that it looks at, and whether the run came to it.
@@ -308,10 +288,7 @@ fn at_check<const D: usize>(case: &Case<D>, run: &Summary, row: &CheckRow) -> Fo
     let stage = run.stages.get(number);
     let found = match check.of {
         Quantity::FactorOfSafety => stage.and_then(interval),
-        Quantity::GravityFactor | Quantity::HorizontalFactor | Quantity::LoadFactor(_) => {
-            limit(case, run, number, check.of)
-        }
-        _ => None,
+        of => Driven::recorded_by(of).and_then(|own| limit(case, run, number, own)),
     };
     Found {
         value: measured,

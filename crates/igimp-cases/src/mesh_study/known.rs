@@ -3,6 +3,8 @@
 use igimp_model::{Case, LoadKind, Material, Quantity, Stage, StageKind};
 use igimp_results::mesh_study::{Convergence, ResultKind};
 
+use crate::driven::Driven;
+
 /// The result that a stage is made for, if it is made for one: its name, what it is, and how it converges.
 pub(super) fn of_stage<const D: usize>(
     case: &Case<D>,
@@ -11,7 +13,6 @@ pub(super) fn of_stage<const D: usize>(
     let stage = &case.stages[number];
     let name = &stage.name;
     let searches = |stage: &&Stage| matches!(stage.kind, StageKind::StrengthReduction(_));
-    let load = |name: String| Some((name, ResultKind::LimitLoad, of_loads(case)));
     match &stage.kind {
         StageKind::StrengthReduction(_) => {
             let only = case.stages.iter().filter(searches).count() == 1;
@@ -23,21 +24,36 @@ pub(super) fn of_stage<const D: usize>(
             let name = format!("factor of safety{of} [-]");
             Some((name, ResultKind::FactorOfSafety, of_loads(case)))
         }
-        StageKind::Gravity { horizontal, .. } if stage.stop_when.no_equilibrium => {
-            load(match horizontal {
-                Some(_) => format!("horizontal acceleration at the end of \"{name}\" [-]"),
-                None => format!("gravity at the end of \"{name}\" [-]"),
-            })
-        }
-        StageKind::Load { .. } if stage.stop_when.no_equilibrium => {
-            load(format!("load factor at the end of \"{name}\" [-]"))
-        }
         StageKind::Displacement { .. } => Some((
             format!("largest resistance in \"{name}\" [N/m]"),
             ResultKind::LimitLoad,
             of_footings(case),
         )),
+        _ if stage.stop_when.no_equilibrium => {
+            let driven = Driven::planned(case, number)?;
+            let what = match driven {
+                Driven::Load(_) => "load factor",
+                Driven::Acceleration(0) => "horizontal acceleration",
+                Driven::Acceleration(1) => "acceleration across",
+                Driven::Acceleration(_) => "vertical acceleration",
+                Driven::Gravity => "gravity",
+            };
+            let name = format!("{what} at the end of \"{name}\" [-]");
+            Some((name, ResultKind::LimitLoad, of_limit(case, number, driven)))
+        }
         _ => None,
+    }
+}
+
+/// How the limit of a control that a stage drives converges.
+fn of_limit<const D: usize>(case: &Case<D>, number: usize, driven: Driven) -> Convergence {
+    let planned = |_: usize| 1.0;
+    let from = driven.before(case, number, &planned);
+    let to = driven.after(case, number, &planned);
+    if from * (to - from) < 0.0 {
+        of_loads(case).of_lowered_load()
+    } else {
+        of_loads(case)
     }
 }
 
@@ -47,15 +63,16 @@ pub(super) fn of_check<const D: usize>(case: &Case<D>, name: &str) -> Convergenc
     match check.map(|check| (check.of, check.stage)) {
         Some((Quantity::FactorOfSafety, _)) => of_loads(case),
         Some((
-            Quantity::GravityFactor | Quantity::HorizontalFactor | Quantity::LoadFactor(_),
+            of @ (Quantity::GravityFactor | Quantity::HorizontalFactor | Quantity::LoadFactor(_)),
             stage,
         )) => {
             let number = stage.unwrap_or(case.stages.len().saturating_sub(1));
             let stage = case.stages.get(number);
-            if stage.is_some_and(|stage| stage.stop_when.no_equilibrium) {
-                of_loads(case)
-            } else {
-                Convergence::OTHER
+            match Driven::recorded_by(of) {
+                Some(driven) if stage.is_some_and(|stage| stage.stop_when.no_equilibrium) => {
+                    of_limit(case, number, driven)
+                }
+                _ => Convergence::OTHER,
             }
         }
         Some((Quantity::Reaction(_), _)) => of_footings(case),

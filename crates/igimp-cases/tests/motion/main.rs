@@ -5,6 +5,7 @@ mod resuming;
 
 mod dynamic;
 mod earthquake;
+mod limits;
 mod pseudo_static;
 mod rigid;
 

@@ -72,10 +72,10 @@ fn intervals_of_searches_are_carried_on() {
 fn three_meshes_find_order_and_limit() {
     for sizes in [HALVED, ODD] {
         for p in [0.7, 0.9, 1.0, 1.6, 2.0_f64.next_down()] {
-            let found = of_soil(&exact(-3.0, 0.4, p, &sizes));
+            let found = of_soil(&exact(3.0, 0.4, p, &sizes));
             let used = found.order.used().unwrap();
             assert!((used - p).abs() < 1e-7, "{p}: {:?}", found.order);
-            assert!((found.value + 3.0).abs() < 1e-7, "{p}: {}", found.value);
+            assert!((found.value - 3.0).abs() < 1e-7, "{p}: {}", found.value);
         }
     }
     let found = of_soil(&exact(1.5, 0.2, 1.0, &HALVED));
@@ -134,6 +134,30 @@ fn a_rise_is_no_convergence_of_soil() {
     assert!((footing.value - 5.063).abs() < 1e-12);
     let within = of_soil(&values(&[1.50, 1.501], 0.001));
     assert!((within.value - 1.502).abs() < 1e-12);
+}
+
+/// GOAL: limit loads of either sign converge alike, and a load that is lowered may rise.
+/// ORACLE: the other sign of the values; by hand, 2 F(h/2) − F(h).
+#[test]
+fn a_negative_limit_load_is_the_mirror_image_of_a_positive_one() {
+    for meshes in [
+        &[1.51, 1.50][..],
+        &[1.50, 1.51],
+        &[1.60, 1.55, 1.525],
+        &[1.50, 1.505, 1.51],
+    ] {
+        let negative: Vec<f64> = meshes.iter().map(|value| -value).collect();
+        let (own, other) = (
+            of_soil(&values(meshes, 0.001)),
+            of_soil(&values(&negative, 0.001)),
+        );
+        assert_eq!(own.order, other.order);
+        assert!((own.value + other.value).abs() < 1e-12);
+        assert!((own.uncertainty - other.uncertainty).abs() < 1e-12);
+    }
+    let lowered = Convergence::SOIL.of_lowered_load();
+    let found = estimate(&values(&[0.50, 0.55], 0.0), lowered).unwrap();
+    assert!((found.value - 0.60).abs() < 1e-12 && found.order.remark().is_none());
 }
 
 /// GOAL: where the intervals of the search admit order 1, no other is read out of their noise.

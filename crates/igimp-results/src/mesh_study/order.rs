@@ -19,7 +19,7 @@ const SOUGHT: [f64; 2] = [1e-3, 16.0];
 pub struct Convergence {
     /// The least order that is thought possible \[-\].
     pub(super) slowest: f64,
-    /// Whether the value falls as cells become smaller.
+    /// Whether the size of the value falls as cells become smaller.
     pub(super) falls: bool,
     /// The least uncertainty, as a share of the value \[-\].
     pub(super) least: f64,
@@ -51,6 +51,15 @@ impl Convergence {
     };
     /// Everything else, such as stress and displacement at a place.
     pub const OTHER: Self = Self::FOOTING;
+
+    /// The same of a load that is lowered until soil fails, such as a support: finer cells fail at more of it.
+    #[must_use]
+    pub fn of_lowered_load(self) -> Self {
+        Self {
+            falls: false,
+            ..self
+        }
+    }
 
     /// The same with another least order \[-\], and no least uncertainty.
     #[must_use]
@@ -170,9 +179,10 @@ pub(super) fn share(coarse: f64, fine: f64, p: f64) -> f64 {
     1.0 / ((coarse / fine).powf(p) - 1.0)
 }
 
-/// The order on two meshes: the usual one, if the value does not rise where it falls.
+/// The order on two meshes: the usual one, if the size of the value does not rise where it falls.
 pub(super) fn of_two(coarse: &Computed, fine: &Computed, known: Convergence) -> Order {
-    if known.falls && fine.value - coarse.value > coarse.half_width + fine.half_width {
+    let rise = (fine.value - coarse.value) * fine.value.signum();
+    if known.falls && rise > coarse.half_width + fine.half_width {
         Order::Rising
     } else {
         Order::Assumed {

@@ -8,6 +8,8 @@ use igimp_results::fields::length;
 use igimp_solver::{Component, StepError, StepFailure};
 use igimp_text::short;
 
+use crate::driven::Driven;
+
 /// Most suggestions that a reader will try.
 const MOST: usize = 4;
 /// Share of particles at the worst node that yield, from which on collapse is likely \[-\].
@@ -24,11 +26,11 @@ const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
 /// worst node, those that yield, and those that returned to an apex or a corner in tension.
 pub(crate) fn advice<const D: usize>(
     case: &Case<D>,
-    stage: usize,
+    number: usize,
     error: &StepError,
     near_worst: Option<[usize; 3]>,
 ) -> Vec<String> {
-    let Some(stage) = case.stages.get(stage) else {
+    let Some(stage) = case.stages.get(number) else {
         return Vec::new();
     };
     let yielding = near_worst.is_some_and(|[all, yielding, _]| share(yielding, all) >= COLLAPSE);
@@ -46,7 +48,7 @@ pub(crate) fn advice<const D: usize>(
             LinearSolverError::Singular { .. }
             | LinearSolverError::NotPositiveDefinite { .. }
             | LinearSolverError::Inaccurate { .. },
-        ) if yielding => no_equilibrium(case, stage, error, near_worst),
+        ) if yielding => no_equilibrium(case, (number, stage), error, near_worst),
         StepFailure::Assembly(assembly) => unformed(case, stage, assembly),
         StepFailure::Linear(linear) => unsolved(case, linear),
         StepFailure::TooDeep { body, .. } => too_deep(case, stage, body),
@@ -78,7 +80,7 @@ pub(crate) fn advice<const D: usize>(
         ],
         StepFailure::NotFinite { .. } => vec![more_steps(stage), finer_cell(case)],
         StepFailure::MaxIterations { .. } | StepFailure::Diverged | StepFailure::Stagnated => {
-            no_equilibrium(case, stage, error, near_worst)
+            no_equilibrium(case, (number, stage), error, near_worst)
         }
     };
     try_this.truncate(MOST);
@@ -92,7 +94,7 @@ fn share(count: usize, of: usize) -> f64 {
 /// The iteration ended without equilibrium.
 fn no_equilibrium<const D: usize>(
     case: &Case<D>,
-    stage: &Stage,
+    (number, stage): (usize, &Stage),
     error: &StepError,
     near_worst: Option<[usize; 3]>,
 ) -> Vec<String> {
@@ -105,7 +107,7 @@ fn no_equilibrium<const D: usize>(
     out.extend(round_off(case, error));
     out.extend(still_falling(case, error));
     if yielding >= COLLAPSE {
-        out.extend(collapse(case, stage));
+        out.extend(collapse(case, number, stage));
     }
     out.push(more_steps(stage));
     if apex >= APEX_RICH {
@@ -277,12 +279,13 @@ fn still_falling<const D: usize>(case: &Case<D>, error: &StepError) -> Option<St
 }
 
 /// Most soil at the worst node yields: there may be no equilibrium to find.
-fn collapse<const D: usize>(case: &Case<D>, stage: &Stage) -> Vec<String> {
+fn collapse<const D: usize>(case: &Case<D>, number: usize, stage: &Stage) -> Vec<String> {
+    let driven = Driven::planned(case, number);
     match &stage.kind {
         StageKind::Gravity {
             horizontal: Some(share),
             ..
-        } if *share != 0.0 => vec![format!(
+        } if driven == Some(Driven::Acceleration(0)) => vec![format!(
             "horizontal = {} in stage \"{}\": this is probably collapse under the pseudo-static force",
             short(0.5 * share),
             stage.name
@@ -296,17 +299,10 @@ fn collapse<const D: usize>(case: &Case<D>, stage: &Stage) -> Vec<String> {
             "a strength-reduction stage with path = \"gravity\", to find the factor of safety"
                 .to_owned(),
         ],
-        StageKind::Load { loads, factor } => {
-            let name = loads
-                .first()
-                .and_then(|&load| case.loads.get(load))
-                .map_or("the load", |load| load.name.as_str());
-            vec![format!(
-                "factor below {} in stage \"{}\": this is probably collapse under \"{name}\"",
-                short(*factor),
-                stage.name
-            )]
-        }
+        StageKind::Load { .. } => driven
+            .map(|own| less_load(case, number, own))
+            .into_iter()
+            .collect(),
         StageKind::K0 => {
             vec!["a k0 closer to 1: this is probably collapse of the initial state".to_owned()]
         }
@@ -333,6 +329,27 @@ fn collapse<const D: usize>(case: &Case<D>, stage: &Stage) -> Vec<String> {
         }
         StageKind::RunOut(_) | StageKind::Dynamic(_) | StageKind::Wait => Vec::new(),
     }
+}
+
+/// Less of a load under which soil fails; more of one that is lowered, such as a support.
+fn less_load<const D: usize>(case: &Case<D>, number: usize, driven: Driven) -> String {
+    let planned = |_: usize| 1.0;
+    let from = driven.before(case, number, &planned);
+    let to = driven.after(case, number, &planned);
+    let instead = match to < from {
+        false => "below",
+        true if to < 0.0 => "nearer to zero than",
+        true => "above",
+    };
+    let name = match driven {
+        Driven::Load(load) => case.loads[load].name.as_str(),
+        _ => "the load",
+    };
+    format!(
+        "factor {instead} {} in stage \"{}\": this is probably collapse under \"{name}\"",
+        short(to),
+        case.stages[number].name
+    )
 }
 
 fn more_steps(stage: &Stage) -> String {

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use igimp_assembly::{Geometry, Locking, Method};
 use igimp_model::{
-    BodyPart, Boundaries, Every, GridSpec, MeshStudy, Output, Profiles, Reduction, RunOut,
-    SolverSettings, StopWhen, TitleBlock,
+    BodyPart, Boundaries, Every, GridSpec, Load, LoadKind, MeshStudy, Output, Profiles, Reduction,
+    RunOut, SolverSettings, StopWhen, TitleBlock,
 };
 
 use super::*;
@@ -164,6 +164,37 @@ fn plastic_soil_under_gravity_is_collapse() {
         "factor = 0.5 in stage \"first\": this is probably collapse under gravity itself"
     );
     assert!(try_this[1].contains("strength-reduction"), "{try_this:?}");
+}
+
+/// GOAL: less of a load is said by the side from which its stage comes.
+/// ORACLE: by hand: a load that grows, its mirror image, a support that is lowered, and one that is pulled off.
+#[test]
+fn less_of_a_load_is_nearer_to_where_its_stage_began() {
+    for (from, to, said) in [
+        (0.0, 2.0, "factor below 2 in"),
+        (0.0, -2.0, "factor nearer to zero than -2 in"),
+        (1.0, 0.25, "factor above 0.25 in"),
+        (-1.0, -0.25, "factor below -0.25 in"),
+    ] {
+        let load = |factor| StageKind::Load {
+            loads: vec![0],
+            factor,
+        };
+        let mut case = case(load(from));
+        case.loads.push(Load {
+            name: "support".into(),
+            kind: LoadKind::Point {
+                at: [1.0, 1.0],
+                force: [1.0, 0.0],
+            },
+        });
+        case.stages.push(Stage {
+            start_from: Some(0),
+            ..stage(load(to))
+        });
+        let try_this = advice(&case, 1, &stagnated(), Some([16, 14, 0]));
+        assert!(try_this[0].starts_with(said), "{try_this:?}");
+    }
 }
 
 #[test]

@@ -9,12 +9,13 @@ use igimp_model::{RigidMove, Stage, StageKind};
 use igimp_results::ending::{EndReason, PathEnd};
 use igimp_results::summary::{PathPoint, PathSummary, StageSummary};
 use igimp_solver::{
-    Accepted, ContinuationSettings, ContinuationState, Observer, StepError, follow,
+    Accepted, ContinuationSettings, ContinuationState, MarchSettings, Observer, StepError, follow,
 };
 use igimp_text::short;
 
+use crate::driven::Driven;
 use crate::error::CaseError;
-use crate::limit;
+use crate::limit::{self, Course};
 use crate::run::model::displacement_scale;
 use crate::run::output::moment::Moment;
 use crate::run::session::{Session, StageEnd};
@@ -37,17 +38,34 @@ pub(crate) fn is_sought(stage: &Stage, summary: &StageSummary, error: &StepError
         && error.failure.is_want_of_equilibrium()
 }
 
-/// The factor that a stage drives: of its first load, of gravity, of the horizontal acceleration, or of the forces on its rigid
-/// bodies, the share of them that was `reached` \[-\].
-fn load_factor(kind: &StageKind, controls: &Controls, reached: f64) -> f64 {
-    match kind {
-        StageKind::Rigid(_) => reached,
-        StageKind::Load { loads, .. } => loads.first().map_or(0.0, |&load| controls.factors[load]),
-        StageKind::Gravity {
-            horizontal: Some(_),
-            ..
-        } => controls.acceleration[0],
-        _ => controls.gravity,
+/// The factor of the control that a stage drives, or of the forces on rigid bodies, the share of them that was `reached`
+/// \[-\].
+fn factor(driven: Option<Driven>, controls: &Controls, reached: f64) -> f64 {
+    match driven {
+        None => reached,
+        Some(Driven::Load(load)) => controls.factors[load],
+        Some(Driven::Acceleration(component)) => controls.acceleration[component],
+        Some(Driven::Gravity) => controls.gravity,
+    }
+}
+
+/// The control that a stage drives from controls to controls, and its way.
+fn way(stage: &Stage, from: &Controls, to: &Controls) -> (Option<Driven>, Course) {
+    let driven = Driven::of(&stage.kind, |own| factor(Some(own), from, 0.0));
+    let course = Course::between(factor(driven, from, 0.0), factor(driven, to, 1.0));
+    (driven, course)
+}
+
+/// The settings of a path: it begins with a share of the smallest step at which the march found no equilibrium.
+fn continuation_settings(
+    march: MarchSettings,
+    stage: &Stage,
+    summary: &StageSummary,
+) -> ContinuationSettings {
+    let smallest = march.cut_factor.powi(march.cuts as i32) / stage.steps as f64;
+    ContinuationSettings {
+        first_change: FIRST_CHANGE * smallest / summary.reached,
+        ..ContinuationSettings::new(march.newton)
     }
 }
 
@@ -66,16 +84,12 @@ pub(crate) fn follow_on<const D: usize>(
         let grid = model.grid(model.lowered(from));
         model.conditions_on(grid, (&at(before), &at(after)), 0.0)
     };
-    let march = model.march_settings(stage.steps);
-    let smallest = march.cut_factor.powi(march.cuts as i32) / stage.steps as f64;
-    let settings = ContinuationSettings {
-        first_change: FIRST_CHANGE * smallest / summary.reached,
-        ..ContinuationSettings::new(march.newton)
-    };
+    let settings = continuation_settings(model.march_settings(stage.steps), stage, summary);
     let mut continuation = ContinuationState::start(summary.reached, &settings);
     let mut workspace = session.workspace();
+    let (driven, course) = way(stage, from, to);
     let begins = PathPoint {
-        factor: load_factor(&stage.kind, &state.controls, summary.reached),
+        factor: factor(driven, &state.controls, summary.reached),
         work: summary.work,
         displacement: session.displacement(stage.stop_when.monitor, &state.body.particles),
         ..PathPoint::default()
@@ -84,6 +98,8 @@ pub(crate) fn follow_on<const D: usize>(
         number,
         stage,
         at: &at,
+        driven,
+        course,
         tracks: &tracks,
         points: vec![begins],
         end: PathEnd::Lost,
@@ -117,10 +133,11 @@ pub(crate) fn follow_on<const D: usize>(
     };
     let path = PathSummary {
         end,
+        from: factor(driven, from, 0.0),
         mechanism: limit::mechanism(&points),
         limit,
-        knee: limit::knee(&points),
-        rise: limit.and_then(|at| limit::rise(&points, &at)),
+        knee: limit::knee(&points, course),
+        rise: limit.and_then(|at| limit::rise(&points, course, &at)),
         displacement_scale: displacement_scale(model, state),
         shares: None,
         points,
@@ -135,10 +152,15 @@ pub(crate) fn follow_on<const D: usize>(
 /// What a reader has to know of the path.
 fn remark(path: &PathSummary, stage: &str) -> Option<String> {
     let (mechanism, last) = (path.mechanism?, path.limit?);
+    let goes = if last.factor.abs() < path.from.abs() {
+        "falls"
+    } else {
+        "rises"
+    };
     (path.end == PathEnd::StillRising).then(|| {
         format!(
             "stage \"{stage}\": the body moves as a mechanism from load factor {} at {} m on, and on the given geometry \
-             the load still rises, by {} % in the last doubling of the work",
+             the load still {goes}, by {} % in the last doubling of the work",
             short(mechanism.factor),
             short(mechanism.displacement),
             short(100.0 * path.rise.unwrap_or(0.0)),
@@ -152,6 +174,9 @@ struct Watch<'w, 's, const D: usize> {
     number: usize,
     stage: &'w Stage,
     at: &'w dyn Fn(f64) -> Controls,
+    /// The control that tells the factor; none: forces on rigid bodies.
+    driven: Option<Driven>,
+    course: Course,
     /// What the rigid bodies did so far.
     tracks: &'w RefCell<Vec<RigidTrack>>,
     session: &'w mut Session<'s, D>,
@@ -191,7 +216,7 @@ impl<const D: usize> Watch<'_, '_, D> {
         });
         let stop = &self.stage.stop_when;
         let displacement = self.session.displacement(stop.monitor, particles);
-        let factor = load_factor(&self.stage.kind, &controls, report.to);
+        let factor = factor(self.driven, &controls, report.to);
         let point = limit::point(report, factor, self.summary.work, displacement);
         self.points.push(point);
         if self.session.interrupted() {
@@ -200,7 +225,7 @@ impl<const D: usize> Watch<'_, '_, D> {
         if report.to >= 1.0 {
             return Ok(Some(StageEnd::Stopped(EndReason::LimitBeyondLoad)));
         }
-        let end = limit::end(&self.points, stop.displacement);
+        let end = limit::end(&self.points, self.course, stop.displacement);
         Ok(end.map(|(end, limit)| {
             (self.end, self.limit) = (end, Some(limit));
             StageEnd::Stopped(EndReason::PathEnded {

@@ -17,7 +17,7 @@ use igimp_text::short;
 use super::shares::{LastStep, shares};
 use super::{names, undeformed_or_found};
 use crate::error::CaseError;
-use crate::limit;
+use crate::limit::{self, Course};
 use crate::run::Event;
 use crate::run::model::displacement_scale;
 use crate::run::resume::End;
@@ -344,7 +344,7 @@ impl<'w, 's, const D: usize> Watch<'w, 's, D> {
             return Ok(Some(StageEnd::Interrupted));
         }
         let displacement = self.search.reduction.failure_displacement;
-        let end = limit::end(&self.points, displacement);
+        let end = limit::end(&self.points, Course::RISING, displacement);
         Ok(end.map(|(end, limit)| {
             (self.end, self.limit) = (end, Some(limit));
             StageEnd::Completed(EndReason::PathEnded { end, reached: None })
@@ -400,10 +400,11 @@ fn finish<const D: usize>(
     };
     let path = PathSummary {
         end,
+        from: 0.0,
         mechanism: limit::mechanism(&points),
         limit,
-        knee: limit::knee(&points),
-        rise: limit.and_then(|at| limit::rise(&points, &at)),
+        knee: limit::knee(&points, Course::RISING),
+        rise: limit.and_then(|at| limit::rise(&points, Course::RISING, &at)),
         displacement_scale: scale,
         shares,
         points,
