@@ -337,6 +337,10 @@ fn earthquakes_that_make_no_sense() {
             "a block slides on ground that moves",
         ),
         (
+            format!("newmark_from = \"weight\"\n{motion}, axis = \"y\" }}"),
+            "a block slides along x, as `horizontal` pushes",
+        ),
+        (
             "rayleigh = { ratio = 0.02, periods = [\"1 s\", \"1 s\"] }".to_owned(),
             "the two periods are the same",
         ),

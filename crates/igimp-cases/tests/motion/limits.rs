@@ -212,3 +212,47 @@ box = {{ from = ["0 m", "0 m", "0 m"], to = ["{wide} m", "{deep} m", "1.5 m"] }}
         "{right} {back}"
     );
 }
+
+/// GOAL: Newmark's coefficient is the whole push at the end of its stage, and the block slides as long as that stage shakes.
+/// ORACLE: the recorded push; the record cut by hand where the stage ends.
+#[test]
+fn newmarks_block_goes_by_the_whole_push_and_the_time_of_the_stage() {
+    let shaken = |name: &str, record: &str| {
+        format!(
+            "[[stages]]\nname = \"{name}\"\ntype = \"dynamic\"\nstart_from = \"weight\"\nduration = \"0.25 s\"\n\
+             steps = 2\nnewmark_from = \"push\"\nground_motion = {{ unit = \"g\", {record} }}\n"
+        )
+    };
+    let stages = format!(
+        "{WEIGHT}[[stages]]\nname = \"first\"\ntype = \"gravity\"\nhorizontal = 0.1\nsteps = 1\n\
+         [[stages]]\nname = \"push\"\ntype = \"gravity\"\nhorizontal = 0.6\n\
+         stop_when = {{ displacement = \"1 mm\" }}\n{}{}\
+         [[curves]]\nname = \"k\"\nx = {{ of = \"step\" }}\ny = {{ of = \"horizontal_factor\" }}\nstage = \"push\"\n",
+        shaken(
+            "long",
+            "time = [\"0 s\", \"0.1 s\", \"0.4 s\", \"0.6 s\"], values = [0, -2, -2, 0]"
+        ),
+        shaken(
+            "cut",
+            "time = [\"0 s\", \"0.1 s\", \"0.25 s\"], values = [0, -2, -2]"
+        ),
+    );
+    let run = slope(false, &stages);
+    let push = run.curves[0].points(0, 1).last().unwrap()[1];
+    let blocks: Vec<_> = (run.summary.stages.iter())
+        .filter_map(|stage| stage.newmark.as_ref())
+        .collect();
+    let [long, cut] = blocks[..] else {
+        panic!("{:?}", run.summary.stages);
+    };
+    assert!(push > 0.1 && push < 0.6);
+    assert!(
+        (long.yield_coefficient - push).abs() < 1e-12,
+        "{long:?} {push}"
+    );
+    assert!(cut.displacement > 0.01);
+    assert!(
+        (long.displacement / cut.displacement - 1.0).abs() < 1e-12,
+        "{long:?} {cut:?}"
+    );
+}

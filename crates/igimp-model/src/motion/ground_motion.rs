@@ -73,9 +73,26 @@ impl GroundMotion {
         all.get(all.len() / 2).copied().unwrap_or(f64::INFINITY)
     }
 
-    /// The largest acceleration by magnitude \[m/s²\].
-    pub fn peak(&self) -> f64 {
-        let all = self.pieces().flat_map(|piece| piece.acceleration);
+    /// The same of the record up to a time \[s\].
+    fn pieces_until(&self, until: f64) -> impl Iterator<Item = Piece> + '_ {
+        let begun = self.pieces().take_while(move |piece| piece.start < until);
+        begun.map(move |piece| {
+            let [a, b] = piece.acceleration;
+            let duration = piece.duration.min(until - piece.start);
+            let end = a + duration / piece.duration * (b - a);
+            Piece {
+                duration,
+                acceleration: [a, if duration < piece.duration { end } else { b }],
+                ..piece
+            }
+        })
+    }
+
+    /// The largest acceleration by magnitude up to a time \[m/s²\].
+    pub fn peak(&self, until: f64) -> f64 {
+        let all = self
+            .pieces_until(until)
+            .flat_map(|piece| piece.acceleration);
         all.fold(0.0, |most: f64, own| most.max(own.abs()))
     }
 
@@ -84,19 +101,21 @@ impl GroundMotion {
     /// velocity against the ground is gone. Between samples motion is integrated exactly (theory, eqs. 76 and 77).
     ///
     /// `yield_acceleration` \[m/s²\] is that of the force that moves it: positive along the axis, negative against it. The block
-    /// slides on after the record until it rests.
-    pub fn sliding(&self, yield_acceleration: f64) -> f64 {
+    /// slides on after the record until it rests, and no longer than up to the time `until` \[s\].
+    pub fn sliding(&self, yield_acceleration: f64, until: f64) -> f64 {
         let limit = yield_acceleration.abs();
         if limit == 0.0 {
             return f64::INFINITY;
         }
         let (mut velocity, mut way) = (0.0, 0.0);
-        for piece in self.pieces() {
+        for piece in self.pieces_until(until) {
             // The force of inertia acts against the acceleration of the ground.
             let [a, b] = (piece.acceleration).map(|own| -own * yield_acceleration.signum() - limit);
             slide(piece.duration, [a, b], &mut velocity, &mut way);
         }
-        way + 0.5 * velocity * velocity / limit
+        let shaken = self.times.last().copied().unwrap_or(0.0);
+        let span = (velocity / limit).min((until - shaken).max(0.0));
+        way + span * (velocity - 0.5 * limit * span)
     }
 }
 
@@ -173,10 +192,10 @@ mod tests {
             let own = sign * 0.4 * G;
             record(vec![0.0, edge, 0.3, 0.3 + edge], vec![0.0, own, own, 0.0])
         };
-        assert!((pulse(-1.0).sliding(0.1 * G) - expected).abs() < 1e-9);
-        assert!((pulse(1.0).sliding(-0.1 * G) - expected).abs() < 1e-9);
-        assert!(pulse(1.0).sliding(0.1 * G).abs() < 1e-12);
-        assert!(pulse(-1.0).sliding(0.41 * G).abs() < 1e-12);
+        assert!((pulse(-1.0).sliding(0.1 * G, f64::INFINITY) - expected).abs() < 1e-9);
+        assert!((pulse(1.0).sliding(-0.1 * G, f64::INFINITY) - expected).abs() < 1e-9);
+        assert!(pulse(1.0).sliding(0.1 * G, f64::INFINITY).abs() < 1e-12);
+        assert!(pulse(-1.0).sliding(0.41 * G, f64::INFINITY).abs() < 1e-12);
         let by_velocity = GroundMotion {
             is_velocity: true,
             ..record(
@@ -184,7 +203,28 @@ mod tests {
                 vec![0.0, -0.3 * 0.4 * G, -0.3 * 0.4 * G],
             )
         };
-        assert!((by_velocity.sliding(0.1 * G) - expected).abs() < 1e-12);
+        assert!((by_velocity.sliding(0.1 * G, f64::INFINITY) - expected).abs() < 1e-12);
+    }
+
+    /// GOAL: the block moves as long as it is watched, within the record and after it.
+    /// ORACLE: constant acceleration by hand: (A − N) g t²/2 in the pulse, from t₀ on against N g.
+    #[test]
+    fn a_block_is_watched_up_to_a_time() {
+        let own = -0.4 * G;
+        let pulse = record(vec![0.0, 0.3, 0.3 + 1e-12, 0.5], vec![own, own, 0.0, 0.0]);
+        let way = |until: f64| {
+            let (within, after) = (until.min(0.3), (until - 0.3).max(0.0));
+            let velocity = 0.3 * G * within;
+            0.5 * velocity * within + velocity * after - 0.05 * G * after * after
+        };
+        for until in [0.1, 0.2, 0.3, 0.4, 0.7, 1.1] {
+            let found = pulse.sliding(0.1 * G, until);
+            assert!((found - way(until)).abs() < 1e-9, "{until}: {found}");
+        }
+        // At rest after (A − N) t₀/N.
+        assert!((pulse.sliding(0.1 * G, 2.0) - way(1.2)).abs() < 1e-9);
+        let triangle = record(vec![0.0, 1.0, 2.0], vec![0.0, 2.0, 0.0]);
+        assert!((triangle.peak(0.25) - 0.5).abs() < 1e-15);
     }
 
     /// GOAL: sliding under a sine pulse. ORACLE: closed form: from t₁ with sin ω t₁ = N/A the velocity is
@@ -222,7 +262,7 @@ mod tests {
                 * ((omega * begins).cos() * span / omega
                     - ((omega * ends).sin() - (omega * begins).sin()) / omega.powi(2))
                 - 0.5 * limit * span * span;
-            let found = record.sliding(limit);
+            let found = record.sliding(limit, f64::INFINITY);
             assert!(
                 (found / expected - 1.0).abs() < 1e-6,
                 "{share}: {found} {expected}"
@@ -243,6 +283,9 @@ mod tests {
         ] {
             assert!((triangle.velocity(time) - velocity).abs() < 1e-15);
         }
-        assert!((triangle.interval() - 0.5).abs() < 1e-15 && (triangle.peak() - 2.0).abs() < 1e-15);
+        assert!(
+            (triangle.interval() - 0.5).abs() < 1e-15
+                && (triangle.peak(f64::INFINITY) - 2.0).abs() < 1e-15
+        );
     }
 }

@@ -189,7 +189,7 @@ fn ground_in_words(dynamic: &Dynamic) -> Vec<String> {
             Base::Compliant => "compliant base",
         };
         let axis = ["x", "y", "z"][motion.axis.min(2)];
-        let peak = short(motion.peak());
+        let peak = short(motion.peak(f64::INFINITY));
         parts.push(format!("{base} moved along {axis} by up to {peak} m/s²"));
     }
     if !dynamic.walls.absorbing.is_empty() {

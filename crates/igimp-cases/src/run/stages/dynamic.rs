@@ -14,6 +14,7 @@ use super::loading::{begin, reason_to_stop, target};
 use super::rigid_begin;
 use super::run_out::{divisor, flowing};
 use super::walls;
+use crate::driven::Driven;
 use crate::error::CaseError;
 use crate::run::model::Model;
 use crate::run::output::moment::Moment;
@@ -192,21 +193,23 @@ fn sliding_block<const D: usize>(
     let (from, motion) = (dynamic.newmark_from?, dynamic.ground_motion.as_ref()?);
     let case = session.model.case;
     let told = session.summary.stages.get(from)?;
-    let StageKind::Gravity {
-        horizontal: Some(horizontal),
-        ..
-    } = case.stages[from].kind
-    else {
-        return None;
+    let reached = |number: usize| {
+        let stage = session.summary.stages.get(number);
+        stage.map_or(0.0, |stage| stage.reached)
     };
+    let push = Driven::Acceleration(0);
+    let driven = Driven::of(&case.stages[from].kind, |own| {
+        own.before(case, from, &reached)
+    });
     let limit = told.path.as_ref().and_then(|path| path.limit);
-    let coefficient = limit.map_or(told.reached * horizontal, |own| own.factor);
-    let displacement = motion.sliding(coefficient * case.gravity);
+    let limit = limit.filter(|_| driven == Some(push));
+    let coefficient = limit.map_or_else(|| push.after(case, from, &reached), |own| own.factor);
+    let displacement = motion.sliding(coefficient * case.gravity, dynamic.duration);
     displacement.is_finite().then(|| NewmarkSummary {
         yield_coefficient: coefficient,
         is_limit: limit.is_some(),
         from: told.name.clone(),
-        peak_acceleration: motion.peak(),
+        peak_acceleration: motion.peak(dynamic.duration),
         displacement,
     })
 }

@@ -196,10 +196,19 @@ pub(super) fn newmark_from<const D: usize>(
     let who = format!("stage `{}` takes the yield acceleration from", about.name);
     let stages = &about.context.names.stages;
     let index = stages.find(named, &who, problems).ok_or(())?;
-    if own.ground_motion.is_none() {
+    let Some(motion) = &own.ground_motion else {
         problems
             .error(named.place, "a block slides on ground that moves")
             .help("add ground_motion, or remove newmark_from");
+        return Err(());
+    };
+    if *motion.axis != MotionAxis::X {
+        problems
+            .error(
+                motion.axis.place,
+                "a block slides along x, as `horizontal` pushes, and the ground does not move along it",
+            )
+            .help("write axis = \"x\", or remove newmark_from");
         return Err(());
     }
     let stage = about.context.stages.get(index).and_then(Option::as_ref);
