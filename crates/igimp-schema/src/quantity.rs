@@ -1,5 +1,6 @@
 //! Quantities as text, such as `"25 kPa"`: a number or a fraction, and a unit.
 
+mod measure;
 pub(crate) mod units;
 
 use std::fmt::{self, Display, Formatter};
@@ -8,6 +9,7 @@ use thiserror::Error;
 
 use units::Unit;
 
+pub use measure::Powers;
 pub use units::Dimension;
 
 /// A quantity in SI units.

@@ -2,7 +2,9 @@
 //!
 //! One declaration drives the checks, the defaults, `explain`, the JSON Schema and the reference.
 
-use super::quantity::Dimension;
+use super::quantity::{Dimension, Quantity};
+use super::tree::read::Read;
+use super::tree::{Node, Value, Wrong};
 
 /// A table with known keys.
 #[derive(Debug)]
@@ -347,4 +349,24 @@ pub(crate) const fn in_space(field: Field) -> Field {
 /// A choice.
 pub(crate) const fn choice(name: &'static str, doc: &'static str) -> Choice {
     Choice { name, doc }
+}
+
+/// A number, or a quantity of any dimension.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// Its value, in SI units.
+    pub value: f64,
+    /// What it measures; none: a plain number.
+    pub dimension: Option<Dimension>,
+}
+
+impl Read for Measured {
+    fn read(node: &Node) -> Result<Self, Wrong> {
+        let value = node.number().ok_or(Wrong)?;
+        let dimension = match &node.value {
+            Value::Quantity(_, text) => Quantity::parse(text).ok().and_then(|own| own.dimension),
+            _ => None,
+        };
+        Ok(Self { value, dimension })
+    }
 }

@@ -85,7 +85,7 @@ fn what_ended_early_is_not_extrapolated() {
 /// GOAL: so is a check whose stage was given up.
 #[test]
 fn a_check_of_a_stage_that_was_given_up_is_not_extrapolated() {
-    let check = "checks=[{ name = \"N\", of = \"largest_displacement\", expected = 7.1, tolerance = 0.1, source = \"s\" }]";
+    let check = "checks=[{ name = \"N\", of = \"largest_displacement\", divide_by = [\"1 m\"], expected = 7.1, tolerance = 0.1, source = \"s\" }]";
     let case = case("vertical_cut", &[check]);
     let with_check = |measured: f64, outcome| {
         let mut run = run(0.4, |stage| stage.outcome = outcome);

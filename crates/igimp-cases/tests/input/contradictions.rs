@@ -3,6 +3,7 @@
 use crate::edits::{Edits, edited};
 use crate::messages::messages;
 use crate::{CREST, FOOTING, MID_CELL, SLOPE};
+use igimp_input::CaseFile;
 
 #[test]
 fn materials_and_grid_that_make_no_sense() {
@@ -355,4 +356,46 @@ fn messages_of_references() {
         cases.iter().map(|to| [("[output]", to.as_str())]).collect();
     let edits: Vec<Edits<'_>> = edits.iter().map(|edit| &edit[..]).collect();
     insta::assert_snapshot!(messages(SLOPE, &edits));
+}
+
+/// GOAL: a value that measures something else than its check is refused at its place, and one that measures the same is taken.
+/// ORACLE: units of a length, of a length over a length, and of one over a plain number, by hand.
+#[test]
+fn values_of_checks_measure_what_is_checked() {
+    let number = "the check is of a number without a unit, and this is a length";
+    let plain = "the check is of a length, and this is a number without a unit";
+    let stress = "the check is of a length, and this is a stress";
+    for (keys, said) in [
+        ("at_most = \"9 mm\"", None),
+        ("at_most = \"9 kPa\"", Some(stress)),
+        ("at_least = 0.009", Some(plain)),
+        ("between = [\"0 m\", 1]", Some(plain)),
+        ("expected = \"1 kPa\"\ntolerance = 0.1", Some(stress)),
+        ("divide_by = [\"1 mm\"]\nat_most = 10", None),
+        ("divide_by = [\"1 mm\"]\nat_most = \"10 mm\"", Some(number)),
+        (
+            "divide_by = [\"2 m\", \"1 kPa\", \"1 kPa\"]\nat_most = 1",
+            Some("a quantity in kg^-2 m^2 s^4"),
+        ),
+        ("divide_by = [1e-3]\nat_most = 10", None),
+        ("divide_by = [2]\nat_most = \"10 mm\"", None),
+        ("divide_by = [2]\nat_most = \"10 kPa\"", Some(stress)),
+    ] {
+        let check = format!(
+            "[[checks]]\nname = \"c\"\nof = \"largest_displacement\"\nsource = \"s\"\n{keys}\n[output]"
+        );
+        let text = edited(SLOPE.1, &[("[output]", &check)]);
+        let found = CaseFile::parse(SLOPE.0, &text, &[]);
+        let found = found.err().map(|error| error.to_string());
+        match said {
+            None => assert_eq!(found, None, "{keys}"),
+            Some(said) => {
+                let found = found.unwrap_or_else(|| panic!("{keys} is taken"));
+                assert!(
+                    found.contains(said) && found.contains("help:"),
+                    "{keys}: {found}"
+                );
+            }
+        }
+    }
 }

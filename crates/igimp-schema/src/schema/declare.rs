@@ -313,7 +313,7 @@ macro_rules! rust_type {
     (whole_of [$($range:tt)*]) => { usize };
     (number [$($range:tt)*]) => { f64 };
     (quantity [$($range:tt)*]) => { f64 };
-    (any_quantity []) => { f64 };
+    (any_quantity []) => { $crate::spec::Measured };
     (length []) => { f64 };
     (choice [$of:ident]) => { $of };
     (point []) => { [f64; D] };

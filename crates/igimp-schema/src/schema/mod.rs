@@ -16,6 +16,7 @@ pub mod stages;
 pub mod water;
 
 use crate::spec::Bodies;
+pub use crate::spec::Measured;
 use crate::tree::Node;
 use bodies::{BODY, Body};
 use declare::{choices, table};

@@ -3,17 +3,20 @@
 use igimp_model::check::Band;
 use igimp_model::{CaseCheck, CheckTime, CheckValue, Load, Quantity, Stage, StageKind};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::quantity::Powers;
+use igimp_schema::schema::Measured;
 use igimp_schema::schema::outputs::{self as keys, CheckedValue, Moment};
 use igimp_schema::text::clip;
 use igimp_schema::tree::Wrong;
 use igimp_schema::tree::read::At;
 
-use super::quantities::{divisor, quantity};
+use super::quantities::{divisor, quantity, unit_of};
 use crate::build::AllNames;
 
-/// A check.
+/// A check; `is_whole` says whether forces are of whole bodies, not per metre run.
 pub(crate) fn check<const D: usize>(
     own: &At<keys::Check>,
+    is_whole: bool,
     names: &AllNames,
     loads: &[Option<Load<D>>],
     stages: &[Option<Stage>],
@@ -38,6 +41,8 @@ pub(crate) fn check<const D: usize>(
         (stage, _) => stage,
     };
     let (expected, band) = band(own, problems)?;
+    of?;
+    units_are_those_of(own, unit_of(D, is_whole, &own.of), problems)?;
     Some(CaseCheck {
         name: own.name.value.clone(),
         of: of?,
@@ -55,6 +60,50 @@ pub(crate) fn check<const D: usize>(
         band,
         source: own.source.value.clone(),
     })
+}
+
+/// Refuses bounds that measure something else than the quantity, in an SI unit, over its divisors. A plain divisor may stand
+/// for any unit: a plain bound then does too.
+fn units_are_those_of(own: &At<keys::Check>, unit: &str, problems: &mut Problems) -> Option<()> {
+    let divisors = own.divide_by.iter().map(|own| own.value.dimension);
+    let measured = divisors.fold(Powers::of_unit(unit), |of, divisor| {
+        of.over(Powers::of(divisor))
+    });
+    let is_plain = |own: &At<Measured>| own.value.dimension.is_none();
+    let of_any_unit = own.divide_by.iter().any(is_plain);
+    let both = own
+        .between
+        .iter()
+        .flat_map(|own| own.iter().map(|value| (*value, own.place)));
+    let single = [&own.expected, &own.at_most, &own.at_least];
+    let single = single
+        .into_iter()
+        .flatten()
+        .map(|own| (own.value, own.place));
+    for (bound, place) in single.chain(both) {
+        let stated = Powers::of(bound.dimension);
+        if stated == measured || (bound.dimension.is_none() && of_any_unit) {
+            continue;
+        }
+        let problem = problems.error(
+            place,
+            format!("the check is of {measured}, and this is {stated}"),
+        );
+        if measured == Powers::default() {
+            problem
+                .help("write a plain number, or leave out what takes the unit away in divide_by");
+        } else if let Some(dimension) = measured.dimension() {
+            problem.help(format!(
+                "write a quantity like \"{}\", or a plain number with divide_by = [..., \"1 {}\"]",
+                dimension.example(),
+                dimension.usual_unit()
+            ));
+        } else {
+            problem.help("write divide_by so that a plain number is left, and plain numbers here");
+        }
+        return None;
+    }
+    Some(())
 }
 
 /// The strength reduction whose factor of safety is meant.
@@ -94,7 +143,7 @@ fn search(
 
 /// What is expected, and the band around it.
 fn band(own: &At<keys::Check>, problems: &mut Problems) -> Option<(f64, Band)> {
-    let expected = own.expected.as_ref().map(|own| **own);
+    let expected = own.expected.as_ref().map(|own| own.value.value);
     let bands = (
         own.tolerance.as_ref(),
         own.between.as_ref(),
@@ -124,7 +173,7 @@ fn band(own: &At<keys::Check>, problems: &mut Problems) -> Option<(f64, Band)> {
             }
         },
         (None, Some(between), None, None) => {
-            let [low, high] = **between;
+            let [low, high] = between.map(|own| own.value);
             if low > high {
                 problems
                     .error(between.place, "`between` is not in ascending order")
@@ -134,9 +183,13 @@ fn band(own: &At<keys::Check>, problems: &mut Problems) -> Option<(f64, Band)> {
             let middle = 0.5 * (low + high);
             Some((expected.unwrap_or(middle), Band::Between(low, high)))
         }
-        (None, None, Some(most), None) => Some((expected.unwrap_or(**most), Band::AtMost(**most))),
+        (None, None, Some(most), None) => {
+            let most = most.value.value;
+            Some((expected.unwrap_or(most), Band::AtMost(most)))
+        }
         (None, None, None, Some(least)) => {
-            Some((expected.unwrap_or(**least), Band::AtLeast(**least)))
+            let least = least.value.value;
+            Some((expected.unwrap_or(least), Band::AtLeast(least)))
         }
         (tolerance, between, most, least) => {
             let given = [

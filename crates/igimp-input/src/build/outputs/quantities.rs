@@ -3,6 +3,7 @@
 use igimp_model::{Field, Load, LoadKind, Quantity, ReinforcementQuantity, RigidQuantity};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::names::suggest::nearest;
+use igimp_schema::schema::Measured;
 use igimp_schema::text::{clip, row};
 use igimp_schema::tree::Node;
 use igimp_schema::tree::read::At;
@@ -265,10 +266,10 @@ fn known<const D: usize>(names: &AllNames, loads: &[Option<Load<D>>]) -> Vec<Str
 }
 
 /// The product of the divisors; reports one that is zero.
-pub(crate) fn divisor(divisors: &At<Vec<At<f64>>>, problems: &mut Problems) -> Option<f64> {
+pub(crate) fn divisor(divisors: &At<Vec<At<Measured>>>, problems: &mut Problems) -> Option<f64> {
     let mut product = 1.0;
     for divisor in divisors.iter() {
-        let value = **divisor;
+        let value = divisor.value.value;
         if value == 0.0 {
             problems.error(divisor.place, "a divisor is zero");
             return None;
