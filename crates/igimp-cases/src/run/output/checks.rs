@@ -99,10 +99,18 @@ fn against<const D: usize>(
             let measured = at(points, *x).unwrap_or(f64::NAN);
             vec![check(format!("{name} at {x}"), *y, measured)]
         }
-        ReferenceValues::Points(expected) => expected
-            .iter()
-            .filter_map(|&[x, y]| Some(check(format!("{name} at {x}"), y, at(points, x)?)))
-            .collect(),
+        ReferenceValues::Points(expected) => {
+            let held =
+                |&[x, y]: &[f64; 2]| Some(check(format!("{name} at {x}"), y, at(points, x)?));
+            let rows: Vec<CheckRow> = expected.iter().filter_map(held).collect();
+            match expected.first() {
+                // Points beyond the curve hold nothing, but a curve that comes to none of them misses them.
+                Some([x, y]) if rows.is_empty() => {
+                    vec![check(format!("{name} at {x}"), *y, f64::NAN)]
+                }
+                _ => rows,
+            }
+        }
     }
 }
 
@@ -130,7 +138,38 @@ pub(crate) fn at(points: &[[f64; 2]], x: f64) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::at;
+    use super::*;
+    use crate::fixture::case;
+
+    /// GOAL: a reference of points is missed by a curve that comes to none of them, as a level is at such a place.
+    /// ORACLE: by hand: one row that is not a number and not met; of points that it comes to, one each.
+    #[test]
+    fn a_curve_that_comes_to_no_point_of_its_reference_misses_it() {
+        let case = case();
+        let rows = |values: ReferenceValues, tolerance: Option<f64>| {
+            let reference = Reference {
+                label: "by hand".into(),
+                values,
+                tolerance,
+            };
+            against(&case, "c", &[[0.0, 0.0], [1.0, 2.0]], &reference)
+        };
+        let points = |points: &[[f64; 2]]| ReferenceValues::Points(points.to_vec());
+        let level = ReferenceValues::Level {
+            y: 4.0,
+            at: Some(2.0),
+        };
+        for values in [points(&[[2.0, 4.0], [3.0, 6.0]]), level] {
+            let [row] = &rows(values, Some(0.1))[..] else {
+                panic!("one row");
+            };
+            assert!(!row.pass && row.check.measured.is_nan());
+            assert_eq!(row.check.quantity, "c at 2");
+        }
+        let met = rows(points(&[[0.5, 1.0], [1.0, 2.0], [3.0, 6.0]]), Some(0.1));
+        assert!(met.len() == 2 && met.iter().all(|row| row.pass));
+        assert!(rows(points(&[[2.0, 4.0]]), None).is_empty());
+    }
 
     #[test]
     fn a_curve_is_read_where_it_first_passes() {
