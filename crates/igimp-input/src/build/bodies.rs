@@ -1,5 +1,6 @@
 //! Bodies: polygons on the grid, apart from each other, held from below.
 
+pub(crate) mod reach;
 pub(crate) mod sequence;
 pub(crate) mod site;
 pub(crate) mod solids;

@@ -60,6 +60,10 @@ impl Soil<3> for Solids {
     fn cell(&self) -> f64 {
         self.cell
     }
+
+    fn ends(&self) -> Option<[[f64; 3]; 2]> {
+        self.is_complete.then_some([self.lower, self.upper])
+    }
 }
 
 /// Whether a place lies in a region, or not further outside than a margin.

@@ -43,6 +43,9 @@ pub(crate) trait Soil<const D: usize> {
 
     /// Smallest side of a cell \[m\].
     fn cell(&self) -> f64;
+
+    /// Lower and upper ends of the grid \[m\]; none where it was found wrong.
+    fn ends(&self) -> Option<[[f64; D]; 2]>;
 }
 
 impl Soil<2> for Site {
@@ -79,6 +82,11 @@ impl Soil<2> for Site {
 
     fn cell(&self) -> f64 {
         self.cell()
+    }
+
+    fn ends(&self) -> Option<[[f64; 2]; 2]> {
+        let frame = self.frame.as_ref()?;
+        Some([frame.lower, frame.upper])
     }
 }
 

@@ -8,6 +8,7 @@ use igimp_schema::schema::stages::{StageCommon, StageForm};
 use igimp_schema::tree::Wrong;
 use igimp_schema::tree::read::At;
 
+use crate::build::bodies::reach::{meets_box, meets_side};
 use crate::build::context::About;
 use crate::build::water::seepage::extent;
 
@@ -63,13 +64,50 @@ pub(super) fn consolidation<const D: usize>(
             .help("write drainage = \"coupled\" and a permeability in the soil that consolidates, or a `rate` in soil whose strength goes with it");
         return Err(Wrong);
     }
-    let mut open_sides = Vec::new();
+    Ok(Some(Consolidation {
+        duration: *own.duration,
+        open_faces: *own.open_faces,
+        open_sides: open_sides(about, own, problems)?,
+        drains: drains(about, own, problems)?,
+        longest_step: own.longest_step.as_ref().map(|own| **own),
+    }))
+}
+
+/// The sides of the grid where water leaves.
+fn open_sides<const D: usize>(
+    about: &About<'_, D>,
+    own: &keys::Consolidation,
+    problems: &mut Problems,
+) -> Result<Vec<(usize, bool)>, Wrong> {
+    let context = about.context;
+    let mut sides = Vec::new();
     for wall in own.open_sides.iter() {
         let side = side::<D>(wall, problems)?;
-        if !open_sides.contains(&side) {
-            open_sides.push(side);
+        let ends = context.soil.ends();
+        if ends.is_some_and(|ends| !meets_side(context.bodies, context.sequence, side, ends)) {
+            let message = format!(
+                "no body reaches the side {}: no water leaves there",
+                wall.name()
+            );
+            problems
+                .error(wall.place, message)
+                .help("name a side of the grid that the ground reaches; free faces within the grid are open_faces");
+            return Err(Wrong);
+        }
+        if !sides.contains(&side) {
+            sides.push(side);
         }
     }
+    Ok(sides)
+}
+
+/// The boxes of the ground where water leaves.
+fn drains<const D: usize>(
+    about: &About<'_, D>,
+    own: &keys::Consolidation,
+    problems: &mut Problems,
+) -> Result<Vec<[[f64; 3]; 2]>, Wrong> {
+    let context = about.context;
     let mut drains = Vec::new();
     for drain in own.drains.iter() {
         let keys::Drain { from, to } = &drain.as_ref().map_err(|_| Wrong)?.value;
@@ -81,15 +119,16 @@ pub(super) fn consolidation<const D: usize>(
                 .help("water leaves from the soil within the box: give it the thickness of the drain, or a cell");
             return Err(Wrong);
         }
+        let ends = [within.lower, within.upper].map(|end| std::array::from_fn(|axis| end[axis]));
+        if !meets_box::<D>(context.bodies, context.sequence, ends) {
+            problems
+                .error(from.place, "this drain meets no body: it drains no soil")
+                .help("water leaves from the soil within the box: let it reach into the ground");
+            return Err(Wrong);
+        }
         drains.push([within.lower, within.upper]);
     }
-    Ok(Some(Consolidation {
-        duration: *own.duration,
-        open_faces: *own.open_faces,
-        open_sides,
-        drains,
-        longest_step: own.longest_step.as_ref().map(|own| **own),
-    }))
+    Ok(drains)
 }
 
 /// A side of the grid by its name: axis, and whether it is the upper end.

@@ -12,10 +12,14 @@ use igimp_schema::tree::read::{At, Either};
 use igimp_seepage::{Conditions, Extent, History, InGround, Named, OnFaces, Soil};
 
 use super::{Around, Form, source_of};
+use crate::build::bodies::reach::meets_box;
 
 const FACES: &str = "write one of head = \"8 m\", inflow = \"1e-7 m/s\", recharge = \"800 mm/a\", open = true, closed = true";
 const REGIONS: &str =
     "write one of head = \"8 m\", drain = true, discharge = ..., permeability = \"1e-9 m/s\"";
+
+/// How far beside a section soil may lie that it meets, over its length \[-\].
+const BESIDE: f64 = 1e-6;
 
 /// The source that a condition of computed seepage states.
 pub(super) fn source<const D: usize>(
@@ -44,7 +48,7 @@ pub(super) fn source<const D: usize>(
         .filter_map(|own| region::<D>(own, &mut soils, problems).ok())
         .collect();
     let sections = (own.sections.iter().flatten())
-        .filter_map(|own| section::<D>(own, problems).ok())
+        .filter_map(|own| section(around, own, problems).ok())
         .collect();
     let is_read = own.faces.iter().all(Result::is_ok)
         && own.regions.iter().all(Result::is_ok)
@@ -334,6 +338,7 @@ fn region<const D: usize>(
 }
 
 fn section<const D: usize>(
+    around: &Around<'_, D>,
     own: &At<SeepageSection>,
     problems: &mut Problems,
 ) -> Result<(String, Extent<3>), Wrong> {
@@ -348,6 +353,22 @@ fn section<const D: usize>(
                 format!("the section `{}` lies across no axis: it measures {} m", clip(&own.name, 40), sizes.join(" by ")),
             )
             .help("let its corners have one coordinate in common: from = [\"20 m\", \"0 m\"], to = [\"20 m\", \"8 m\"]");
+        return Err(Wrong);
+    }
+    let sizes = (0..D).map(|axis| within.upper[axis] - within.lower[axis]);
+    let beside = BESIDE * sizes.fold(0.0, f64::max);
+    let lower = std::array::from_fn(|axis| within.lower[axis] - beside);
+    let upper = std::array::from_fn(|axis| within.upper[axis] + beside);
+    if !meets_box::<D>(around.bodies, around.sequence, [lower, upper]) {
+        problems
+            .error(
+                own.place,
+                format!(
+                    "the section `{}` meets no body: no water passes it",
+                    clip(&own.name, 40)
+                ),
+            )
+            .help("let it run through the ground");
         return Err(Wrong);
     }
     Ok((own.name.value.clone(), within))
