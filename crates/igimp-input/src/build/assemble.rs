@@ -135,7 +135,7 @@ pub(super) fn assemble<const D: usize>(
     });
     let output = output
         .ok()
-        .and_then(|own| outputs::output::<D>(&own, moves, problems));
+        .and_then(|own| outputs::output(&own, context, moves, problems));
     let meshes = Root::<D>::mesh_study(tree).map(|own| own.value.meshes);
 
     let (case, meshes) = (Root::<D>::case(tree).ok()?, meshes.ok()?);

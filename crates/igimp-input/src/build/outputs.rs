@@ -19,7 +19,9 @@ use igimp_schema::text::point;
 use igimp_schema::tree::read::{At, Either};
 
 use super::AllNames;
+use super::bodies::reach::meets_plane;
 use super::bodies::site::Soil;
+use crate::build::context::Context;
 use igimp_text::{MemoryLimit, NoAmount};
 use quantities::fields;
 
@@ -185,18 +187,24 @@ fn section_reference<const D: usize>(
 }
 
 /// A plane in which fields are drawn.
-fn cut(own: &keys::Cut) -> Cut {
+fn cut<const D: usize>(own: &keys::Cut, context: &Context<'_, D>, problems: &mut Problems) -> Cut {
     let axis = match *own.across {
         Across::X => 0,
         Across::Y => 1,
         Across::Z => 2,
     };
+    if axis < D && !meets_plane(context.bodies, context.sequence, (axis, *own.at)) {
+        problems
+            .warning(own.at.place, "this plane meets no body")
+            .help("its table will be empty, and nothing is drawn there");
+    }
     Cut { axis, at: *own.at }
 }
 
 /// What is written, and where.
 pub(super) fn output<const D: usize>(
     own: &keys::Output,
+    context: &Context<'_, D>,
     moves: bool,
     problems: &mut Problems,
 ) -> Option<Output> {
@@ -218,7 +226,7 @@ pub(super) fn output<const D: usize>(
         figures: fields::<D>(&own.figures, moves, problems)?,
         cuts: (own.cuts.iter())
             .flat_map(|cuts| cuts.iter())
-            .map(|own| cut(own))
+            .map(|own| cut(own, context, problems))
             .collect(),
         report: *own.report,
         checkpoint_every: *own.checkpoint.every,

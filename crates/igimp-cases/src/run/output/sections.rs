@@ -14,6 +14,9 @@ use super::place::Place;
 use crate::run::model::Model;
 use crate::run::state::State;
 
+/// A plane lies on the end of a domain up to this share of its size \[-\].
+const AT_FACE: f64 = 1e-6;
+
 /// Number and name of a stage as part of a file name.
 pub(crate) fn stage_name<const D: usize>(case: &Case<D>, stage: usize) -> String {
     format!("{}-{}", stage + 1, file_name(&case.stages[stage].name))
@@ -91,10 +94,7 @@ pub(crate) fn planes<const D: usize>(
     let fields = wanted.iter().map(|&field| field.header());
     let header: Vec<String> = places.map(str::to_owned).chain(fields).collect();
     let table = |cut: &Cut| {
-        let crossed = (0..particles.len()).filter(|&k| {
-            let (x, half) = (particles.x[k][cut.axis], particles.half_length[k][cut.axis]);
-            x - half <= cut.at && cut.at < x + half
-        });
+        let crossed = crossed(particles, cut);
         let row = |k: usize| {
             let values = wanted.iter();
             let values = values.map(|&field| fields::value(field, particles, k, &laws));
@@ -103,10 +103,29 @@ pub(crate) fn planes<const D: usize>(
         Table {
             name: format!("{}__{}", cut.name(), stage_name(case, stage)),
             header: header.clone(),
-            rows: crossed.map(row).collect(),
+            rows: crossed.into_iter().map(row).collect(),
         }
     };
     Ok(case.output.cuts.iter().map(table).collect())
+}
+
+/// The particles whose domains a plane crosses. One between two domains crosses the upper one, and at the end of the soil the
+/// last.
+fn crossed<const D: usize>(particles: &Particles<D>, cut: &Cut) -> Vec<usize> {
+    let ends = |k: usize| {
+        let (x, half) = (particles.x[k][cut.axis], particles.half_length[k][cut.axis]);
+        [x - half, x + half]
+    };
+    let within = |&k: &usize| ends(k)[0] <= cut.at && cut.at < ends(k)[1];
+    let found: Vec<usize> = (0..particles.len()).filter(within).collect();
+    if !found.is_empty() {
+        return found;
+    }
+    let ends_there = |&k: &usize| {
+        let [lower, upper] = ends(k);
+        (upper - cut.at).abs() <= AT_FACE * (upper - lower)
+    };
+    (0..particles.len()).filter(ends_there).collect()
 }
 
 /// A place along a section, as a share of its length.
@@ -199,5 +218,22 @@ fn row<const D: usize>(
             let values = recorded.map(|&field| mean(&|p| value(field, p)));
             std::iter::once(along(&x)).chain(x).chain(values).collect()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::case;
+
+    /// GOAL: a plane on the upper face of soil crosses its last particles, and one beside the soil none.
+    /// ORACLE: the lower face, the mirror image: a row of 8 particles of a block of 4 by 4 cells.
+    #[test]
+    fn a_plane_on_a_face_crosses_the_particles_there() {
+        let case = case();
+        let (_, state) = Model::new(&case).unwrap();
+        let at = |at: f64| crossed(&state.body.particles, &Cut { axis: 1, at }).len();
+        assert_eq!([0.0, 0.9, 1.0, 2.0].map(at), [8; 4]);
+        assert_eq!([-0.1, 2.1].map(at), [0; 2]);
     }
 }

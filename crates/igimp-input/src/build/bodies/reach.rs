@@ -52,3 +52,17 @@ pub(crate) fn meets_side<const D: usize>(
     };
     ever(bodies, sequence).is_none_or(|mut own| own.any(reaches))
 }
+
+/// Whether soil is ever at a place on an axis; so it is where a body is not known.
+pub(crate) fn meets_plane<const D: usize>(
+    bodies: &[Option<BodyPart<D>>],
+    sequence: &Sequence,
+    (axis, at): (usize, f64),
+) -> bool {
+    let holds = |part: &BodyPart<D>| {
+        let (lower, upper) = part.region.bounds();
+        let near = 1e-6 * (upper[axis] - lower[axis]);
+        lower[axis] - near <= at && at <= upper[axis] + near
+    };
+    ever(bodies, sequence).is_none_or(|mut own| own.any(holds))
+}
