@@ -190,18 +190,25 @@ fn combine(
                 .collect())
         }
         Some("zip") => {
-            let count = parameters[0].values.len();
-            match parameters.iter().find(|one| one.values.len() != count) {
-                None => Ok((0..count).map(|k| vec![k; parameters.len()]).collect()),
+            let many = |one: &&Parameter| one.values.len() > 1;
+            let Some(first) = parameters.iter().find(many) else {
+                return Ok(vec![vec![0; parameters.len()]]);
+            };
+            let count = first.values.len();
+            let odd = |one: &&Parameter| many(one) && one.values.len() != count;
+            match parameters.iter().find(odd) {
+                None => Ok((0..count)
+                    .map(|k| (parameters.iter().map(|one| k.min(one.values.len() - 1))).collect())
+                    .collect()),
                 Some(odd) => Err(Problem::new(
                     odd.at.clone(),
                     format!(
                         "`{}` has {} values, but `{}` has {count}",
                         odd.key,
                         odd.values.len(),
-                        parameters[0].key
+                        first.key
                     ),
-                    "with combine = \"zip\" all parameters have as many values",
+                    "with combine = \"zip\" all parameters have as many values, or one",
                 )),
             }
         }

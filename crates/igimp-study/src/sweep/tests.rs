@@ -54,6 +54,27 @@ fn a_zip_takes_first_with_first() {
     );
 }
 
+/// GOAL: a single value is that of all tasks in a zip, whichever parameter has it.
+/// ORACLE: the value stated for every task.
+#[test]
+fn a_single_value_of_a_zip_is_that_of_all_tasks() {
+    let settings = |cells: &str, steps: &str| {
+        let text = format!(
+            "igimp_sweep = 1\ncase = \"a.toml\"\ncombine = \"zip\"\n\
+             [parameters]\ngrid.cell = {cells}\nstages.w.steps = {steps}\n[output]\nfolder = \"out\"\n"
+        );
+        let tasks = parse(&text).unwrap().tasks.into_iter();
+        tasks.map(|task| task.settings).collect::<Vec<_>>()
+    };
+    let [cells, steps] = ["[\"1 m\", \"2 m\", \"4 m\"]", "[5, 6, 7]"];
+    assert_eq!(
+        settings("[\"1 m\"]", steps),
+        settings("[\"1 m\", \"1 m\", \"1 m\"]", steps)
+    );
+    assert_eq!(settings(cells, "[5]"), settings(cells, "[5, 5, 5]"));
+    assert_eq!(settings("[\"1 m\"]", "[5]").len(), 1);
+}
+
 #[test]
 fn problems_are_told_with_their_place() {
     insta::assert_snapshot!(
@@ -75,7 +96,7 @@ fn problems_are_told_with_their_place() {
       |
     6 | materials.clay.cohesion = ["8 kPa", "10 kPa", "12 kPa"]
       |                           ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
-      = help: with combine = "zip" all parameters have as many values
+      = help: with combine = "zip" all parameters have as many values, or one
     "#
     );
     insta::assert_snapshot!(

@@ -65,11 +65,21 @@ pub(crate) fn sweep(arguments: &SweepArguments) -> Result<Exit, ProgramError> {
     let path = table.write(&sweep.folder)?;
     table.draw(&sweep.folder)?;
     output::say(&format!("{}table in {}", table.to_text(), path.display()))?;
+    warn_of_unknown(&table);
     Ok(if interrupted {
         worst.max(Exit::NotConverged)
     } else {
         worst
     })
+}
+
+/// Warns of names that are asked for and that no task has.
+fn warn_of_unknown(table: &sweep::Collected) {
+    for name in &table.unknown {
+        output::print_message(&format!(
+            "warning: `{name}` is neither a factor of safety nor a check nor a curve of any task"
+        ));
+    }
 }
 
 /// Runs tasks, some at a time, and says how each ended.
@@ -156,11 +166,7 @@ pub(crate) fn collect(arguments: &Collect) -> Result<Exit, ProgramError> {
     let path = table.write(&sweep.folder)?;
     table.draw(&sweep.folder)?;
     output::print(&format!("{}table in {}", table.to_text(), path.display()))?;
-    for name in &table.unknown {
-        output::print_message(&format!(
-            "warning: `{name}` is neither a factor of safety nor a check nor a curve of any task"
-        ));
-    }
+    warn_of_unknown(&table);
     if table.missing.is_empty() {
         return Ok(Exit::Done);
     }
