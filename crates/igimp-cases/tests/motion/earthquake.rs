@@ -303,6 +303,14 @@ fn earthquakes_that_make_no_sense() {
             "dashpots against still ground already",
         ),
         (
+            "wall_springs = 2".to_owned(),
+            "springs stand beside dashpots, and no side has any",
+        ),
+        (
+            "materials = [\"soil\"]".to_owned(),
+            "the strength of these materials is not reduced",
+        ),
+        (
             "free_field = [\"bottom\"]".to_owned(),
             "stands beside the left or the right side",
         ),

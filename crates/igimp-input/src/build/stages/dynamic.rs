@@ -22,7 +22,10 @@ pub(crate) fn stage<const D: usize>(
     let bodies = moves(about, problems);
     has_mass(about, bodies.as_deref().unwrap_or_default(), problems);
     let reduction = match own.reduction.as_ref().ok()? {
-        None => None,
+        None => {
+            keeps_strength(own, problems)?;
+            None
+        }
         Some(stated) => Some((
             materials(about, &own.materials, problems)?,
             reduction_of(about, stated, problems)?,
@@ -56,6 +59,22 @@ pub(crate) fn stage<const D: usize>(
         bodies: bodies?,
         at_rest: own.at_rest.as_ref().map(|own| **own),
     }))
+}
+
+/// Refuses materials whose strength is to be reduced where nothing says by how much.
+fn keeps_strength(own: &keys::Dynamic, problems: &mut Problems) -> Option<()> {
+    match own.materials.as_ref().ok()? {
+        Some(named) if named.written => {
+            problems
+                .error(
+                    named.place,
+                    "the strength of these materials is not reduced",
+                )
+                .help("add reduction = { times_fos = 1.05 }, or remove materials");
+            None
+        }
+        _ => Some(()),
+    }
 }
 
 /// Refuses forces on rigid bodies without mass.

@@ -54,6 +54,17 @@ pub(super) fn walls<const D: usize>(
             .help("begin with a stage of type gravity or k0, and let this one follow");
         return None;
     }
+    // A file with every default written down states the usual ones.
+    let are_usual = own.wall_springs.total_cmp(&1.0).is_eq();
+    if !are_usual && absorbing.is_empty() && free_field.is_empty() {
+        problems
+            .error(
+                own.wall_springs.place,
+                "springs stand beside dashpots, and no side has any",
+            )
+            .help("name sides in absorbing or free_field, or remove wall_springs");
+        return None;
+    }
     Some(StageWalls {
         absorbing,
         springs: *own.wall_springs,
