@@ -54,6 +54,19 @@ fn stages_that_cannot_install() {
     ]));
 }
 
+/// GOAL: a stage of gravity that is zero does nothing, unless it installs and stresses an anchor.
+/// ORACLE: by hand: two stages of gravity, one of which installs.
+#[test]
+fn a_stage_that_stresses_an_anchor_does_something() {
+    let weightless = ("title = ", "gravity = \"0 m/s2\"\ntitle = ");
+    let warnings = parsed(&[weightless]).warnings();
+    assert_eq!(
+        warnings.matches("does nothing: gravity is 0").count(),
+        1,
+        "{warnings}"
+    );
+}
+
 /// The case, run into a folder of the build with pictures and a report.
 fn written() -> &'static (PathBuf, Run<2>) {
     static ONCE: OnceLock<(PathBuf, Run<2>)> = OnceLock::new();

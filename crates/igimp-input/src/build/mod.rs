@@ -229,7 +229,10 @@ fn header(tree: &Node, problems: &mut Problems) {
     }
     if gravity(tree) == Some(0.0) {
         for stage in things(Root::<2>::stages(tree)).into_iter().flatten() {
-            if let StageForm::Gravity(_) | StageForm::K0(_) = *stage.form {
+            let common = stage.common.as_ref();
+            let consolidates = common.is_ok_and(|own| !matches!(own.consolidation, Ok(None)));
+            let does_more = consolidates || !stage.installs().is_empty();
+            if let (StageForm::Gravity(_) | StageForm::K0(_), false) = (&*stage.form, does_more) {
                 let kind = stage.form.name();
                 problems
                     .warning(
