@@ -294,6 +294,9 @@ pub struct EnergySummary {
     pub integration: f64,
 }
 
+/// A share of the energy beyond which there is none to have a share of: soil stands still but for round-off \[-\].
+const OF_NOTHING: f64 = 10.0;
+
 impl EnergySummary {
     /// Its parts, as `energy.csv` names them.
     pub fn parts(&self) -> [(&'static str, f64); 14] {
@@ -336,10 +339,15 @@ impl EnergySummary {
         for (value, name) in others.into_iter().filter(|(value, _)| *value != 0.0) {
             let _ = write!(text, ", {name} {}", short(value));
         }
+        let share = self.numerical_share();
+        let taken = if share.abs() > OF_NOTHING {
+            format!("{} J", short(self.numerical()))
+        } else {
+            format!("{:.2} %", 100.0 * share)
+        };
         let _ = write!(
             text,
-            " J; the method took {:.2} % (time integration {}, map {}, integration of stress {} J)",
-            100.0 * self.numerical_share(),
+            " J; the method took {taken} (time integration {}, map {}, integration of stress {} J)",
             short(self.scheme),
             short(self.map),
             short(self.integration)
@@ -354,10 +362,15 @@ impl EnergySummary {
             .max(self.loads.abs())
             .max(self.supports.abs());
         if scale > 0.0 {
-            (self.scheme + self.map + self.integration) / scale
+            self.numerical() / scale
         } else {
             0.0
         }
+    }
+
+    /// What the numerical method took.
+    fn numerical(&self) -> f64 {
+        self.scheme + self.map + self.integration
     }
 }
 
@@ -635,4 +648,27 @@ pub struct CheckRow {
     pub check: Check,
     /// Whether the band is met.
     pub pass: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::EnergySummary;
+
+    /// GOAL: of soil that stands still, the method takes no share of nothing.
+    /// ORACLE: by hand: what it took in joule, and a hundredth of a motion.
+    #[test]
+    fn soil_at_rest_loses_no_share() {
+        let energy = |most_kinetic: f64| EnergySummary {
+            most_kinetic,
+            scheme: -2e-9,
+            ..EnergySummary::default()
+        };
+        let still = energy(1e-22).sentence();
+        assert!(
+            still.contains("the method took -2.000e-9 J (time"),
+            "{still}"
+        );
+        let moved = energy(2e-7).sentence();
+        assert!(moved.contains("the method took -1.00 % (time"), "{moved}");
+    }
 }
