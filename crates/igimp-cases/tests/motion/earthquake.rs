@@ -303,14 +303,6 @@ fn earthquakes_that_make_no_sense() {
             "dashpots against still ground already",
         ),
         (
-            "wall_springs = 2".to_owned(),
-            "springs stand beside dashpots, and no side has any",
-        ),
-        (
-            "materials = [\"soil\"]".to_owned(),
-            "the strength of these materials is not reduced",
-        ),
-        (
             "free_field = [\"bottom\"]".to_owned(),
             "stands beside the left or the right side",
         ),
@@ -345,10 +337,6 @@ fn earthquakes_that_make_no_sense() {
             "a block slides on ground that moves",
         ),
         (
-            format!("newmark_from = \"weight\"\n{motion}, axis = \"y\" }}"),
-            "a block slides along x, as `horizontal` pushes",
-        ),
-        (
             "rayleigh = { ratio = 0.02, periods = [\"1 s\", \"1 s\"] }".to_owned(),
             "the two periods are the same",
         ),
@@ -369,6 +357,39 @@ fn earthquakes_that_make_no_sense() {
     assert!(
         error.to_string().contains("does not take the soil along"),
         "{error}"
+    );
+}
+
+/// GOAL: a block is told of no motion across its way.
+/// ORACLE: the key and the words.
+#[test]
+fn a_block_slides_along_its_push() {
+    refused(
+        "newmark_from = \"weight\"\nground_motion = { unit = \"g\", time = [\"0 s\", \"1 s\"], values = [0, 1], axis = \"y\" }",
+        "a block slides along x, as `horizontal` pushes",
+    );
+}
+
+/// A layer whose motion has these keys is refused with these words.
+#[track_caller]
+fn refused(keys: &str, said: &str) {
+    let text = layer(&format!("duration = \"1 s\"\n{keys}"));
+    let error = CaseFile::parse("layer.toml", &text, &[]).err();
+    let error = error.map(|error| error.to_string()).unwrap_or_default();
+    assert!(error.contains(said) && error.contains("help:"), "{error}");
+}
+
+/// GOAL: keys that would do nothing are refused.
+/// ORACLE: the key and the words.
+#[test]
+fn springs_without_dashpots_and_strength_that_stays() {
+    refused(
+        "wall_springs = 2",
+        "springs stand beside dashpots, and no side has any",
+    );
+    refused(
+        "materials = [\"soil\"]",
+        "the strength of these materials is not reduced",
     );
 }
 
