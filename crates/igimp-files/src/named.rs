@@ -58,6 +58,9 @@ impl Named {
 }
 
 /// The text of a file of so many bytes at most; bytes that are no UTF-8 become replacement characters.
+///
+/// # Errors
+/// What the system says, and that of what is no file or has more bytes, in words.
 pub fn text_of(path: &Path, most: u64) -> Result<String, String> {
     // Asked before it is opened: a pipe would be waited for.
     let about = std::fs::metadata(path).map_err(|error| error.to_string())?;
