@@ -45,6 +45,7 @@ impl Table {
 
     /// The table with the digits that its file holds. Pictures are drawn from it: a run that is taken up reads the rows before, and
     /// draws the same.
+    #[must_use]
     pub fn as_written(&self) -> Self {
         let digits =
             |(column, value): (&String, &f64)| number(column, *value).parse().unwrap_or(*value);
