@@ -1,6 +1,6 @@
 //! The moments of inertia of a rigid body in space, which turn with it, over a step (theory, eq. 67d).
 
-use igimp_shape::matrices::{congruence, multiply};
+use igimp_shape::matrices::{apply, congruence, multiply};
 
 use crate::RigidBody;
 use crate::arm::cross;
@@ -103,11 +103,6 @@ impl<const D: usize> Gyration<D> {
         }
         angle
     }
-}
-
-/// The product of a matrix and a vector.
-fn apply<const D: usize>(matrix: &[[f64; D]; D], v: &[f64; D]) -> [f64; D] {
-    std::array::from_fn(|a| (0..D).map(|b| matrix[a][b] * v[b]).sum())
 }
 
 #[cfg(test)]

@@ -59,11 +59,6 @@ impl<const D: usize> Basis<D> {
     }
 }
 
-/// Product of a tensor and a vector.
-pub(crate) fn apply<const D: usize>(tensor: &[[f64; D]; D], vector: &[f64; D]) -> [f64; D] {
-    std::array::from_fn(|row| dot(&tensor[row], vector))
-}
-
 pub(crate) fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     (0..D).map(|axis| a[axis] * b[axis]).sum()
 }

@@ -1,8 +1,9 @@
 //! What a flow answers: heads, pressures, velocities, discharges and the free surface.
 
 use igimp_shape::Grid;
+use igimp_shape::matrices::apply;
 
-use crate::basis::{Basis, CORNERS, apply, nodes_of};
+use crate::basis::{Basis, CORNERS, nodes_of};
 use crate::conditions::Extent;
 use crate::curve::Relative;
 use crate::ground::ends_of;

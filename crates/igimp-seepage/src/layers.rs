@@ -1,7 +1,8 @@
 //! Permeability of a cell that several soils share, or whose soil varies (theory, eqs. 85 and 85e).
 
-use crate::basis::Point;
-use crate::basis::{apply, dot};
+use igimp_shape::matrices::apply;
+
+use crate::basis::{Point, dot};
 
 /// The tensor of a laminate of the soils of a cell: exact for layers however the grid lies to them; none for one soil that does
 /// not vary.

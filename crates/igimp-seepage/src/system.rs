@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use igimp_linear::{NodeBlock, Pattern, TangentMatrix};
 use igimp_shape::Grid;
+use igimp_shape::matrices::apply;
 
-use crate::basis::{Basis, CORNERS, FOUR, HIGH, Point, TWO, apply, dot, gauss, nodes_of};
+use crate::basis::{Basis, CORNERS, FOUR, HIGH, Point, TWO, dot, gauss, nodes_of};
 use crate::boundary::{At, Held, held};
 use crate::conditions::{Conditions, FreeWater, InGround, Soil};
 use crate::curve::{Curve, Relative};

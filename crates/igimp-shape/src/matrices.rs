@@ -38,6 +38,12 @@ pub fn transpose<const D: usize>(a: &[[f64; D]; D]) -> [[f64; D]; D] {
     out
 }
 
+/// The product `a v`.
+#[inline]
+pub fn apply<const D: usize>(a: &[[f64; D]; D], v: &[f64; D]) -> [f64; D] {
+    std::array::from_fn(|row| (0..D).map(|column| a[row][column] * v[column]).sum())
+}
+
 /// The product `aᵀ v`.
 #[inline]
 pub fn transpose_apply<const D: usize>(a: &[[f64; D]; D], v: &[f64; D]) -> [f64; D] {

@@ -2,6 +2,7 @@
 //! eqs. 67d and 67e).
 
 use igimp_rigid::{Gyration, NODES_PER_BODY};
+use igimp_shape::matrices::apply;
 
 use super::{Inertia, Motion};
 use crate::conditions::time_step::Weights;
@@ -102,9 +103,4 @@ impl<const D: usize> Inertia<D> {
         let slope = own.slope(&moments, [&spin, &rate], by);
         slope.map(|row| row.map(|own| own / of_end))
     }
-}
-
-/// The product of a matrix and a vector.
-fn apply<const D: usize>(matrix: &[[f64; D]; D], v: &[f64; D]) -> [f64; D] {
-    std::array::from_fn(|a| (0..D).map(|b| matrix[a][b] * v[b]).sum())
 }
