@@ -7,11 +7,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use igimp_cases::run::{self as engine, Start, Target};
+use igimp_cases::{CaseError, chain};
 use igimp_estimate::Expectation;
 use igimp_estimate::room::refuse_beyond;
 use igimp_estimate::watch::lacks_memory;
-use igimp_cases::run::{self as engine, Start, Target};
-use igimp_cases::{CaseError, chain};
 use igimp_model::{AnyCase, Case, in_any_dimension};
 use igimp_results::ResultsError;
 use igimp_results::folder::overwrite_guard::Replace;
