@@ -83,20 +83,40 @@ materials = ["clay"]
 steps = 400
 "#;
 
+/// The same on a rigid body in place of nodes that are held, which soil touches where it is and not a cell above.
+fn on_a_rigid_floor() -> String {
+    let floor = r#"[[rigid]]
+name = "floor"
+type = "rectangle"
+from = ["-0.5 m", "-15 cm"]
+to = ["3 m", "0 m"]
+interface = { adhesion_share = 1.0 }
+from_start = true
+rounding = 0
+"#;
+    let held = &SLUMP[SLUMP.find("[[boundaries.boxes]]").unwrap_or(0)
+        ..SLUMP.find("[[stages]]").unwrap_or(SLUMP.len())];
+    let changes = [
+        (held, floor),
+        ("bottom = \"fixed\"\n", ""),
+        ("y = [\"-5 cm\"", "y = [\"-10 cm\""),
+        ("cell = \"5 cm\"", "cell = \"2.5 cm\""),
+        ("below = 0.2", "below = 0.1"),
+        ("points_per_cell = 9", "points_per_cell = 4"),
+        ("steps = 400", "steps = 3000"),
+    ];
+    let own = SLUMP.to_owned();
+    changes
+        .iter()
+        .fold(own, |text, (from, to)| text.replacen(from, to, 1))
+}
+
 /// Where the domains of all but a share of the mass end along the first axis \[m\].
 fn front(particles: &Particles<2>, beyond: f64) -> f64 {
-    let mut ends: Vec<[f64; 2]> = std::iter::zip(&particles.x, &particles.half_length)
+    let ends = std::iter::zip(&particles.x, &particles.half_length)
         .zip(&particles.mass)
-        .map(|((x, half), mass)| [x[0] + half[0], *mass])
-        .collect();
-    ends.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let within = (1.0 - beyond) * ends.iter().map(|[_, mass]| mass).sum::<f64>();
-    let mut reached = 0.0;
-    let held = ends.iter().take_while(|[_, mass]| {
-        reached += mass;
-        reached <= within * (1.0 + 1e-9)
-    });
-    held.last().map_or(f64::NAN, |[end, _]| *end)
+        .map(|((x, half), mass)| [x[0] + half[0], *mass]);
+    length_with(1.0 - beyond, ends.collect())
 }
 
 /// Holds the slump and the columns.
@@ -110,9 +130,28 @@ pub(super) fn hold(study: &mut Study, level: Level) -> Result<(), CaseError> {
 }
 
 fn slump(study: &mut Study) -> Result<(), CaseError> {
-    let case = CaseFile::parse("slump.toml", SLUMP, &[])?.into_case();
+    spread(study, "slump of clay, cells of 5 cm", SLUMP)?;
+    let variant = "slump of clay on a rigid floor, cells of 2.5 cm";
+    let (run, particles) = spread(study, variant, &on_a_rigid_floor())?;
+    let soil = std::iter::zip(&particles.x, &particles.mass).map(|(x, mass)| [x[0], *mass]);
+    study.check(
+        run,
+        "length with 95 % of the clay [m]",
+        PLASTIC_LAYER.says(layer_length(0.95)),
+        Band::Relative(0.03),
+        length_with(0.95, soil.collect()),
+    );
+    Ok(())
+}
+
+/// Lets a block spread, and holds the heights that it leaves.
+fn spread(
+    study: &mut Study,
+    variant: &str,
+    text: &str,
+) -> Result<(usize, Particles<2>), CaseError> {
+    let case = CaseFile::parse("slump.toml", text, &[])?.into_case();
     let computed = Computed::<2>::new(case)?;
-    let variant = "slump of clay, cells of 5 cm";
     let run = study.run_to_end(RunRecord::new(variant, &computed.report, computed.elapsed));
     let particles = computed.particles();
     let end = layer_front();
@@ -123,7 +162,7 @@ fn slump(study: &mut Study) -> Result<(), CaseError> {
         let band = Band::Relative(0.03);
         study.check(run, quantity, PLASTIC_LAYER.says(height), band, found);
     }
-    Ok(())
+    Ok((run, particles.clone()))
 }
 
 /// The height of a layer at yield \[m\]: thrust, less by the difference of stresses over the height, changes by the shear on the floor.
@@ -132,21 +171,49 @@ fn layer_height(front: f64, x: f64) -> f64 {
     FRAC_PI_2 * scale + (2.0 * scale * (front - x)).sqrt()
 }
 
-/// Where a layer at yield of the volume ends \[m\].
-fn layer_front() -> f64 {
-    let scale = STRENGTH / WEIGHT;
-    let volume =
-        |front: f64| front * (FRAC_PI_2 * scale + 2.0 / 3.0 * (2.0 * scale * front).sqrt());
-    let (mut below, mut above) = (0.0, 10.0);
+/// The length within which a share of a layer at yield lies \[m\].
+fn layer_length(share: f64) -> f64 {
+    let end = layer_front();
+    let volume = |length: f64| {
+        let scale = STRENGTH / WEIGHT;
+        let beyond = end - length;
+        VOLUME - beyond * (FRAC_PI_2 * scale + 2.0 / 3.0 * (2.0 * scale * beyond).sqrt())
+    };
+    root(|length| volume(length) - share * VOLUME, end)
+}
+
+/// The place within which a share of masses lies, each with its place.
+fn length_with(share: f64, mut masses: Vec<[f64; 2]>) -> f64 {
+    masses.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let within = share * masses.iter().map(|[_, mass]| mass).sum::<f64>();
+    let mut reached = 0.0;
+    let held = masses.iter().take_while(|[_, mass]| {
+        reached += mass;
+        reached <= within * (1.0 + 1e-9)
+    });
+    held.last().map_or(f64::NAN, |[place, _]| *place)
+}
+
+/// Where a function that rises from below zero at 0 to above it at `end` is zero.
+fn root(function: impl Fn(f64) -> f64, end: f64) -> f64 {
+    let (mut below, mut above) = (0.0, end);
     for _ in 0..100 {
         let middle = 0.5 * (below + above);
-        if volume(middle) < VOLUME {
+        if function(middle) < 0.0 {
             below = middle;
         } else {
             above = middle;
         }
     }
     above
+}
+
+/// Where a layer at yield of the volume ends \[m\].
+fn layer_front() -> f64 {
+    let scale = STRENGTH / WEIGHT;
+    let volume =
+        |front: f64| front * (FRAC_PI_2 * scale + 2.0 / 3.0 * (2.0 * scale * front).sqrt());
+    root(|front| volume(front) - VOLUME, 10.0)
 }
 
 /// The volume of soil between two places over the way between them \[m\].
