@@ -1,10 +1,7 @@
-//! What clay and sand leave when they have spread and rest.
-
-use std::f64::consts::FRAC_PI_2;
+//! What sand leaves when it has spread and rests.
 
 use igimp_assembly::Particles;
 use igimp_cases::CaseError;
-use igimp_input::CaseFile;
 use igimp_model::check::Band;
 use rayon::prelude::*;
 
@@ -12,11 +9,6 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, shipped_case};
 
-const PLASTIC_LAYER: Oracle = Oracle {
-    kind: OracleKind::Exact,
-    source: "yield-stress fluid at rest on a rough floor, second order in height over length (Dubash et al. 2009)",
-    locator: "h = π a/2 + √(2 a (x_f − x)), a = c_u/γ, with x_f by the volume",
-};
 const COLUMNS: Oracle = Oracle {
     kind: OracleKind::Published,
     source: "Lube et al. 2005; Lajeunesse et al. 2005; arXiv 1512.05180",
@@ -39,78 +31,6 @@ const WIDE_CHANNELS: Oracle = Oracle {
 };
 /// Half the width of a column \[m\].
 const HALF_WIDTH: f64 = 0.1;
-/// Strength of the clay that spreads \[Pa\], unit weight \[N/m³\], gravity \[m/s²\], volume of the half that is modelled \[m³/m\].
-const STRENGTH: f64 = 309.0;
-const WEIGHT: f64 = 18e3;
-const GRAVITY: f64 = 9.81;
-const VOLUME: f64 = 0.25;
-/// A block of clay that stands, and then loses its strength.
-const SLUMP: &str = r#"
-igimp = 1
-[case]
-title = "a block of clay that spreads"
-[grid]
-cell = "5 cm"
-domain = { x = ["0 m", "2.5 m"], y = ["-5 cm", "60 cm"] }
-small_cuts = { below = 0.2 }
-[materials.clay]
-model = "von-mises"
-unit_weight = "18 kN/m3"
-young = "500 kPa"
-poisson = 0.45
-cu = "4 kPa"
-[[bodies]]
-name = "block"
-material = "clay"
-points_per_cell = 9
-polygon = [["0 m", "0 m"], ["0.5 m", "0 m"], ["0.5 m", "0.5 m"], ["0 m", "0.5 m"]]
-[boundaries]
-left = "roller"
-bottom = "fixed"
-[[boundaries.boxes]]
-name = "floor"
-from = ["0 m", "-5 cm"]
-to = ["2.5 m", "0 m"]
-[[stages]]
-name = "weight"
-type = "gravity"
-steps = 3
-[[stages]]
-name = "slump"
-type = "run-out"
-reduction = { factor = 12.945 }
-materials = ["clay"]
-steps = 400
-"#;
-
-/// The same on a rigid body in place of nodes that are held, which soil touches where it is and not a cell above.
-fn on_a_rigid_floor() -> String {
-    let floor = r#"[[rigid]]
-name = "floor"
-type = "rectangle"
-from = ["-0.5 m", "-15 cm"]
-to = ["3 m", "0 m"]
-interface = { adhesion_share = 1.0 }
-from_start = true
-rounding = 0
-"#;
-    let held = &SLUMP[SLUMP.find("[[boundaries.boxes]]").unwrap_or(0)
-        ..SLUMP.find("[[stages]]").unwrap_or(SLUMP.len())];
-    let changes = [
-        (held, floor),
-        ("bottom = \"fixed\"\n", ""),
-        ("y = [\"-5 cm\"", "y = [\"-10 cm\""),
-        ("cell = \"5 cm\"", "cell = \"2.5 cm\""),
-        ("below = 0.2", "below = 0.1"),
-        ("points_per_cell = 9", "points_per_cell = 4"),
-        ("steps = 400", "steps = 3000"),
-    ];
-    let own = SLUMP.to_owned();
-    changes
-        .iter()
-        .fold(own, |text, (from, to)| text.replacen(from, to, 1))
-}
-
 /// Where the domains of all but a share of the mass end along the first axis \[m\].
 fn front(particles: &Particles<2>, beyond: f64) -> f64 {
     let ends = std::iter::zip(&particles.x, &particles.half_length)
@@ -119,9 +39,8 @@ fn front(particles: &Particles<2>, beyond: f64) -> f64 {
     length_with(1.0 - beyond, ends.collect())
 }
 
-/// Holds the slump and the columns.
+/// Holds the columns.
 pub(super) fn hold(study: &mut Study, level: Level) -> Result<(), CaseError> {
-    slump(study)?;
     columns(study, level)?;
     if level >= Level::Default {
         beads(study)?;
@@ -129,61 +48,8 @@ pub(super) fn hold(study: &mut Study, level: Level) -> Result<(), CaseError> {
     Ok(())
 }
 
-fn slump(study: &mut Study) -> Result<(), CaseError> {
-    spread(study, "slump of clay, cells of 5 cm", SLUMP)?;
-    let variant = "slump of clay on a rigid floor, cells of 2.5 cm";
-    let (run, particles) = spread(study, variant, &on_a_rigid_floor())?;
-    let soil = std::iter::zip(&particles.x, &particles.mass).map(|(x, mass)| [x[0], *mass]);
-    study.check(
-        run,
-        "length with 95 % of the clay [m]",
-        PLASTIC_LAYER.says(layer_length(0.95)),
-        Band::Relative(0.03),
-        length_with(0.95, soil.collect()),
-    );
-    Ok(())
-}
-
-/// Lets a block spread, and holds the heights that it leaves.
-fn spread(
-    study: &mut Study,
-    variant: &str,
-    text: &str,
-) -> Result<(usize, Particles<2>), CaseError> {
-    let case = CaseFile::parse("slump.toml", text, &[])?.into_case();
-    let computed = Computed::<2>::new(case)?;
-    let run = study.run_to_end(RunRecord::new(variant, &computed.report, computed.elapsed));
-    let particles = computed.particles();
-    let end = layer_front();
-    for place in [0.1, 0.2, 0.3, 0.4] {
-        let found = thickness(particles, [place - 0.05, place + 0.05]);
-        let quantity = format!("height at x = {place} m [m]");
-        let height = layer_height(end, place);
-        let band = Band::Relative(0.03);
-        study.check(run, quantity, PLASTIC_LAYER.says(height), band, found);
-    }
-    Ok((run, particles.clone()))
-}
-
-/// The height of a layer at yield \[m\]: thrust, less by the difference of stresses over the height, changes by the shear on the floor.
-fn layer_height(front: f64, x: f64) -> f64 {
-    let scale = STRENGTH / WEIGHT;
-    FRAC_PI_2 * scale + (2.0 * scale * (front - x)).sqrt()
-}
-
-/// The length within which a share of a layer at yield lies \[m\].
-fn layer_length(share: f64) -> f64 {
-    let end = layer_front();
-    let volume = |length: f64| {
-        let scale = STRENGTH / WEIGHT;
-        let beyond = end - length;
-        VOLUME - beyond * (FRAC_PI_2 * scale + 2.0 / 3.0 * (2.0 * scale * beyond).sqrt())
-    };
-    root(|length| volume(length) - share * VOLUME, end)
-}
-
 /// The place within which a share of masses lies, each with its place.
-fn length_with(share: f64, mut masses: Vec<[f64; 2]>) -> f64 {
+pub(super) fn length_with(share: f64, mut masses: Vec<[f64; 2]>) -> f64 {
     masses.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let within = share * masses.iter().map(|[_, mass]| mass).sum::<f64>();
     let mut reached = 0.0;
@@ -192,38 +58,6 @@ fn length_with(share: f64, mut masses: Vec<[f64; 2]>) -> f64 {
         reached <= within * (1.0 + 1e-9)
     });
     held.last().map_or(f64::NAN, |[place, _]| *place)
-}
-
-/// Where a function that rises from below zero at 0 to above it at `end` is zero.
-fn root(function: impl Fn(f64) -> f64, end: f64) -> f64 {
-    let (mut below, mut above) = (0.0, end);
-    for _ in 0..100 {
-        let middle = 0.5 * (below + above);
-        if function(middle) < 0.0 {
-            below = middle;
-        } else {
-            above = middle;
-        }
-    }
-    above
-}
-
-/// Where a layer at yield of the volume ends \[m\].
-fn layer_front() -> f64 {
-    let scale = STRENGTH / WEIGHT;
-    let volume =
-        |front: f64| front * (FRAC_PI_2 * scale + 2.0 / 3.0 * (2.0 * scale * front).sqrt());
-    root(|front| volume(front) - VOLUME, 10.0)
-}
-
-/// The volume of soil between two places over the way between them \[m\].
-fn thickness(particles: &Particles<2>, [from, to]: [f64; 2]) -> f64 {
-    let volume = |p: usize| {
-        let (x, half) = (particles.x[p][0], particles.half_length[p][0]);
-        let within = (x + half).min(to) - (x - half).max(from);
-        particles.mass[p] * GRAVITY / WEIGHT * within.max(0.0) / (2.0 * half)
-    };
-    (0..particles.len()).map(volume).sum::<f64>() / (to - from)
 }
 
 /// The shipped column, so many times as high as half of it is wide, on cells of 2 cm or of others.

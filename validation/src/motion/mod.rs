@@ -7,6 +7,7 @@ mod disc;
 mod layers;
 mod revolution;
 mod rolling;
+mod slump;
 
 use std::path::Path;
 
@@ -119,6 +120,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     disc::hold(&mut study, level)?;
     layers::hold(&mut study)?;
     rolling::hold(&mut study, level)?;
+    slump::hold(&mut study, level)?;
     deposits::hold(&mut study, level)?;
     revolution::hold(&mut study, level)?;
     Ok(study)

@@ -5,6 +5,7 @@ mod edits;
 #[path = "../common/messages.rs"]
 mod messages;
 
+mod closing;
 mod reinforcement;
 mod rigid;
 mod rigid_results;

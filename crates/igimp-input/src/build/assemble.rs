@@ -9,7 +9,7 @@ use igimp_model::{
 };
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::bodies::Body;
-use igimp_schema::schema::{AXISYMMETRIC, Root, stages as keys};
+use igimp_schema::schema::{Root, is_whole, stages as keys};
 use igimp_schema::tree::Node;
 use igimp_schema::tree::read::{At, Found};
 
@@ -128,8 +128,7 @@ pub(super) fn assemble<const D: usize>(
     let curves = each(Root::<D>::curves(tree), |own| {
         curves::curve(own, names, loads, file, problems)
     });
-    let analysis = tree.get("case").and_then(|case| case.text_at("analysis"));
-    let is_whole = D == 3 || analysis == Some(AXISYMMETRIC);
+    let is_whole = is_whole(tree);
     let checks = each(Root::<D>::checks(tree), |own| {
         checks::check(own, is_whole, names, loads, &stages, problems)
     });

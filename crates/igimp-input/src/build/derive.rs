@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use igimp_schema::schema::{AXISYMMETRIC, SPACE};
+use igimp_schema::schema::{SPACE, is_whole};
 use igimp_schema::tree::{Node, Value};
 
 use super::outputs::quantities::unit_of;
@@ -77,7 +77,7 @@ pub(super) fn derive(tree: &mut Node, file: &Path) {
     derive_output(tree, file);
     let analysis = tree.get("case").and_then(|case| case.text_at("analysis"));
     let dimensions = if analysis == Some(SPACE) { 3 } else { 2 };
-    let is_whole = dimensions == 3 || analysis == Some(AXISYMMETRIC);
+    let is_whole = is_whole(tree);
     derive_small_cuts(tree, dimensions);
     if let Some(curves) = tree.get_mut("curves") {
         for curve in curves.items_mut() {

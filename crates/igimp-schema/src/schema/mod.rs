@@ -109,8 +109,13 @@ pub(crate) fn bodies_of(file: &Node) -> Bodies {
     }
 }
 
+/// Whether the bodies of a case file are whole ones, in space or of revolution: forces are not per metre run.
+pub fn is_whole(file: &Node) -> bool {
+    !matches!(bodies_of(file), Bodies::Plane)
+}
+
 /// Name of the analysis of a body of revolution.
-pub const AXISYMMETRIC: &str = Analysis::Axisymmetric.name();
+const AXISYMMETRIC: &str = Analysis::Axisymmetric.name();
 
 choices! {
     /// Kinds of analysis.
