@@ -8,7 +8,6 @@ use rayon::prelude::*;
 use crate::body::particles::{CHUNK, ParticleFields, Particles, volume_ratio};
 use crate::contributions::consolidation::PoresAfter;
 use crate::contributions::inertia::Motion;
-use crate::contributions::rigid::seeded_too_close;
 use crate::equations::kinematics::ParticleTrial;
 use crate::equations::trial::Trial;
 use crate::error::AssemblyError;
@@ -135,7 +134,7 @@ impl<const D: usize> Particles<D> {
     ///
     /// [`System::bodies_at`]: crate::System::bodies_at
     pub fn resolve_overlap(&mut self, bodies: &[RigidBody<D>]) -> usize {
-        let ways = seeded_too_close(bodies, self);
+        let ways = igimp_rigid::seeded_too_close(bodies, self.domains());
         self.push_out(&ways);
         ways.len()
     }

@@ -35,7 +35,7 @@ pub use conditions::water::{PoreSite, PoreState, PoreStiffness, PoreWater, Water
 pub use contributions::consolidation::{PoresAfter, WaterMoved};
 pub use contributions::inertia::Motion;
 pub use contributions::reinforcement::{Hold, Reinforcement, Segment, SegmentState, Station};
-pub use contributions::rigid::{AcceptedContact, Penetration};
+pub use contributions::rigid::AcceptedContact;
 pub use contributions::walls::TieForce;
 pub use energy::StepEnergy;
 pub use equations::kinematics::ParticleTrial;
@@ -44,7 +44,8 @@ pub use equations::system::{Structures, System};
 pub use equations::trial::Trial;
 pub use error::AssemblyError;
 pub use igimp_rigid::{
-    ContactNode, ContactState, Interface, Penalty, Pose, RigidBody, RigidInertia, Shear, Tension,
+    ContactNode, ContactState, Interface, Penalty, Penetration, Pose, RigidBody, RigidInertia,
+    Shear, Tension,
 };
 pub use igimp_surface::{CarryingTriangle, Surface, SurfaceError, SurfaceTriangle};
 pub use laws::SharedLaw;

@@ -2,7 +2,7 @@
 
 use igimp_shape::Grid;
 
-use crate::RigidBody;
+use crate::{Image, RigidBody};
 use igimp_surface::vectors::{dot, minus, norm};
 
 /// Abscissa of the two-point rule of Gauss on (−1, 1).
@@ -20,9 +20,9 @@ pub struct Face<const D: usize> {
     /// The normal of the side in space.
     pub normal: [f64; D],
     /// The same in the frame of the body.
-    pub facing: [f64; D],
+    pub(crate) facing: [f64; D],
     /// The directions in which it is laid out: one in the plane, two in space.
-    pub along: [[f64; D]; 2],
+    pub(crate) along: [[f64; D]; 2],
     /// Half of its length in these directions \[length\].
     half: [f64; 2],
     /// Half of the particle's thickness along the normal \[length\].
@@ -95,6 +95,23 @@ impl<const D: usize> Face<D> {
         let arm = minus(&other.middle, &self.middle);
         let mut tangents = std::iter::zip(&self.along, self.half).take(D - 1);
         self.may_hide(other.gap) && tangents.all(|(tangent, half)| dot(&arm, tangent).abs() < half)
+    }
+
+    /// The directions in which the soil behind it slips along the image of a knot: those that its own mirror image has there, seen
+    /// in the mirror (theory, eqs. 45a and 45h).
+    pub fn tangents_at(&self, body: &RigidBody<D>, image: Image<D>) -> [[f64; D]; 2] {
+        let Some(space) = body.surface.space() else {
+            let tangents = tangents(&image.mirrored(&self.normal));
+            return tangents.map(|own| image.mirrored(&own));
+        };
+        let (pose, knot) = (&body.pose, image.knot);
+        let facing = if image == Image::own(knot) {
+            self.facing
+        } else {
+            pose.direction_in_body(&image.mirrored(&self.normal))
+        };
+        let tangents = space.tangents_at(knot, &facing);
+        tangents.map(|own| image.mirrored(&pose.direction(&own)))
     }
 
     /// A point of its plane in space.

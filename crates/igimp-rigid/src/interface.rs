@@ -117,7 +117,7 @@ impl Default for Penalty {
     fn default() -> Self {
         Self {
             stiffness: 10.0,
-            smoothing: 2e-2,
+            smoothing: 1e-4,
             tangential: 0.5,
         }
     }

@@ -2,9 +2,11 @@
 //! behind, and the faces that particles turn to them. Nothing here knows of stress in soil or of equilibrium.
 
 mod arm;
+mod clearance;
 mod face;
 mod face_clipping;
 mod gyration;
+mod images;
 mod inertia;
 mod interface;
 mod pose;
@@ -15,9 +17,11 @@ use std::sync::Arc;
 use igimp_surface::Surface;
 
 pub use arm::Arm;
+pub use clearance::{Domains, Penetration, WaysOff, push_out, seeded_too_close};
 pub use face::{Face, FacePoint};
 pub use face_clipping::{Piece, pieces, tents_within};
 pub use gyration::Gyration;
+pub use images::{Image, Images};
 pub use inertia::RigidInertia;
 pub use interface::{Interface, Penalty, Shear, Tension};
 pub use pose::Pose;
@@ -67,6 +71,12 @@ impl<const D: usize> RigidBody<D> {
             pose: Pose::at(origin),
             motion: RigidInertia::default(),
         }
+    }
+
+    /// The knots of its surface in space \[length\].
+    pub fn knots(&self) -> Vec<[f64; D]> {
+        let knots = self.surface.knots().into_iter();
+        knots.map(|(knot, _)| self.pose.into_space(&knot)).collect()
     }
 
     /// Signed distance of a point \[length\] in space to the surface, negative within the body, and the

@@ -41,6 +41,11 @@ impl<const D: usize> Pose<D> {
         std::array::from_fn(|axis| self.origin[axis] + arm[axis])
     }
 
+    /// A direction of space in the frame of the body.
+    pub fn direction_in_body(&self, v: &[f64; D]) -> [f64; D] {
+        transpose_apply(&self.turn, v)
+    }
+
     /// The pose after a displacement \[length\] and a rotation \[rad\].
     #[must_use]
     pub fn moved(&self, displacement: &[f64; D], rotation: &[f64; 3]) -> Self {

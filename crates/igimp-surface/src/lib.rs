@@ -226,6 +226,15 @@ impl<const D: usize> Surface<D> {
         norm(&minus(&upper, &lower))
     }
 
+    /// The longest edge of a facet \[length\].
+    pub fn longest_facet(&self) -> f64 {
+        let edges = self.facets.iter().flat_map(|facet| {
+            let from = |k: usize| &self.points[facet.corners[k]];
+            (0..D).map(move |k| norm(&minus(from((k + 1) % D), from(k))))
+        });
+        edges.fold(0.0, f64::max)
+    }
+
     /// In the plane the length of what belongs to each knot \[length\].
     pub fn tents(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.knot_count()];

@@ -12,6 +12,7 @@ use crate::body::columns::{
 };
 use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
+use igimp_rigid::Domains;
 use igimp_shape::matrices::{determinant, identity};
 
 /// Particles that are handled together: fixed, so that results do not depend on the number of
@@ -279,6 +280,15 @@ impl<const D: usize> Particles<D> {
     /// The arrays, handed over.
     pub fn into_fields(self) -> ParticleFields<D> {
         self.fields
+    }
+
+    /// The domains as they stand, for bodies beside them.
+    pub(crate) fn domains(&self) -> Domains<'_, D> {
+        Domains {
+            x: &self.x,
+            half_length: &self.half_length,
+            half_length0: &self.half_length0,
+        }
     }
 
     /// Number of particles.

@@ -1,6 +1,6 @@
 //! GOAL: no particle gets into a rigid body: those that come too close are put back, a step that carries
 //! one into a body or through it is refused, wherever the particle stood before.
-//! BODY: a block of 12 × 3 unit cells with 2 particles per direction, far below a body, lifted as a whole.
+//! BODY: a block of 12 × 3 unit cells with 2 particles per direction, below a body, lifted as a whole.
 //! ORACLE: distances by hand.
 
 use crate::common::laws;
@@ -36,21 +36,23 @@ fn body(corners: &[[f64; 2]]) -> RigidBody<2> {
     body
 }
 
-/// What a step in statics leaves that lifts the soil by so much below a body from height 4 to 6.
-fn lifted(by: f64, geometry: Geometry) -> Result<AcceptedContact<2>, Penetration> {
-    lifted_over(None, by, geometry)
-}
-
-/// The same over some time.
-fn lifted_over(
-    time: Option<TimeStep>,
+/// What a step over some time leaves that lifts the soil by so much below a body whose lower side is at this height.
+fn lifted(
+    base: f64,
     by: f64,
+    time: Option<TimeStep>,
     geometry: Geometry,
 ) -> Result<AcceptedContact<2>, Penetration> {
     let grid = Grid::new([12, 10].map(|cells| Axis::uniform(0.0, 1.0, cells).unwrap()));
     let places = (0..24 * 6).map(|k| [k % 24, k / 24].map(|k| HALF + 2.0 * HALF * f64::from(k)));
     let soil = particles(places);
-    let bodies = [body(&[[5.05, 4.0], [7.05, 4.0], [7.05, 6.0], [5.05, 6.0]])];
+    let top = base + 2.0;
+    let bodies = [body(&[
+        [5.05, base],
+        [7.05, base],
+        [7.05, top],
+        [5.05, top],
+    ])];
     let (_, law) = laws().remove(0);
     let constraints = Constraints::free(&grid);
     let loads = StepLoads::gravity([0.0; 2]);
@@ -82,18 +84,19 @@ fn lifted_over(
 
 #[test]
 fn soil_that_jumps_into_a_body_is_caught() {
-    // The upper row of particles begins at height 2.75, far from the body.
-    assert!(lifted(1.0, Geometry::Moving).unwrap().push_out.is_empty());
-    for by in [1.2, 1.4] {
+    // The upper row of particles begins at height 2.75, in sight of the body.
+    let lifted = |by: f64, geometry: Geometry| lifted(3.2, by, None, geometry);
+    assert!(lifted(0.2, Geometry::Moving).unwrap().push_out.is_empty());
+    for by in [0.4, 0.6] {
         let push_out = lifted(by, Geometry::Moving).unwrap().push_out;
         assert_eq!(push_out.len(), 4, "{push_out:?}");
         for (_, way) in push_out {
             let height = 2.75 + by + way[1];
-            assert!((height - (4.0 - 0.5 * HALF)).abs() < 1e-12 && way[0].abs() < 1e-12);
+            assert!((height - (3.2 - 0.5 * HALF)).abs() < 1e-12 && way[0].abs() < 1e-12);
         }
     }
     // Into the body, and through it.
-    for (by, least) in [(1.6, 1.4), (6.0, 2.8)] {
+    for (by, least) in [(0.8, 1.4), (5.2, 0.8)] {
         match lifted(by, Geometry::Moving) {
             Err(Penetration {
                 body,
@@ -115,11 +118,11 @@ fn soil_that_jumps_into_a_body_is_caught() {
     }
 }
 
-// GOAL: in a step that takes time no soil comes up to a body that did not see it as the step began: contact would have no part in it.
-// CASE: the upper row, whose centres begin 1.25 below the body, five half-lengths off.
+// GOAL: no soil comes up to a body that saw none as the step began: contact would have no part in it.
+// CASE: the upper row, whose centres begin 1.25 below the body, five half-lengths off, in statics and in a step that takes time.
 // ORACLE: a half-length, to which a step may bring it: its domain touches the body there.
 #[test]
-fn soil_out_of_sight_does_not_come_up_to_a_body_in_time() {
+fn soil_out_of_sight_does_not_come_up_to_a_body() {
     let time = TimeStep {
         duration: 0.1,
         scheme: TimeScheme::Newmark,
@@ -127,13 +130,15 @@ fn soil_out_of_sight_does_not_come_up_to_a_body_in_time() {
         is_first: true,
         must_resolve: true,
     };
-    let over = |by: f64| lifted_over(Some(time), by, Geometry::Moving);
-    for by in [0.9, 0.99] {
-        assert!(over(by).unwrap().push_out.is_empty());
-    }
-    for by in [1.01, 1.2, 1.4] {
-        let depth = over(by).unwrap_err().depth;
-        assert!((depth - (by - 1.25) / HALF).abs() < 1e-9, "{by}: {depth}");
+    for time in [None, Some(time)] {
+        let over = |by: f64| lifted(4.0, by, time, Geometry::Moving);
+        for by in [0.9, 0.99] {
+            assert!(over(by).unwrap().push_out.is_empty());
+        }
+        for by in [1.01, 1.2, 1.4] {
+            let depth = over(by).unwrap_err().depth;
+            assert!((depth - (by - 1.25) / HALF).abs() < 1e-9, "{by}: {depth}");
+        }
     }
 }
 

@@ -3,7 +3,6 @@
 
 use std::collections::BTreeMap;
 
-use super::clearance::{Penetration, push_out};
 use super::mortar_integrals::{Gathering, Sums, rolling_radius};
 use super::row::{ADHESIVE_GAP, Functional, Row};
 use crate::body::particles::Particles;
@@ -14,9 +13,10 @@ use crate::method::{Geometry, Method};
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
 use igimp_rigid::{
-    ContactNode, ContactState, Interface, NODES_PER_BODY, RigidBody, Tension, rotations,
-    tents_within,
+    ContactNode, ContactState, Images, Interface, NODES_PER_BODY, Penetration, RigidBody, Tension,
+    push_out, rotations, tents_within,
 };
+use igimp_surface::vectors::{minus, norm};
 
 /// A knot of space that soil covers by a smaller share of the largest one has none: round-off beyond a plane of
 /// symmetry \[-\].
@@ -75,8 +75,9 @@ impl<'a, const D: usize> Contact<'a, D> {
     ) {
         let body = &self.bodies[index];
         let surface = &*body.surface;
+        let images = Images::of(body, &conditions.grid);
         let tents = match surface.space() {
-            Some(space) => tents_within(body, space, &conditions.grid),
+            Some(space) => images.folded(&tents_within(body, space, &conditions.grid)),
             None => surface.tents(),
         };
         let least = match surface.space() {
@@ -89,7 +90,8 @@ impl<'a, const D: usize> Contact<'a, D> {
         let is_loaded = conditions.time.is_none() && is_pushed;
         let rolls = rolling_radius(body, conditions).is_some();
         let of_step = (conditions, method.section);
-        let knots = Gathering::new(body, node, particles, stencils, of_step, unknowns).sums();
+        let knots = Gathering::new(body, node, particles, stencils, of_step, unknowns, &images);
+        let knots = knots.sums();
         for (knot, sums) in knots {
             // No more of a side touches than there is of it.
             let area = if sums.length > tents[knot] {
@@ -158,6 +160,14 @@ impl<'a, const D: usize> Contact<'a, D> {
         self.rows.iter().any(|row| row.body == index)
     }
 
+    /// Whether soil that a body sees in this step is around the knots beside a point in its frame.
+    fn acts_near(&self, index: usize, at: &[f64; D]) -> bool {
+        let surface = &*self.bodies[index].surface;
+        let (knots, reach) = (surface.knots(), surface.longest_facet());
+        let mut rows = self.rows.iter().filter(|row| row.body == index);
+        rows.any(|row| norm(&minus(&knots[row.knot].0, at)) <= reach)
+    }
+
     /// How far soil came near in a step by nodal displacements `u` \[length\] where a gap closed, at most, in cells \[-\].
     pub(crate) fn closing(&self, u: &[[f64; D]]) -> f64 {
         // Soil that the body did not see before may overlap it already: its gap begins at zero.
@@ -175,7 +185,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         u: &[[f64; D]],
         particles: &Particles<D>,
         stencils: &Stencils<D>,
-        (geometry, takes_time): (Geometry, bool),
+        geometry: Geometry,
     ) -> Result<AcceptedContact<D>, Penetration> {
         let mut moved: Vec<RigidBody<D>> = self.bodies.to_vec();
         for (index, body) in moved.iter_mut().enumerate() {
@@ -240,7 +250,8 @@ impl<'a, const D: usize> Contact<'a, D> {
             }
             x
         };
-        let push_out = push_out((self.bodies, &moved), particles, place, takes_time)?;
+        let acts = |body: usize, at: &[f64; D]| self.acts_near(body, at);
+        let push_out = push_out((self.bodies, &moved), particles.domains(), place, acts)?;
         Ok(AcceptedContact {
             bodies: moved,
             push_out,

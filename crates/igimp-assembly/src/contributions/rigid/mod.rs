@@ -3,15 +3,12 @@
 //! How a body moves in a step is data ([`RigidMotion`](crate::RigidMotion)); what the soil makes of it is found with the
 //! displacements of the nodes.
 
-mod clearance;
 mod contact;
 mod mortar_integrals;
 mod rollers;
 mod row;
 mod weight;
 
-pub use clearance::Penetration;
-pub(crate) use clearance::seeded_too_close;
 pub use contact::AcceptedContact;
 pub(crate) use contact::Contact;
 pub(crate) use weight::{TurningWeights, add_weights};

@@ -11,7 +11,7 @@ use crate::error::padded;
 use crate::method::Section;
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
-use igimp_rigid::{Face, Piece, RigidBody, pieces};
+use igimp_rigid::{Face, Image, Images, Piece, RigidBody, pieces};
 use igimp_surface::Space;
 use igimp_surface::vectors::cross;
 
@@ -61,6 +61,7 @@ pub(crate) struct Gathering<'a, const D: usize> {
     conditions: &'a StepConditions<D>,
     section: Section,
     unknowns: &'a Unknowns<D>,
+    images: &'a Images<D>,
     knots: BTreeMap<usize, Sums<D>>,
 }
 
@@ -81,6 +82,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
         stencils: &'a Stencils<D>,
         (conditions, section): (&'a StepConditions<D>, Section),
         unknowns: &'a Unknowns<D>,
+        images: &'a Images<D>,
     ) -> Self {
         Self {
             body,
@@ -90,6 +92,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
             conditions,
             section,
             unknowns,
+            images,
             knots: BTreeMap::new(),
         }
     }
@@ -98,11 +101,9 @@ impl<'a, const D: usize> Gathering<'a, D> {
     pub(crate) fn sums(mut self) -> BTreeMap<usize, Sums<D>> {
         let (body, particles) = (self.body, self.particles);
         let (surface, pose) = (&*body.surface, &body.pose);
-        let places: Vec<[f64; D]> = if let Some(space) = surface.space() {
-            space.outer.iter().map(|x| pose.into_space(x)).collect()
-        } else {
-            let knots = surface.knots().into_iter();
-            knots.map(|(knot, _)| pose.into_space(&knot)).collect()
+        let places: Vec<[f64; D]> = match surface.space() {
+            Some(space) => space.outer.iter().map(|x| pose.into_space(x)).collect(),
+            None => body.knots(),
         };
         let faces = self.faces();
         let thin = thin(&faces, surface.side_count());
@@ -153,7 +154,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
             };
             own.gap = self.gap(soil.face, &point.x);
             for (knot, tent) in point.knots {
-                self.add(soil, knot, point.area * tent, &own, &soil.face.along);
+                self.add(soil, self.images.at(knot), point.area * tent, &own);
             }
         }
     }
@@ -171,9 +172,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
         for piece in pieces(face, half, body, space, places, &self.conditions.grid) {
             for (corner, (weight, own)) in self.means(&piece, face).into_iter().enumerate() {
                 for &(knot, share) in &space.shares[piece.corners[corner]] {
-                    let tangents = space.tangents_at(knot, &face.facing);
-                    let tangents = tangents.map(|own| body.pose.direction(&own));
-                    self.add(soil, knot, share * weight, &own, &tangents);
+                    self.add(soil, self.images.at(knot), share * weight, &own);
                 }
             }
         }
@@ -234,7 +233,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
     fn add(
         &mut self,
         soil: &Soil<'_, D>,
-        knot: usize,
+        image: Image<D>,
         weight: f64,
         SoilPoint {
             shares,
@@ -242,13 +241,13 @@ impl<'a, const D: usize> Gathering<'a, D> {
             gap,
             cell,
         }: &SoilPoint<D>,
-        tangents: &[[f64; D]; 2],
     ) {
         if weight <= 0.0 {
             return;
         }
         let (body, node) = (self.body, self.node);
-        let sums = self.knots.entry(knot).or_default();
+        let tangents = soil.face.tangents_at(body, image);
+        let sums = self.knots.entry(image.knot).or_default();
         let thickness = self.section.thickness(place[0]);
         let length = weight;
         let weight = thickness * weight;
@@ -265,7 +264,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
         let of_body = |direction: &[f64; D]| rigid_shares(body, place, direction, node);
         let normal = &soil.face.normal;
         add(&mut sums.opening, weight, normal, shares, of_body(normal));
-        for (slip, tangent) in std::iter::zip(&mut sums.slip, tangents).take(D - 1) {
+        for (slip, tangent) in std::iter::zip(&mut sums.slip, &tangents).take(D - 1) {
             add(slip, weight, tangent, shares, of_body(tangent));
         }
     }

@@ -4,10 +4,11 @@ use super::System;
 use crate::contributions::consolidation::PoresAfter;
 use crate::contributions::inertia::{Inertia, Motion};
 use crate::contributions::reinforcement::Reinforcement;
-use crate::contributions::rigid::{AcceptedContact, Penetration};
+use crate::contributions::rigid::AcceptedContact;
 use crate::contributions::walls::TieForce;
 use crate::equations::kinematics::ParticleTrial;
 use crate::equations::trial::Trial;
+use igimp_rigid::Penetration;
 
 /// The force of acceleration below which a body is at rest, over the round-off of forces \[-\].
 const AT_REST: f64 = 100.0;
@@ -166,7 +167,7 @@ impl<const D: usize> System<'_, D> {
     ///
     /// # Errors
     /// [`Penetration`] for a particle whose centre would be in a body deeper than its seeded
-    /// half-length, or was so on its way.
+    /// half-length, or was so on its way, or would come up to it where the body saw no soil.
     pub fn bodies_at(&self, u: &[[f64; D]]) -> Result<AcceptedContact<D>, Penetration> {
         let Self {
             particles,
@@ -174,11 +175,8 @@ impl<const D: usize> System<'_, D> {
             method,
             ..
         } = self;
-        let takes_time = self.conditions.time.is_some();
-        let mut contact =
-            self.beside
-                .contact
-                .accepted(u, particles, stencils, (method.geometry, takes_time))?;
+        let contact = &self.beside.contact;
+        let mut contact = contact.accepted(u, particles, stencils, method.geometry)?;
         if let Some(motion) = self.motion(u) {
             let of_grid = self.conditions.grid.node_count();
             let velocities = motion.after[of_grid..].as_chunks().0;

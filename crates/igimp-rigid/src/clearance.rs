@@ -3,10 +3,9 @@
 
 use thiserror::Error;
 
-use crate::body::particles::Particles;
-use crate::error::padded;
-use igimp_rigid::{Face, RigidBody};
 use igimp_surface::vectors::{minus, norm};
+
+use crate::{Face, RigidBody};
 
 /// The centre of a particle stands at least so far off a body, in half-lengths as seeded \[-\]. A choice: an undeformed domain
 /// then reaches no further into the body than a quarter of its width, and a particle at rest on a side, one half-length off,
@@ -17,7 +16,7 @@ const LEAST_HEIGHT: f64 = 0.5;
 /// within the body, and the way back could lead through its other side.
 const MOST_DEPTH: f64 = 1.0;
 
-/// Soil that a body did not see as a step of time began comes no nearer than this in it, in half-lengths as seeded \[-\]: nearer
+/// Soil that a body did not see as a step began comes no nearer than this in it, in half-lengths as seeded \[-\]: nearer
 /// its domain would lie within the body before contact has acted.
 const UNSEEN_HEIGHT: f64 = 1.0;
 
@@ -39,6 +38,17 @@ pub struct Penetration {
     pub depth: f64,
     /// Where its centre would be in the end \[length\], axes beyond the dimension 0.
     pub position: [f64; 3],
+}
+
+/// The domains of particles beside bodies.
+#[derive(Clone, Copy)]
+pub struct Domains<'a, const D: usize> {
+    /// Centres \[length\].
+    pub x: &'a [[f64; D]],
+    /// Half-lengths \[length\].
+    pub half_length: &'a [[f64; D]],
+    /// Half-lengths as seeded \[length\].
+    pub half_length0: &'a [[f64; D]],
 }
 
 /// How a particle comes to a body, by its depth there.
@@ -77,33 +87,36 @@ impl<'a, const D: usize> Extent<'a, D> {
 }
 
 /// Particles that stand too close to a body, with the way off it \[length\].
-pub(crate) type WaysOff<const D: usize> = Vec<(usize, [f64; D])>;
+pub type WaysOff<const D: usize> = Vec<(usize, [f64; D])>;
 
 /// The particles that a step leaves too close to bodies, with the way back. The step carries a particle to
-/// `place` and bodies from `before` to `after`.
+/// `place` and bodies from `before` to `after`; contact `acts` on a body near a point in its frame.
 ///
 /// # Errors
-/// [`Penetration`] for the first particle that it would carry into a body or through it; in a step that `takes_time` also for one that
-/// comes so close from where the body did not see it as the step began, without contact on its way.
-pub(crate) fn push_out<const D: usize>(
+/// [`Penetration`] for the first particle that it would carry into a body or through it, or close to it, without contact on its way,
+/// from where the body did not see it as the step began.
+pub fn push_out<const D: usize>(
     (before, after): (&[RigidBody<D>], &[RigidBody<D>]),
-    particles: &Particles<D>,
+    particles: Domains<'_, D>,
     place: impl Fn(usize) -> [f64; D],
-    takes_time: bool,
+    acts: impl Fn(usize, &[f64; D]) -> bool,
 ) -> Result<WaysOff<D>, Penetration> {
     let mut out = Vec::new();
     if after.is_empty() {
         return Ok(out);
     }
     let extents = Extent::all(after);
-    for particle in 0..particles.len() {
+    for particle in 0..particles.x.len() {
         let x = place(particle);
         let half = smallest(&particles.half_length0[particle]);
-        for (extent, old) in extents.iter().zip(before) {
+        for (body, (extent, old)) in extents.iter().zip(before).enumerate() {
             let from = old.pose.into_body(&particles.x[particle]);
             let depth = deepest(extent, &from, &x, half);
-            let is_close = takes_time && depth > -UNSEEN_HEIGHT * half;
-            let most = if is_close && !is_seen(old, particles, particle) {
+            let is_unseen = || {
+                let to = extent.body.pose.into_body(&x);
+                !is_seen(old, particles, particle) && !acts(body, &to)
+            };
+            let most = if depth > -UNSEEN_HEIGHT * half && is_unseen() {
                 -UNSEEN_HEIGHT
             } else {
                 MOST_DEPTH
@@ -113,7 +126,7 @@ pub(crate) fn push_out<const D: usize>(
                     particle,
                     body: extent.body.name.clone(),
                     depth: depth / half,
-                    position: padded(&x),
+                    position: std::array::from_fn(|axis| x.get(axis).copied().unwrap_or(0.0)),
                 });
             }
         }
@@ -123,7 +136,11 @@ pub(crate) fn push_out<const D: usize>(
 }
 
 /// Whether a particle turns a face to a body (theory, eq. 45b), or is in it.
-fn is_seen<const D: usize>(body: &RigidBody<D>, particles: &Particles<D>, particle: usize) -> bool {
+fn is_seen<const D: usize>(
+    body: &RigidBody<D>,
+    particles: Domains<'_, D>,
+    particle: usize,
+) -> bool {
     let (x, half) = (&particles.x[particle], &particles.half_length[particle]);
     let mut sides = 0..body.surface.side_count();
     body.distance(x) <= 0.0 || sides.any(|side| Face::of(body, side, x, half).is_some())
@@ -131,9 +148,9 @@ fn is_seen<const D: usize>(body: &RigidBody<D>, particles: &Particles<D>, partic
 
 /// Particles that stand too close to bodies, or within them by no more than their domains reach, with the way
 /// off: soil is seeded in the middle of parts of a cell, which the side of a body may cut.
-pub(crate) fn seeded_too_close<const D: usize>(
+pub fn seeded_too_close<const D: usize>(
     bodies: &[RigidBody<D>],
-    particles: &Particles<D>,
+    particles: Domains<'_, D>,
 ) -> WaysOff<D> {
     let extents = Extent::all(bodies);
     let of = |particle: usize| {
@@ -146,7 +163,7 @@ pub(crate) fn seeded_too_close<const D: usize>(
         let way = is_cut.then(|| way_off(&extents, x, smallest(seeded)));
         way.flatten().map(|way| (particle, way))
     };
-    (0..particles.len()).filter_map(of).collect()
+    (0..particles.x.len()).filter_map(of).collect()
 }
 
 fn smallest<const D: usize>(half_length: &[f64; D]) -> f64 {
