@@ -57,7 +57,7 @@ impl<const D: usize> Particles<D> {
                 let (x, displacement, half_length, half_length0, def_grad, hoop_strain) = moving;
                 let (b_e, sigma, eps_p_eq, internal, regime, excess) = stressed;
                 let own = &trial.particles[slot as usize];
-                let step = interpolate(stencils, particle, u);
+                let step = stencils.displacement(particle, u);
                 for axis in 0..D {
                     displacement[axis] += step[axis];
                 }
@@ -178,7 +178,7 @@ impl<const D: usize> Particles<D> {
             .into_par_iter()
             .with_min_len(CHUNK)
             .find_map_first(|particle| {
-                let displacement = interpolate(stencils, particle, u);
+                let displacement = stencils.displacement(particle, u);
                 let x: [f64; D] =
                     std::array::from_fn(|axis| self.x[particle][axis] + displacement[axis]);
                 (!grid.contains(&x)).then_some((particle, x))
@@ -186,19 +186,19 @@ impl<const D: usize> Particles<D> {
     }
 }
 
-/// The displacement of a particle, Σ_i S_i u_i.
+/// The mean of nodal values over a particle, Σ_i S_i a_i.
 fn interpolate<const D: usize>(
     stencils: &Stencils<D>,
     particle: usize,
-    u: &[[f64; D]],
+    nodal: &[[f64; D]],
 ) -> [f64; D] {
-    let mut displacement = [0.0; D];
+    let mut mean = [0.0; D];
     for support in stencils.of(particle) {
         for axis in 0..D {
-            displacement[axis] += support.value * u[support.node][axis];
+            mean[axis] += support.value * nodal[support.node][axis];
         }
     }
-    displacement
+    mean
 }
 
 /// b_e and σ of an accepted particle. In small strain both are rotated with the step.

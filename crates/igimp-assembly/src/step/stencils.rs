@@ -127,6 +127,28 @@ impl<const D: usize> Stencils<D> {
         self.supports.with_hoops(particle)
     }
 
+    /// The displacement of the middle of a particle by nodal displacements `u`: Σ_i S_i u_i, in a body of revolution the mean over the
+    /// section of the particle (theory, eq. 130h) \[length\].
+    pub(crate) fn displacement(&self, particle: usize, u: &[[f64; D]]) -> [f64; D] {
+        let (supports, hoops) = self.with_hoops(particle);
+        let mut displacement = [0.0; D];
+        if hoops.is_empty() {
+            for support in supports {
+                for axis in 0..D {
+                    displacement[axis] += support.value * u[support.node][axis];
+                }
+            }
+            return displacement;
+        }
+        let whole: f64 = hoops.iter().map(|hoop| hoop.own).sum();
+        for (support, hoop) in supports.iter().zip(hoops) {
+            for axis in 0..D {
+                displacement[axis] += hoop.own / whole * u[support.node][axis];
+            }
+        }
+        displacement
+    }
+
     /// The particles in the order in which sums run: by the first node of their supports.
     pub fn order(&self) -> &[u32] {
         self.strips.order()

@@ -13,8 +13,8 @@ use crate::method::{Geometry, Method};
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
 use igimp_rigid::{
-    ContactNode, ContactState, Images, Interface, NODES_PER_BODY, Penetration, RigidBody, Tension,
-    push_out, rotations, tents_within,
+    ContactNode, ContactState, Images, Interface, NODES_PER_BODY, Penalty, Penetration, RigidBody,
+    Tension, push_out, rotations, tents_within,
 };
 use igimp_surface::vectors::{minus, norm};
 
@@ -22,13 +22,15 @@ use igimp_surface::vectors::{minus, norm};
 /// symmetry \[-\].
 const LEAST_COVER: f64 = 1e-10;
 
-/// Soil that is no further from a body that a force pushes, in cells, has the body laid on it \[-\].
-const LAID: f64 = 1e-6;
+/// Soil that is no further from a body touches it, in cells: as drawn, but for round-off. A body that a force pushes is laid on it \[-\].
+const BESIDE: f64 = 1e-6;
 
 /// Contact of one step, with directions and weights frozen at its start.
 #[derive(Debug)]
 pub(crate) struct Contact<'a, const D: usize> {
     bodies: &'a [RigidBody<D>],
+    /// How stiff contact of each body is in this step.
+    penalties: Vec<Penalty>,
     rows: Vec<Row<D>>,
     /// The first of the nodes that stand for bodies.
     first_node: usize,
@@ -54,8 +56,14 @@ impl<'a, const D: usize> Contact<'a, D> {
         unknowns: &Unknowns<D>,
     ) -> Self {
         let first_node = conditions.grid.node_count();
+        let is_soft = conditions.is_soft || conditions.time.is_some();
+        let penalty = |body: &RigidBody<D>| {
+            let own = body.penalty;
+            if is_soft { own.softly() } else { own }
+        };
         let mut contact = Self {
             bodies,
+            penalties: bodies.iter().map(penalty).collect(),
             rows: Vec::new(),
             first_node,
         };
@@ -73,7 +81,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         (conditions, method): (&StepConditions<D>, &Method),
         unknowns: &Unknowns<D>,
     ) {
-        let body = &self.bodies[index];
+        let (body, penalty) = (&self.bodies[index], self.penalties[index]);
         let surface = &*body.surface;
         let images = Images::of(body, &conditions.grid);
         let tents = match surface.space() {
@@ -111,15 +119,15 @@ impl<'a, const D: usize> Contact<'a, D> {
             };
             let mut before = body.contact.knots[knot];
             let interface = &body.interfaces[surface.side_of(knot)];
-            let is_laid =
-                before.area == 0.0 && is_loaded && sums.gap_in_front() < LAID * mean(sums.cell);
+            let is_beside = sums.gap_in_front() < BESIDE * mean(sums.cell);
+            let is_laid = before.area == 0.0 && is_loaded && is_beside;
             let bonds = interface.tension != Tension::None && !before.is_broken;
             // Particles that the ground cuts stand off a side by a share of their size, and go nowhere. A round body leaves the
             // ground at a slant: small gaps beside its contact are gaps.
             let is_drawn_at = method.geometry == Geometry::Given
                 && surface.radius().is_none()
                 && sums.gap_in_front() < ADHESIVE_GAP * mean(sums.cell);
-            let touches = bonds || is_laid || is_drawn_at;
+            let touches = bonds || is_beside || is_drawn_at;
             begin(&mut before, &sums, touches, rolls);
             let mut row = Row {
                 body: index,
@@ -134,12 +142,12 @@ impl<'a, const D: usize> Contact<'a, D> {
                 before,
             };
             let whole = tents[knot] * (sums.area / sums.length);
-            row.carry_force(interface, &body.penalty, whole);
+            row.carry_force(interface, &penalty, whole);
             if interface.tension == Tension::None && !rolls {
-                row.take_soil_that_came(sums.mean_gap(), interface, &body.penalty);
+                row.take_soil_that_came(sums.mean_gap(), interface, &penalty);
             }
             if is_laid {
-                row.seat(&body.penalty);
+                row.seat(&penalty);
             }
             self.rows.push(row);
         }
@@ -209,7 +217,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         for row in &self.rows {
             let body = &self.bodies[row.body];
             let side = body.surface.side_of(row.knot);
-            let traction = row.traction(&body.interfaces[side], &body.penalty, u);
+            let traction = row.traction(&body.interfaces[side], &self.penalties[row.body], u);
             let bonded = body.interfaces[side].tension != Tension::None;
             let is_broken = row.before.is_broken || traction.breaks;
             let gap = row.gap_at(u);
@@ -242,13 +250,8 @@ impl<'a, const D: usize> Contact<'a, D> {
             });
         }
         let place = |particle: usize| {
-            let mut x = particles.x[particle];
-            for support in stencils.of(particle) {
-                for axis in 0..D {
-                    x[axis] += support.value * u[support.node][axis];
-                }
-            }
-            x
+            let (x, step) = (&particles.x[particle], stencils.displacement(particle, u));
+            std::array::from_fn(|axis| x[axis] + step[axis])
         };
         let acts = |body: usize, at: &[f64; D]| self.acts_near(body, at);
         let push_out = push_out((self.bodies, &moved), particles.domains(), place, acts)?;
@@ -304,7 +307,7 @@ impl<const D: usize> NodalForces<D> for Contact<'_, D> {
         for row in &self.rows {
             let body = &self.bodies[row.body];
             let interface = &body.interfaces[body.surface.side_of(row.knot)];
-            let traction = row.traction(interface, &body.penalty, u);
+            let traction = row.traction(interface, &self.penalties[row.body], u);
             match &mut blocks {
                 Some(blocks) => row.add(&traction, f, Some(&mut **blocks)),
                 None => row.add(&traction, f, None),
