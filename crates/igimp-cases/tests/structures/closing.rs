@@ -227,7 +227,7 @@ figures = []
         );
         let file = CaseFile::parse("plate.toml", &text, &[]);
         let file = file.unwrap_or_else(|error| panic!("{error}"));
-        let run = in_memory(file.case()).unwrap();
+        let run = in_memory(file.case_in_space()).unwrap();
         assert!(run.failure.is_none(), "{:?}", run.failure);
         run.curves[0].rows.last().unwrap()[1]
     };

@@ -204,7 +204,7 @@ fn bodies_end_where_their_stages_say() {
 /// GOAL: soil that went too far into a body ends the run with what may help.
 #[test]
 fn too_deep_a_penetration_ends_the_run() {
-    let file = parsed(&[("weight = \"2 kN/m\"", "most_penetration = 1e-3")]);
+    let file = parsed(&[("weight = \"2 kN/m\"", "most_penetration = 1e-5")]);
     let run = in_memory(file.case()).unwrap();
     let text = run.failure.unwrap().to_string();
     assert!(text.contains("is not to be trusted"), "{text}");
@@ -217,7 +217,7 @@ fn too_deep_a_penetration_ends_the_run() {
 /// GOAL: the failure says where soil went too far, and in which body.
 #[test]
 fn a_failure_names_the_body_and_the_place() {
-    let file = parsed(&[("weight = \"2 kN/m\"", "most_penetration = 1e-3")]);
+    let file = parsed(&[("weight = \"2 kN/m\"", "most_penetration = 1e-5")]);
     let text = in_memory(file.case()).unwrap().failure.unwrap().to_string();
     assert!(
         text.contains("into the rigid body \"footing\" at ["),
@@ -602,5 +602,5 @@ figures = []
         ends(&run, "moment")[1].abs() / 10e3
     });
     println!("resultant off the middle: {coarse} {fine} m");
-    assert!(coarse < 0.07 && fine < 0.75 * coarse, "{coarse} {fine}");
+    assert!(coarse < 0.12 && fine < 0.5 * coarse, "{coarse} {fine}");
 }
