@@ -229,6 +229,7 @@ impl<const D: usize> System<'_, D> {
         let context = PointContext {
             duration: self.conditions.duration(),
             nonlocal_rise: rise.unwrap_or(0.0),
+            ..PointContext::STATIC
         };
         let ask = |law: &dyn ConstitutiveModel| {
             let (state, straining) = self.strain_particle((particle, supports, hoops), u)?;
