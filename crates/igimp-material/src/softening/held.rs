@@ -56,7 +56,7 @@ pub(super) struct Strained {
 }
 
 impl Answer {
-    /// The same with κ of the soil, in whose strains those of the law are `ratio` times as great.
+    /// The same with κ of the soil, in whose strains those of the law are `ratio` times as great (theory, eq. 110f).
     pub(super) fn of_soil(self, ratio: f64) -> Self {
         Self {
             strain: self.strain / ratio,
