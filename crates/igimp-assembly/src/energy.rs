@@ -212,12 +212,8 @@ impl<const D: usize> System<'_, D> {
                 .sum()
         });
         let dot = |strain: &[f64; 3]| (0..3).map(|k| principal[k] * strain[k]).sum::<f64>();
-        let response = self.loads.pores.response(
-            particles,
-            &self.conditions().water,
-            self.method,
-            (particle, None),
-        );
+        let pores = &self.loads.pores;
+        let response = pores.response(particles, self.method, (particle, None));
         let stored = |excess: f64| match response.stiffness {
             0.0 => 0.0,
             stiffness => excess * excess / stiffness,

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use igimp_material::AxesLookedAt;
 use igimp_shape::{Basis, Gimp, Linear};
 
 /// What is done against locking: which gradients the strain of a particle is made of (theory,
@@ -45,6 +46,14 @@ impl Section {
     /// Whether strain goes around an axis.
     pub fn is_axisymmetric(self) -> bool {
         self == Self::Axisymmetric
+    }
+
+    /// The principal axes whose direction strength may go by: around an axis soil is strained as in the plane.
+    pub fn axes_looked_at<const D: usize>(self) -> AxesLookedAt {
+        match self {
+            Self::PlaneStrain => AxesLookedAt::of_dimension::<D>(),
+            Self::Axisymmetric => AxesLookedAt::with_hoop::<D>(),
+        }
     }
 
     /// The thickness of the body at a radius, $`2πr`$ or the unit \[length\].

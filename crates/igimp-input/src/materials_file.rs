@@ -204,6 +204,15 @@ mod tests {
             let error = MaterialsFile::parse("clay.toml", &text, &[]).unwrap_err();
             assert!(error.to_string().contains(words), "{error}");
         };
+        let steep = "igimp = 1\n[materials.clay]\nmodel = \"modified-cam-clay\"\nunit_weight = \"16 kN/m3\"\nlambda = 0.1\n\
+                     kappa = 0.02\npoisson = 0.2\ncritical_ratio = RATIO\n";
+        let clay_of =
+            |ratio: &str| MaterialsFile::parse("clay.toml", &steep.replace("RATIO", ratio), &[]);
+        clay_of("2.9").unwrap();
+        for ratio in ["3.0", "4.0"] {
+            let error = clay_of(ratio).unwrap_err().to_string();
+            assert!(error.contains("`critical_ratio` is below 3"), "{error}");
+        }
         refused("0.0", "0.1", "soil by total stress has no strength left");
         // c_u falls by 50 kPa × 0.9 over 0.003: 15 MPa, and 3/2 G is 11.5 MPa.
         refused("0.1", "0.003", "snaps back within the point");

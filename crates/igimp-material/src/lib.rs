@@ -93,7 +93,7 @@ pub use scaled::{Ratios, ScaledLaw};
 pub use softening::{Curve, Decay, Directions, FrictionalCurves, RateEffect, Softening};
 pub use spectral::eigen::principal_values;
 pub use spectral::lift::{
-    Lifted, TangentKind, TrialStrain, directed_history, elastic_left_cauchy_green,
+    AxesLookedAt, Lifted, TangentKind, TrialStrain, directed_history, elastic_left_cauchy_green,
     elastic_left_cauchy_green_of, lift_finite, lift_small, logarithmic_strain,
 };
 pub use spectral::principal::{Principal, Tensor};

@@ -131,8 +131,8 @@ impl<L: Deref<Target = dyn ConstitutiveModel>> ScaledLaw<L> {
             },
             regime: answer.regime,
             nonlocal: NonlocalRates {
-                plastic: nonlocal.plastic / ratio,
-                stress_by_nonlocal: (nonlocal.stress_by_nonlocal).map(|own| own * stiffness),
+                plastic_by_strain: nonlocal.plastic_by_strain.map(|own| own * ratio),
+                stress_by_nonlocal: (nonlocal.stress_by_nonlocal).map(|own| own * strength),
                 ..nonlocal
             },
         }
@@ -215,8 +215,8 @@ where
         }
     }
 
-    /// The other law has its strains over a time that is as many times longer, so that rates are those of the soil, and the ground
-    /// around it strained as many times more.
+    /// The other law has its strains over a time that is as many times longer, so that rates are those of the soil, and is told how
+    /// many times they are those of the soil.
     fn return_map(
         &self,
         eps_e_trial: &Principal,
@@ -228,7 +228,8 @@ where
         let own = self.unscaled_history(*history);
         let context = PointContext {
             duration: context.duration * ratio,
-            nonlocal_rise: context.nonlocal_rise * ratio,
+            strain_ratio: context.strain_ratio * ratio,
+            ..*context
         };
         let answer = self.law.return_map(&trial, &own, &context)?;
         Ok(self.scaled_answer(&answer, history))
@@ -292,6 +293,14 @@ where
 
     fn shear_strength(&self) -> Option<ShearStrength> {
         let own = self.law.shear_strength()?;
+        Some(ShearStrength {
+            cohesive: self.ratios.strength * own.cohesive,
+            ..own
+        })
+    }
+
+    fn shear_strength_at(&self, history: &History) -> Option<ShearStrength> {
+        let own = (self.law).shear_strength_at(&self.unscaled_history(*history))?;
         Some(ShearStrength {
             cohesive: self.ratios.strength * own.cohesive,
             ..own

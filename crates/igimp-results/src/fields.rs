@@ -5,7 +5,7 @@
 
 use igimp_assembly::{Particles, SharedLaw};
 use igimp_material::{
-    ConstitutiveModel, InternalVariable, ShearStrength, Tensor, principal_values,
+    ConstitutiveModel, InternalVariable, Principal, ShearStrength, Tensor, principal_values,
 };
 use igimp_model::Field;
 pub use igimp_schema::field::Dimension;
@@ -71,8 +71,7 @@ pub fn value<const D: usize>(
         Field::Friction => {
             shear_strength(particles, particle, laws).map_or(f64::NAN, |s| s.friction_angle)
         }
-        Field::Young if particles.law[particle] < laws.len() => particles.young(particle, laws),
-        Field::Young => f64::NAN,
+        Field::Young => young(particles, particle, laws).unwrap_or(f64::NAN),
         Field::Speed => length(velocity),
         Field::VelocityX => velocity[0],
         Field::VelocityY => velocity[1],
@@ -125,15 +124,31 @@ pub fn length<const D: usize>(vector: &[f64; D]) -> f64 {
         .fold(x.hypot(*y), |length, own| length.hypot(*own))
 }
 
-/// The strength that a particle carries, that of `laws` at its ratios; none for soil without a limit.
+/// Young's modulus of a particle in the state that it is in, that of `laws` at its ratios.
+fn young<const D: usize>(
+    particles: &Particles<D>,
+    particle: usize,
+    laws: &[SharedLaw],
+) -> Option<f64> {
+    if laws.get(particles.law[particle])?.has_linear_elasticity() {
+        return Some(particles.young(particle, laws));
+    }
+    let eps_e = elastic_strain(particles, particle);
+    let history = particles.history(particle);
+    let own = |law: &dyn ConstitutiveModel| law.elastic_stiffness(&eps_e, &history).young();
+    particles.ask_law(particle, laws, own).ok()
+}
+
+/// The strength that a particle carries after what it went through, that of `laws` at its ratios; none for soil without a limit.
 fn shear_strength<const D: usize>(
     particles: &Particles<D>,
     particle: usize,
     laws: &[SharedLaw],
 ) -> Option<ShearStrength> {
     laws.get(particles.law[particle])?;
-    let asked = particles.ask_law(particle, laws, |law| law.shear_strength());
-    asked.ok().flatten()
+    let history = particles.history(particle);
+    let own = |law: &dyn ConstitutiveModel| law.shear_strength_at(&history);
+    particles.ask_law(particle, laws, own).ok().flatten()
 }
 
 /// p = −tr σ/3.
@@ -149,6 +164,11 @@ pub(super) fn deviatoric_stress(sigma: &Tensor) -> f64 {
     (1.5 * (normal + 2.0 * shear)).sqrt()
 }
 
+/// Principal elastic Hencky strains of a particle \[-\].
+fn elastic_strain<const D: usize>(particles: &Particles<D>, particle: usize) -> Principal {
+    principal_values::<D>(&particles.b_e[particle]).map(|b| 0.5 * b.ln())
+}
+
 /// Share of the shear strength of a particle's law that its stress mobilises (theory, eq. 35).
 ///
 /// The stress is that of the law, C ½ ln b_e: Kirchhoff stress with finite strain, Cauchy stress
@@ -159,7 +179,7 @@ fn utilisation<const D: usize>(
     laws: &[SharedLaw],
 ) -> Option<f64> {
     laws.get(particles.law[particle])?;
-    let eps_e = principal_values::<D>(&particles.b_e[particle]).map(|b| 0.5 * b.ln());
+    let eps_e = elastic_strain(particles, particle);
     let share = |law: &dyn ConstitutiveModel| {
         let history = particles.history(particle);
         law.utilisation(&law.elastic_stress(&eps_e, &history), &history)

@@ -518,6 +518,16 @@ pub struct SafetySummary {
     pub path: Option<PathSummary>,
 }
 
+/// Factor of safety beyond which strength is not needed \[-\]: with a thousandth of it the ground stands.
+pub const NEEDLESS: f64 = 1e3;
+
+impl SafetySummary {
+    /// Whether the ground stands with hardly any strength, as level ground between rollers does: its factor is no number to state.
+    pub fn needs_no_strength(&self) -> bool {
+        self.stable.is_some_and(|factor| factor > NEEDLESS)
+    }
+}
+
 /// A path of equilibria along which strength is reduced, and what it tells of its limit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PathSummary {

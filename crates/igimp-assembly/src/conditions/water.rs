@@ -7,8 +7,9 @@ use std::sync::Arc;
 
 use crate::body::particles::Particles;
 use crate::error::AssemblyError;
+use crate::laws::SharedLaw;
 use crate::method::Section;
-use igimp_material::Ratios;
+use igimp_material::{ConstitutiveModel, principal_values};
 
 /// What given water is at a particle, at full gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,18 +104,41 @@ pub struct Water<const D: usize> {
 pub struct PoreStiffness {
     /// Where the soil has the constants of its law \[force/length²\].
     pub modulus: f64,
-    /// Whether it varies as the stiffness of the soil does: it follows from a Poisson's ratio of undrained soil. Else it is one.
+    /// Whether it varies as the stiffness of the soil does, from place to place and with stress: it follows from a Poisson's ratio of
+    /// undrained soil. Else it is one.
     pub goes_with_soil: bool,
 }
 
 impl PoreStiffness {
-    /// Of soil with these ratios \[force/length²\].
-    pub(crate) fn of(&self, ratios: &Ratios) -> f64 {
+    /// In the soil of a particle with the stiffness of its law's constants \[force/length²\].
+    fn at_constants<const D: usize>(&self, particles: &Particles<D>, particle: usize) -> f64 {
         if self.goes_with_soil {
-            self.modulus * ratios.stiffness
+            self.modulus * particles.ratios[particle].stiffness
         } else {
             self.modulus
         }
+    }
+
+    /// In the soil of a particle with its stiffness in the state that it is in (theory, eq. 54a) \[force/length²\].
+    ///
+    /// # Errors
+    /// [`AssemblyError::Material`] of a law that cannot be made.
+    pub(crate) fn of<const D: usize>(
+        &self,
+        particles: &Particles<D>,
+        particle: usize,
+        laws: &[SharedLaw],
+    ) -> Result<f64, AssemblyError> {
+        let bound = &laws[particles.law[particle]];
+        if !self.goes_with_soil || bound.has_linear_elasticity() {
+            return Ok(self.at_constants(particles, particle));
+        }
+        let eps_e = principal_values::<D>(&particles.b_e[particle]).map(|b| 0.5 * b.ln());
+        let history = particles.history(particle);
+        let bulk = |law: &dyn ConstitutiveModel| law.elastic_stiffness(&eps_e, &history).bulk();
+        let bulk = (particles.ask_law(particle, laws, bulk))
+            .map_err(|source| AssemblyError::Material { particle, source })?;
+        Ok(self.modulus * bulk / bound.stiffness_bound().bulk())
     }
 }
 
@@ -139,11 +163,11 @@ impl<const D: usize> Default for Water<D> {
 }
 
 impl<const D: usize> Water<D> {
-    /// K_w/n of a particle \[force/length²\].
+    /// K_w/n of a particle whose soil is as stiff as the constants of its law say \[force/length²\].
     #[inline]
     pub(crate) fn stiffness_of(&self, particles: &Particles<D>, particle: usize) -> f64 {
         let own = self.stiffness.get(particles.law[particle]);
-        own.map_or(0.0, |own| own.of(&particles.ratios[particle]))
+        own.map_or(0.0, |own| own.at_constants(particles, particle))
     }
 
     /// Refuses numbers that are not finite.

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use crate::body::particles::{CHUNK, Particles};
 use crate::conditions::StepConditions;
-use crate::conditions::water::{PoreState, Water};
+use crate::conditions::water::PoreState;
 use crate::error::AssemblyError;
 use crate::method::{Kinematics, Method};
 use crate::step::stencils::Stencils;
@@ -69,13 +69,16 @@ pub(crate) struct Pores {
     stress: Vec<f64>,
     /// Mass of water by particle beyond that of the soil as seeded; empty: dry \[mass\].
     mass: Vec<f64>,
+    /// K_w/n by particle, of the soil as it is at the start of the step; empty: zero \[force/length²\].
+    stiffness: Vec<f64>,
 }
 
 impl Pores {
     /// Asks the given water at every particle and adds its forces to the nodal external force `f_ext` \[force\].
     ///
     /// # Errors
-    /// [`AssemblyError::NonFinite`] for water that is not finite at a particle.
+    /// [`AssemblyError::NonFinite`] for water that is not finite at a particle, [`AssemblyError::Material`] of a law that cannot be
+    /// made.
     pub(crate) fn fill<const D: usize>(
         particles: &Particles<D>,
         stencils: &Stencils<D>,
@@ -84,10 +87,25 @@ impl Pores {
         f_ext: &mut [[f64; D]],
     ) -> Result<Self, AssemblyError> {
         let water = &conditions.water;
-        let Some(given) = &water.given else {
-            return Ok(Self::default());
-        };
         let n = particles.len();
+        let stiffness = if water.stiffness.is_empty() {
+            Vec::new()
+        } else {
+            (0..n)
+                .into_par_iter()
+                .with_min_len(CHUNK)
+                .map(|particle| {
+                    let own = water.stiffness.get(particles.law[particle]);
+                    own.map_or(Ok(0.0), |own| own.of(particles, particle, &conditions.laws))
+                })
+                .collect::<Result<_, _>>()?
+        };
+        let Some(given) = &water.given else {
+            return Ok(Self {
+                stiffness,
+                ..Self::default()
+            });
+        };
         let states: Vec<PoreState<D>> = (0..n)
             .into_par_iter()
             .with_min_len(CHUNK)
@@ -98,6 +116,7 @@ impl Pores {
             pressure: vec![0.0; n],
             stress: vec![0.0; n],
             mass: vec![0.0; n],
+            stiffness,
         };
         for &particle in stencils.order() {
             let particle = particle as usize;
@@ -145,7 +164,6 @@ impl Pores {
     pub(crate) fn response<const D: usize>(
         &self,
         particles: &Particles<D>,
-        water: &Water<D>,
         method: &Method,
         (particle, unknown): (usize, Option<f64>),
     ) -> PoreResponse {
@@ -159,7 +177,7 @@ impl Pores {
         PoreResponse {
             excess: at_volume(particles.excess[particle]),
             given: self.stress.get(particle).copied().unwrap_or(0.0),
-            stiffness: water.stiffness_of(particles, particle),
+            stiffness: self.stiffness.get(particle).copied().unwrap_or(0.0),
             unknown: unknown.map(at_volume),
         }
     }

@@ -134,6 +134,7 @@ pub(crate) fn strained<const D: usize>(
             positive(particle, hoop.own)?;
         }
     }
+    let axes = method.section.axes_looked_at::<D>();
     let mut ln_volume = 0.0;
     Ok(match method.kinematics_of_step() {
         Kinematics::FiniteStrain => {
@@ -157,7 +158,7 @@ pub(crate) fn strained<const D: usize>(
                 push: inverse(&delta_def_grad, det),
                 push_bar: inverse(&delta_bar, det_bar),
                 ln_volume,
-                strain: TrialStrain::finite::<D>(&b_trial).map_err(material)?,
+                strain: (TrialStrain::finite::<D>(&b_trial).map_err(material)?).looked_at(axes),
             }
         }
         Kinematics::SmallStrain => {
@@ -169,7 +170,7 @@ pub(crate) fn strained<const D: usize>(
                 push: identity(),
                 push_bar: identity(),
                 ln_volume,
-                strain: TrialStrain::small::<D>(&strain).map_err(material)?,
+                strain: (TrialStrain::small::<D>(&strain).map_err(material)?).looked_at(axes),
             }
         }
     })

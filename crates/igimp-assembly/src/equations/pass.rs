@@ -229,6 +229,7 @@ impl<const D: usize> System<'_, D> {
         let context = PointContext {
             duration: self.conditions.duration(),
             nonlocal_rise: rise.unwrap_or(0.0),
+            ..PointContext::STATIC
         };
         let ask = |law: &dyn ConstitutiveModel| {
             let (state, straining) = self.strain_particle((particle, supports, hoops), u)?;
@@ -285,12 +286,7 @@ impl<const D: usize> System<'_, D> {
         let state = ParticleState {
             particle,
             b_e: &self.particles.b_e[particle],
-            pores: self.loads.pores.response(
-                self.particles,
-                &self.conditions.water,
-                self.method,
-                (particle, unknown),
-            ),
+            pores: (self.loads.pores).response(self.particles, self.method, (particle, unknown)),
         };
         let reach = (supports, hoops);
         Ok((state, strained(state, reach, u, self.method)?))

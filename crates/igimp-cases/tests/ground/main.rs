@@ -12,6 +12,7 @@ mod profiles;
 mod rasters;
 mod seeding;
 mod softening_friction;
+mod softening_profiles;
 mod solid_bodies;
 mod solids;
 

@@ -193,3 +193,21 @@ fn implausible_values_are_told() {
         assert!(!warnings.contains("outside the range"), "{warnings}");
     }
 }
+
+/// GOAL: keys of materials that nothing of a case asks for are told of, and are quiet where something does. ORACLE: the words of the
+/// messages, and their places.
+#[test]
+fn keys_without_effect_are_told_of() {
+    let warned = |set: &[&str]| overridden(SLOPE, set).unwrap().warnings();
+    let k0 = "`k0` of `clay` has no effect";
+    assert!(warned(&["materials.clay.k0=0.6"]).contains(k0));
+    let saturated = "`saturated_unit_weight` of `clay` has no effect";
+    assert!(warned(&["materials.clay.saturated_unit_weight=21 kN/m3"]).contains(saturated));
+    assert!(!warned(&[]).contains(saturated));
+    let strength = "materials.clay={ model = \"tresca\", unit_weight = \"20 kN/m3\", young = \"20 MPa\", poisson = 0.4, cu = { ratio = 0.3, at_least = \"5 kPa\", SHARE } }";
+    let exponent = "`exponent` has no effect";
+    let alone = strength.replace("SHARE", "exponent = 0.9");
+    assert!(warned(&[&alone]).contains(exponent));
+    let both = strength.replace("SHARE", "exponent = 0.9, ocr = 2.0");
+    assert!(!warned(&[&both]).contains(exponent));
+}

@@ -11,3 +11,4 @@ mod given_law;
 mod in_space;
 mod killed;
 mod remarks;
+mod revolution;

@@ -12,3 +12,4 @@ mod construction;
 mod in_space;
 mod pore_water;
 mod seepage;
+mod state_stiffness;

@@ -168,5 +168,6 @@ pub(super) fn assemble<const D: usize>(
     materials::check_on_cells(&case, problems);
     materials::check_lengths(&case, problems);
     materials::check_rates(&case, problems);
+    materials::check_unused(tree, &case, problems);
     Some(case)
 }

@@ -8,6 +8,7 @@ mod hoek_brown;
 mod plausible;
 pub(crate) mod profiles;
 mod softening;
+mod unused;
 mod water;
 
 use std::sync::Arc;
@@ -24,6 +25,7 @@ use profiles::{Extent, Property, Terms, property};
 use water::{drainage, permeability, saturated};
 
 pub(super) use checks::{check_lengths, check_on_cells, check_rates};
+pub(super) use unused::check_unused;
 
 /// What may be said of a strength, of Young's modulus and of a unit weight that vary.
 const STRENGTH: Terms = Terms {

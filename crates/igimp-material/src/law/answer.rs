@@ -81,7 +81,7 @@ pub struct Nonlocal {
 /// What plastic strain and nonlocal strain are to each other at a point, at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct NonlocalRates {
-    /// Plastic strain of the step Δκ \[-\].
+    /// Plastic strain of the step Δκ, that of the soil as nonlocal strain is \[-\].
     pub plastic: f64,
     /// Its derivative by the principal trial strains \[-\].
     pub plastic_by_strain: Principal,
@@ -108,6 +108,9 @@ pub struct PointContext {
     pub duration: f64,
     /// Rise of the nonlocal strain over the step \[-\]: for strength that goes with the plastic strain of the ground around.
     pub nonlocal_rise: f64,
+    /// Strains that the law is asked at over those of the soil \[-\], e/s of soil that varies in space (theory, eq. 19b); 1 where it
+    /// is as its material. Of a strength that goes with a stated plastic strain, κ is that of the soil.
+    pub strain_ratio: f64,
 }
 
 impl PointContext {
@@ -115,6 +118,7 @@ impl PointContext {
     pub const STATIC: Self = Self {
         duration: 0.0,
         nonlocal_rise: 0.0,
+        strain_ratio: 1.0,
     };
 
     /// A point in a step of a duration \[time\].

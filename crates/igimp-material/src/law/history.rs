@@ -50,7 +50,7 @@ pub struct InternalVariable {
 /// How a number of a law goes with the ratios of strength s and of stiffness e of a piece of soil ([`Ratios`](crate::Ratios)).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scaling {
-    /// Not at all: an angle, a void ratio.
+    /// Not at all: an angle, a void ratio, a plastic strain that curves are stated over.
     Constant,
     /// With s: a stress, such as a preconsolidation pressure.
     Stress,

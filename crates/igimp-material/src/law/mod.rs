@@ -27,6 +27,20 @@ pub struct ElasticStiffness {
     pub shear: f64,
 }
 
+impl ElasticStiffness {
+    /// Bulk modulus K \[stress\]: growth of the mean stress with volume, shear being kept.
+    pub fn bulk(&self) -> f64 {
+        let sum: f64 = self.tangent.as_flattened().iter().sum();
+        sum / 9.0
+    }
+
+    /// Young's modulus of K and G, 9 K G/(3 K + G) \[stress\].
+    pub fn young(&self) -> f64 {
+        let (bulk, shear) = (self.bulk(), self.shear);
+        9.0 * bulk * shear / (3.0 * bulk + shear)
+    }
+}
+
 /// A constitutive law in principal space: isotropic, elastic within a yield surface.
 pub trait ConstitutiveModel: Strength + Send + Sync + Debug {
     /// Name of the law, for messages and tables.

@@ -46,9 +46,15 @@ pub trait Strength {
     /// limit on tension plays no part. Each law states the ratio.
     fn utilisation(&self, tau: &Principal, history: &History) -> f64;
 
-    /// The shear strength, for those who look at it; none for a law without a limit.
+    /// The shear strength, for those who look at it; none for a law without a limit. Of one that softens or hardens it is the greatest.
     fn shear_strength(&self) -> Option<ShearStrength> {
         None
+    }
+
+    /// The shear strength that acts on soil with a `history`, at rest; none for a law without a limit.
+    fn shear_strength_at(&self, history: &History) -> Option<ShearStrength> {
+        let _ = history;
+        self.shear_strength()
     }
 
     /// Dissipation of plastic flow by the normality rule at the principal strain `rate` \[-\], whose own volume does

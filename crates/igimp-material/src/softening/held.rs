@@ -55,6 +55,29 @@ pub(super) struct Strained {
     pub(super) is_plastic: bool,
 }
 
+impl Answer {
+    /// The same with κ of the soil, in whose strains those of the law are `ratio` times as great (theory, eq. 110f).
+    pub(super) fn of_soil(self, ratio: f64) -> Self {
+        Self {
+            strain: self.strain / ratio,
+            by_trial: self.by_trial.map(|own| own / ratio),
+            by_kappa: self.by_kappa / ratio,
+            ..self
+        }
+    }
+}
+
+impl Strained {
+    /// As [`Answer::of_soil`].
+    pub(super) fn of_soil(self, ratio: f64) -> Self {
+        Self {
+            strain: self.strain / ratio,
+            by_kappa: self.by_kappa / ratio,
+            ..self
+        }
+    }
+}
+
 impl Held {
     /// The plastic strain alone, of a trial strain whose stress is `stress`, in descending order.
     pub(super) fn strained(

@@ -25,11 +25,11 @@ use held::{Answer, Held, Kind, Strained};
 pub use undrained::{Directions, RateEffect};
 use undrained::{Moment, NO_DIRECTION, angle_of_compression};
 
-/// The plastic strain κ that strength goes with.
+/// The plastic strain κ that strength goes with, that of the soil: where strength and stiffness vary, curves are what was stated.
 const PLASTIC: InternalVariable = InternalVariable {
     name: "softening strain",
     unit: "-",
-    scaling: Scaling::Strain,
+    scaling: Scaling::Constant,
 };
 
 /// The direction of stress.
@@ -43,7 +43,7 @@ const ANGLE: InternalVariable = InternalVariable {
 const AROUND: InternalVariable = InternalVariable {
     name: "nonlocal strain",
     unit: "-",
-    scaling: Scaling::Strain,
+    scaling: Scaling::Constant,
 };
 
 /// The internal variables of a law whose strength is that of a point, and of one that sees the ground around.
@@ -215,16 +215,17 @@ impl Softening {
         self.directions.map(|_| usize::from(self.softens()))
     }
 
-    /// What strength goes with beside plastic strain, in a step of a duration \[time\].
-    fn moment(&self, history: &History, duration: f64) -> Moment {
+    /// What strength goes with beside plastic strain, at a point and in a step.
+    fn moment(&self, history: &History, context: &PointContext) -> Moment {
         let share = match (&self.directions, self.place_of_angle()) {
             (Some(own), Some(place)) => own.share(history.internal[place]),
             _ => 1.0,
         };
         Moment {
             share,
-            rate: self.rate.map(|own| (own, duration)),
+            rate: (self.rate).map(|own| (own, context.duration / context.strain_ratio)),
             step: 0.0,
+            strain_ratio: context.strain_ratio,
         }
     }
 
@@ -334,7 +335,7 @@ impl Softening {
 
     /// The law at the strength that is left, at the reference rate.
     fn held(&self, history: &History) -> Result<Held, MaterialError> {
-        let moment = self.moment(history, 0.0);
+        let moment = self.moment(history, &PointContext::STATIC);
         let measure = self.measure(self.plastic_strain(history), history);
         self.kind.held(self.elasticity, measure, &moment)
     }
@@ -354,7 +355,7 @@ impl Softening {
         // It is a difference of strains, whose round-off is in it.
         let (noise, patience, threshold) = match &moment.rate {
             Some((own, duration)) => {
-                let noise = 4.0 * f64::EPSILON * largest(trial.0);
+                let noise = 4.0 * f64::EPSILON * largest(trial.0) / moment.strain_ratio;
                 (noise, 16, own.threshold(*duration))
             }
             None => (0.0, 4, f64::INFINITY),
@@ -397,7 +398,7 @@ impl Softening {
             moment.step = kappa - begin;
             let measure = self.measure(origin + kappa, history);
             held = (self.kind).held(self.elasticity, measure, &moment)?;
-            strained = held.strained(&self.elasticity, trial)?;
+            strained = (held.strained(&self.elasticity, trial)?).of_soil(moment.strain_ratio);
         }
         Err(MaterialError::NotConverged { law: self.name() })
     }
@@ -490,7 +491,7 @@ impl ConstitutiveModel for Softening {
         if let Some(place) = self.place_of_nonlocal() {
             risen.internal[place] += context.nonlocal_rise;
         }
-        self.returned(eps_e_trial, &risen, context.duration)
+        self.returned(eps_e_trial, &risen, context)
     }
 
     fn nonlocal(&self) -> Option<Nonlocal> {
@@ -543,6 +544,23 @@ impl Strength for Softening {
         Some(ShearStrength {
             cohesive: own.cohesive / self.directions.map_or(1.0, |own| own.greatest()),
             ..own
+        })
+    }
+
+    /// That of its curves at the plastic strain of the history, in the direction of stress and at the reference rate.
+    fn shear_strength_at(&self, history: &History) -> Option<ShearStrength> {
+        let kappa = self.measure(self.plastic_strain(history), history);
+        let share = self.moment(history, &PointContext::STATIC).share;
+        let [cohesive, tangent] = match &self.kind {
+            Kind::VonMises(curve) => [share * curve.at(kappa)[0] / 3.0_f64.sqrt(), 0.0],
+            Kind::Tresca(curve) => [share * curve.at(kappa)[0], 0.0],
+            Kind::MohrCoulomb {
+                cohesion, friction, ..
+            } => [cohesion.at(kappa)[0], friction.at(kappa)[0]],
+        };
+        Some(ShearStrength {
+            cohesive,
+            friction_angle: tangent.atan(),
         })
     }
 

@@ -4,7 +4,7 @@ use super::Softening;
 use crate::error::{positive, required};
 use crate::law::trial_stress;
 use crate::spectral::principal::{descending, sorted};
-use crate::{History, MaterialError, Nonlocal, NonlocalRates, Principal, ReturnMap};
+use crate::{History, MaterialError, Nonlocal, NonlocalRates, PointContext, Principal, ReturnMap};
 
 impl Nonlocal {
     fn check(&self) -> Result<(), MaterialError> {
@@ -57,17 +57,17 @@ impl Softening {
         1.0 - self.own_share() * by_kappa
     }
 
-    /// The return in a step of a duration \[time\], with what plastic and nonlocal strain are to each other. The tangent is that at
+    /// The return at a point and in a step, with what plastic and nonlocal strain are to each other. The tangent is that at
     /// held strength, and what the change of strength adds, $`\partial\tau/\partial\kappa \otimes \mathrm{d}\kappa/\mathrm{d}\varepsilon`$
     /// (theory, eqs. 108 and 110c).
     pub(super) fn returned(
         &self,
         eps_e_trial: &Principal,
         history: &History,
-        duration: f64,
+        context: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
         let stress = trial_stress(&self.elasticity, eps_e_trial)?;
-        let moment = self.moment(history, duration);
+        let moment = self.moment(history, context);
         let before = self.plastic_strain(history);
         let measure = self.measure(before, history);
         let held = self.kind.held(self.elasticity, measure, &moment)?;
@@ -75,13 +75,14 @@ impl Softening {
             return held.return_map(&self.elasticity, eps_e_trial, history);
         }
         let stress = sorted(&stress, &descending(&stress));
-        let first = held.strained(&self.elasticity, (eps_e_trial, &stress))?;
+        let ratio = context.strain_ratio;
+        let first = (held.strained(&self.elasticity, (eps_e_trial, &stress))?).of_soil(ratio);
         if !first.is_plastic {
             return held.return_map(&self.elasticity, eps_e_trial, history);
         }
         let trial = (eps_e_trial, &stress);
         let (kappa, held) = self.settled(trial, (history, moment), (held, first))?;
-        let answer = held.answer(&self.elasticity, eps_e_trial, history)?;
+        let answer = (held.answer(&self.elasticity, eps_e_trial, history)?).of_soil(ratio);
         let (margin, own) = (self.margin(answer.by_kappa), self.own_share());
         let mut map = answer.map;
         for (row, rate) in map.tangent.iter_mut().zip(answer.stress_rate) {

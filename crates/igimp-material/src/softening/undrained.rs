@@ -123,6 +123,8 @@ pub(super) struct Moment {
     pub(super) rate: Option<(RateEffect, f64)>,
     /// Plastic strain of the step \[-\].
     pub(super) step: f64,
+    /// Strains that the law is asked at over those of the soil \[-\].
+    pub(super) strain_ratio: f64,
 }
 
 impl Moment {
@@ -131,6 +133,7 @@ impl Moment {
         share: 1.0,
         rate: None,
         step: 0.0,
+        strain_ratio: 1.0,
     };
 
     /// A strength and its derivative by plastic strain, from those of its curve.

@@ -108,8 +108,46 @@ pub struct TrialStrain {
     strain: Principal,
     frame: Tensor,
     is_finite: bool,
-    /// The component of an axis that points upwards; none: the last of the dimension.
-    vertical: Option<usize>,
+    axes: AxesLookedAt,
+}
+
+/// The principal axes that the direction of stress is read off, for laws whose strength goes by it (theory, eq. 120).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AxesLookedAt {
+    /// How many of the axes are looked at, the first ones: the last one of two dimensions is that across the plane.
+    count: usize,
+    /// The component of an axis that points upwards.
+    vertical: usize,
+}
+
+impl AxesLookedAt {
+    /// Those of a dimension, whose last component points upwards: in the plane the two axes in it, as in plane strain.
+    pub const fn of_dimension<const D: usize>() -> Self {
+        Self {
+            count: if D == 2 { 2 } else { 3 },
+            vertical: D - 1,
+        }
+    }
+
+    /// Those of a body of revolution, whose axis around it counts as a level one; in space those of
+    /// [`of_dimension`](Self::of_dimension).
+    pub const fn with_hoop<const D: usize>() -> Self {
+        Self {
+            count: 3,
+            vertical: D - 1,
+        }
+    }
+
+    /// The history with the direction of principal stresses τ in their axes.
+    #[inline]
+    fn direct(
+        self,
+        law: &dyn ConstitutiveModel,
+        history: History,
+        (tau, frame): (&Principal, &Tensor),
+    ) -> History {
+        law.directed(history, tau, frame, (self.count, self.vertical))
+    }
 }
 
 impl TrialStrain {
@@ -124,7 +162,7 @@ impl TrialStrain {
             strain,
             frame,
             is_finite: true,
-            vertical: None,
+            axes: AxesLookedAt::of_dimension::<D>(),
         })
     }
 
@@ -144,17 +182,25 @@ impl TrialStrain {
             strain,
             frame,
             is_finite: false,
-            vertical: None,
+            axes: AxesLookedAt::of_dimension::<D>(),
         })
     }
 
     /// The same in space that has another axis than the last one upwards.
     #[must_use]
     pub fn with_vertical(self, axis: usize) -> Self {
-        Self {
-            vertical: Some(axis),
-            ..self
-        }
+        let axes = AxesLookedAt {
+            vertical: axis,
+            ..self.axes
+        };
+        Self { axes, ..self }
+    }
+
+    /// The same with other axes to read the direction of stress off.
+    #[inline]
+    #[must_use]
+    pub fn looked_at(self, axes: AxesLookedAt) -> Self {
+        Self { axes, ..self }
     }
 
     /// The principal strains \[-\].
@@ -174,7 +220,7 @@ impl TrialStrain {
         answer: &ReturnMap,
         kind: TangentKind,
     ) -> Result<Lifted<D>, MaterialError> {
-        let vertical = self.vertical;
+        let axes = self.axes;
         let mut lifted = if self.is_finite {
             lift(law, answer, &self.strain, self.frame, kind, |x| {
                 let share = if x == 0.0 { 1.0 } else { x / x.exp_m1() };
@@ -183,8 +229,7 @@ impl TrialStrain {
         } else {
             lift(law, answer, &self.strain, self.frame, kind, |_| [1.0; 2])
         }?;
-        let axes = axes_looked_at::<D>(vertical);
-        lifted.history = law.directed(lifted.history, &answer.tau, &lifted.frame, axes);
+        lifted.history = axes.direct(law, lifted.history, (&answer.tau, &lifted.frame));
         Ok(lifted)
     }
 }
@@ -248,19 +293,16 @@ pub fn elastic_left_cauchy_green_of<const D: usize>(
     Ok(elastic_left_cauchy_green::<D>(&strain, &frame))
 }
 
-/// The history of a law with the direction that a stress τ \[stress\] leaves for the next step ([`ConstitutiveModel::directed`]).
+/// The history of a law with the direction that a stress τ \[stress\] leaves for the next step ([`ConstitutiveModel::directed`]),
+/// read off the `axes`.
 pub fn directed_history<const D: usize>(
     law: &dyn ConstitutiveModel,
     tau: &Tensor,
     history: History,
+    axes: AxesLookedAt,
 ) -> History {
     let (principal, frame) = principal_axes::<D>(tau);
-    law.directed(history, &principal, &frame, axes_looked_at::<D>(None))
-}
-
-/// How many principal axes have a direction, those in the plane in plane strain, and which component points upwards.
-fn axes_looked_at<const D: usize>(vertical: Option<usize>) -> (usize, usize) {
-    (if D == 2 { 2 } else { 3 }, vertical.unwrap_or(D - 1))
+    axes.direct(law, history, (&principal, &frame))
 }
 
 /// The Hencky strain $`\tfrac12\ln b`$ of a left Cauchy–Green tensor `b` (upper triangle).

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use igimp_material::{
     ConstitutiveModel, Curve, Decay, Elasticity, FrictionalCurves, History, MaterialError,
-    PointContext, Principal, Ratios, Regime, ScaledLaw, Softening, Strength,
+    Nonlocal, PointContext, Principal, Ratios, Regime, ScaledLaw, Softening, Strength,
 };
 
 use crate::random::Random;
@@ -337,7 +337,8 @@ fn a_reduction_divides_the_curve() {
     ));
 }
 
-/// GOAL: a law at ratios answers as the law with those parameters, of which the strains of the curves go with s/e.
+/// GOAL: a law at ratios answers as the law with those parameters along the same curve over κ, tangents and nonlocal rates included: a
+/// stated strain is that of the soil, whatever its strength and stiffness. ORACLE: the law made with them.
 #[test]
 fn a_scaled_law_is_the_law_with_scaled_curves() {
     let (strength, stiffness) = (2.5, 0.8);
@@ -347,25 +348,95 @@ fn a_scaled_law_is_the_law_with_scaled_curves() {
         ..Ratios::ONE
     };
     let law = |c: f64, e: f64| {
-        let cu = curve(c, 0.3 * c, 0.05 * c / e, Decay::Linear);
+        let cu = curve(c, 0.3 * c, 0.05, Decay::Linear);
         Softening::tresca(elasticity().scaled(e).unwrap(), cu).unwrap()
     };
-    let within: Arc<dyn ConstitutiveModel> = Arc::new(law(1.0, 1.0));
-    let scaled = ScaledLaw::new(within, ratios).unwrap();
-    let made = law(strength, stiffness);
-    let mut random = Random(45);
-    for _ in 0..2_000 {
-        let (history, strain) = (sheared(random.between(0.0, 0.2)), trial(&mut random));
-        let one = scaled
-            .return_map(&strain, &history, &PointContext::STATIC)
-            .unwrap();
-        let other = made
-            .return_map(&strain, &history, &PointContext::STATIC)
-            .unwrap();
-        for a in 0..3 {
-            assert!((one.tau[a] - other.tau[a]).abs() < 1e-11 * (1.0 + size(&one.tau)));
+    let nonlocal = Nonlocal {
+        length: 0.1,
+        over_nonlocal: 2.0,
+    };
+    for sees_around in [false, true] {
+        let law = |c: f64, e: f64| -> Arc<dyn ConstitutiveModel> {
+            let own = law(c, e);
+            let around = || own.clone().with_nonlocal(nonlocal).unwrap();
+            Arc::new(if sees_around { around() } else { own.clone() })
+        };
+        let scaled = ScaledLaw::new(law(1.0, 1.0), ratios).unwrap();
+        let made = law(strength, stiffness);
+        let mut random = Random(45);
+        for _ in 0..2_000 {
+            let (mut history, strain) = (sheared(random.between(0.0, 0.2)), trial(&mut random));
+            if sees_around {
+                history.internal[1] = random.between(0.0, 0.2);
+            }
+            let context = PointContext {
+                nonlocal_rise: random.between(0.0, 0.01),
+                ..PointContext::STATIC
+            };
+            let one = scaled.return_map(&strain, &history, &context).unwrap();
+            let other = made.return_map(&strain, &history, &context).unwrap();
+            let stress = 1.0 + size(&one.tau);
+            let near = |a: &[f64], b: &[f64], band: f64| {
+                let pairs = std::iter::zip(a, b);
+                pairs.for_each(|(a, b)| assert!((a - b).abs() <= band, "{a} {b}"));
+            };
+            near(&one.tau, &other.tau, 1e-11 * stress);
+            near(&one.history.internal, &other.history.internal, 1e-12);
+            let [a, b] = [&one, &other].map(|own| own.tangent.as_flattened());
+            near(a, b, 1e-8 * stress * G);
+            let (a, b) = (&one.nonlocal, &other.nonlocal);
+            near(&[a.plastic], &[b.plastic], 1e-12);
+            near(&[a.plastic_by_nonlocal], &[b.plastic_by_nonlocal], 1e-8);
+            near(&a.plastic_by_strain, &b.plastic_by_strain, 1e-8);
+            near(&a.stress_by_nonlocal, &b.stress_by_nonlocal, 1e-8 * stress);
+            let [a, b] = [&scaled as &dyn ConstitutiveModel, &*made]
+                .map(|own| own.shear_strength_at(&history).unwrap().cohesive);
+            near(&[a], &[b], 1e-12);
+            let left = |kappa: f64| strength * (1.0 - 0.7 * (kappa / 0.05).min(1.0));
+            if !sees_around {
+                near(&[a], &[left(history.internal[0])], 1e-12);
+            }
         }
-        assert!((one.history.internal[0] - other.history.internal[0]).abs() < 1e-12);
+    }
+}
+
+/// GOAL: sheared in the plane soil at ratios has the strength that its curve states at its plastic strain, and tells it. ORACLE: the line
+/// through initial and residual strength over κ; ratios as far apart as a crust and deep clay have them.
+#[test]
+fn stated_strains_hold_at_every_ratio() {
+    let line = |c: f64, kappa: f64| c * (1.0 - 0.5 * (kappa / 0.1).min(1.0));
+    let cu = curve(1.0, 0.5, 0.1, Decay::Linear);
+    let laws: [Arc<dyn ConstitutiveModel>; 2] = [
+        Arc::new(Softening::tresca(elasticity(), cu).unwrap()),
+        Arc::new(Softening::von_mises(elasticity(), cu).unwrap()),
+    ];
+    for law in laws {
+        for (strength, stiffness) in [(0.1, 1.0), (1.0, 0.3), (9.0, 1.0), (0.01, 0.3)] {
+            let ratios = Ratios {
+                strength,
+                stiffness,
+                ..Ratios::ONE
+            };
+            let scaled = ScaledLaw::new(&*law, ratios).unwrap();
+            let (mut strain, mut history) = ([0.0; 3], scaled.initial_history(&[0.0; 3]));
+            for _ in 0..20 {
+                strain[0] += 0.004;
+                strain[1] -= 0.004;
+                let answer = scaled
+                    .return_map(&strain, &history, &PointContext::STATIC)
+                    .unwrap();
+                (strain, history) = (scaled.stiffness_bound().strain(&answer.tau), answer.history);
+                let shear = 0.5 * (answer.tau[0] - answer.tau[1]);
+                let kappa = history.internal[0];
+                if kappa > 0.0 {
+                    let expected = line(strength, kappa);
+                    assert!((shear / expected - 1.0).abs() < 1e-9, "{shear} {expected}");
+                    let told = scaled.shear_strength_at(&history).unwrap();
+                    assert!((told.cohesive / expected - 1.0).abs() < 1e-12);
+                }
+                assert!((kappa - history.eps_p_eq).abs() < 1e-12);
+            }
+        }
     }
 }
 

@@ -4,9 +4,9 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use igimp_material::{
-    ConstitutiveModel, Curve, Decay, Directions, Elasticity, History, MaterialError, PointContext,
-    Principal, RateEffect, Ratios, Regime, ReturnMap, ScaledLaw, Softening, Strength, Tensor,
-    Tresca, VonMises, directed_history,
+    AxesLookedAt, ConstitutiveModel, Curve, Decay, Directions, Elasticity, History, MaterialError,
+    PointContext, Principal, RateEffect, Ratios, Regime, ReturnMap, ScaledLaw, Softening, Strength,
+    Tensor, Tresca, VonMises, directed_history,
 };
 
 use crate::every_regime::STATES;
@@ -247,8 +247,8 @@ fn equal_strengths_are_the_isotropic_law() {
     }
 }
 
-/// GOAL: the angle is that of the axis of the major compression from the vertical, in the plane and in space; where the stress has no
-/// direction it stays. ORACLE: stresses made by turning.
+/// GOAL: the angle is that of the axis of the major compression from the vertical, in the plane and in space, and level where that goes
+/// around the axis of a body of revolution; where the stress has no direction it stays. ORACLE: stresses made by turning.
 #[test]
 fn the_angle_is_that_of_the_major_compression() {
     let law = both(Curve::constant(CU))[1]
@@ -269,14 +269,24 @@ fn the_angle_is_that_of_the_major_compression() {
             })
         };
         let start = history(&law, 0.0, 0.3);
-        let in_plane = directed_history::<2>(&law, &stress(&along[0], 2), start);
+        let plane = AxesLookedAt::of_dimension::<2>();
+        let in_plane = directed_history::<2>(&law, &stress(&along[0], 2), start, plane);
         assert!((in_plane.internal[0] - angle).abs() < 1e-12, "{angle}");
         let mut spatial = stress(&along[1], 1);
         spatial[1][1] = -1.5;
-        let in_space = directed_history::<3>(&law, &spatial, start);
+        let in_space =
+            directed_history::<3>(&law, &spatial, start, AxesLookedAt::of_dimension::<3>());
         assert!((in_space.internal[0] - angle).abs() < 1e-12, "{angle}");
         let even = [[-2.0, 1e-12, 0.0], [1e-12, -2.0, 0.0], [0.0, 0.0, -1.0]];
-        assert_eq!(directed_history::<2>(&law, &even, start), start);
+        assert_eq!(directed_history::<2>(&law, &even, start, plane), start);
+        // Around the axis of a body of revolution the same stress is level.
+        let hoop = AxesLookedAt::with_hoop::<2>();
+        let around = directed_history::<2>(&law, &stress(&along[0], 2), start, hoop);
+        assert!((around.internal[0] - FRAC_PI_2).abs() < 1e-12, "{angle}");
+        let mut pulled = stress(&along[0], 2);
+        pulled[2][2] = 0.0;
+        let in_section = directed_history::<2>(&law, &pulled, start, hoop);
+        assert!((in_section.internal[0] - angle).abs() < 1e-12, "{angle}");
     }
 }
 

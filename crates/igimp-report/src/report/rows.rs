@@ -4,8 +4,8 @@ use igimp_model::check::Band;
 use igimp_results::fields::{Dimension, Scale};
 use igimp_results::mesh_study::MeshSummary;
 use igimp_results::summary::{
-    ConsolidationSummary, MaterialShare, MemberSummary, PoreSummary, StageOutcome, StageSummary,
-    Summary,
+    ConsolidationSummary, MaterialShare, MemberSummary, NEEDLESS, PoreSummary, StageOutcome,
+    StageSummary, Summary,
 };
 use igimp_text::short;
 use serde::Serialize;
@@ -89,6 +89,10 @@ fn factors_of_safety(summary: &Summary, mesh_error: &str) -> Vec<Number> {
         let (from, to) = (bound(safety.stable), bound(safety.failed));
         let has_one = |stage: &StageSummary| stage.safety.is_some();
         let name = of_stage(summary, has_one, stage, "Factor of safety");
+        if safety.needs_no_strength() {
+            let note = "nothing of this ground can fail: its strength is not needed";
+            return Some(Number::new(name, format!("> {NEEDLESS}"), note));
+        }
         let value = format!("{from}\u{a0}…\u{a0}{to}");
         Some(Number::new(name, value, mesh_error))
     };

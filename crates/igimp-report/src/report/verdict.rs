@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use igimp_results::summary::{
-    CheckRow, Kinematic, PathPoint, PathSummary, SafetySummary, StageOutcome, StageSummary,
-    StrengthShares, Summary,
+    CheckRow, Kinematic, NEEDLESS, PathPoint, PathSummary, SafetySummary, StageOutcome,
+    StageSummary, StrengthShares, Summary,
 };
 use igimp_text::short;
 use serde::Serialize;
@@ -136,6 +136,10 @@ fn on_checks(summary: &Summary, missed: &[&CheckRow]) -> Option<String> {
 
 /// The factor of safety with what belongs to it.
 pub(super) fn on_safety(safety: &SafetySummary) -> Vec<String> {
+    if safety.needs_no_strength() {
+        let words = "Nothing of this ground can fail: its strength is not needed";
+        return vec![format!("{words}, and F is above {NEEDLESS}.")];
+    }
     let mut sentences = vec![format!("{}.", interval(safety))];
     let criterion = safety.criterion.trim().trim_end_matches('.');
     if !criterion.is_empty() {
@@ -244,5 +248,10 @@ mod tests {
         }
         let one = text(vec![stage("dry", 1.5)]);
         assert!(!one.contains("Stage “dry”: The"), "{one}");
+        let level = text(vec![stage("level ground", 1.668e8)]);
+        assert!(
+            level.contains("its strength is not needed, and F is above 1000"),
+            "{level}"
+        );
     }
 }

@@ -132,7 +132,7 @@ table! {
     STRENGTH_CURVE: StrengthCurve, "How a strength goes with plastic strain.";
     residual: number(NotNegative), required "0.4", "what is left in the end over the initial value; above 1 it hardens";
     strain: number(Positive), required "0.1",
-        "accumulated deviatoric plastic strain over which it goes; plane shear by gamma has gamma / 1.732";
+        "accumulated deviatoric plastic strain over which it goes, at every place, whatever its strength and stiffness; plane shear by gamma has gamma / 1.732";
     curve: choice(Decay), default "\"exponential\"", "shape of the curve";
 }
 
@@ -140,7 +140,7 @@ table! {
     ANGLE_CURVE: AngleCurve, "How an angle goes with plastic strain.";
     residual: quantity(Angle, NotNegative), required "\"15 deg\"", "the angle in the end";
     strain: number(Positive), required "0.1",
-        "accumulated deviatoric plastic strain over which it goes; plane shear by gamma has gamma / 1.732";
+        "accumulated deviatoric plastic strain over which it goes, at every place, whatever its strength and stiffness; plane shear by gamma has gamma / 1.732";
     curve: choice(Decay), default "\"exponential\"", "shape of the curve";
 }
 
@@ -270,7 +270,7 @@ table! {
     drainage: apart(choice(Drainage)), derived "\"total\" with `cu`, \"drained\" otherwise",
         "what it does with the water in its pores";
     undrained_poisson: apart(number(Share)), optional "0.495 where `drainage` is undrained or coupled and `pore_water` is not given",
-        "Poisson's ratio of undrained soil with its water, above `poisson`";
+        "Poisson's ratio of undrained soil with its water, above `poisson`; where stiffness goes with stress, at the stress as a step begins";
     pore_water: apart(quantity(Stress, Positive)), optional "`undrained_poisson` says it",
         "bulk modulus of the water over the porosity, K_w/n, of undrained and coupled soil";
     permeability: apart(either(quantity(Velocity, Positive), table(PERMEABILITY: Permeability))),

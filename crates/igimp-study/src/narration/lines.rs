@@ -6,7 +6,8 @@ use igimp_cases::run::{Event, worst_node};
 use igimp_model::meshes::label;
 use igimp_results::ending::EndReason;
 use igimp_results::summary::{
-    Kinematic, PathPoint, SafetySummary, StageOutcome, StageSummary, StrengthShares, TrialSummary,
+    Kinematic, NEEDLESS, PathPoint, SafetySummary, StageOutcome, StageSummary, StrengthShares,
+    TrialSummary,
 };
 use igimp_solver::{StepError, StepReport};
 use igimp_text::{count, short};
@@ -249,6 +250,9 @@ pub fn outcome(summary: &StageSummary) -> String {
 pub fn interval(safety: &SafetySummary) -> String {
     let three = |value: f64| format!("{value:.3}");
     match (safety.stable, safety.failed) {
+        _ if safety.needs_no_strength() => {
+            format!("F > {NEEDLESS}: nothing of this ground can fail, its strength is not needed")
+        }
         (Some(stable), Some(failed)) => format!("{} <= F < {}", three(stable), three(failed)),
         (Some(stable), None) => format!("F >= {}", three(stable)),
         (None, Some(failed)) => format!("F < {}", three(failed)),
@@ -272,6 +276,27 @@ mod tests {
     use igimp_solver::{Body, PhaseTimes, StepFailure};
 
     use super::*;
+
+    /// GOAL: a factor that no strength decides is no number to state, and others are. ORACLE: by hand.
+    #[test]
+    fn ground_that_needs_no_strength_has_no_number() {
+        let told = |stable, failed| {
+            interval(&SafetySummary {
+                stable,
+                failed,
+                ..SafetySummary::default()
+            })
+        };
+        assert_eq!(told(Some(1.25), Some(1.5)), "1.250 <= F < 1.500");
+        assert_eq!(told(Some(900.0), None), "F >= 900.000");
+        for failed in [None, Some(2e8)] {
+            let text = told(Some(166_822_053.789), failed);
+            assert!(
+                text.starts_with("F > 1000: nothing of this ground can fail"),
+                "{text}"
+            );
+        }
+    }
 
     fn start(kind: &'static str) -> Event<'static, 2> {
         Event::StageStarted {

@@ -155,7 +155,8 @@ impl<const D: usize> Gathering<'_, D> {
         supports: &mut Vec<PressureSupport<D>>,
     ) -> Result<Gathered<D>, AssemblyError> {
         let (particles, particle) = (self.particles, number as usize);
-        let bound = self.conditions.laws[particles.law[particle]].stiffness_bound();
+        let laws = &self.conditions.laws;
+        let bound = laws[particles.law[particle]].stiffness_bound();
         let ratio = particles.ratios[particle].stiffness;
         let modulus = ratio * (bound.bulk() + 4.0 / 3.0 * bound.shear());
         let given = self.pores.pressure.get(particle).copied();
@@ -169,7 +170,7 @@ impl<const D: usize> Gathering<'_, D> {
             * particles.ln_permeability_ratio[particle].exp();
         let [of_flow, of_rate] = self.flow.weights();
         let flows = of_flow * self.flow.duration * volume * share;
-        let stores = volume / soil.stiffness.of(&particles.ratios[particle]);
+        let stores = volume / soil.stiffness.of(particles, particle, laws)?;
         let projects = volume * 0.5 / (ratio * bound.shear());
         let expected = self.flow.duration * particles.water_rate[particle];
         Ok(Gathered {

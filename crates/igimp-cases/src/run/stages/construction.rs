@@ -173,7 +173,8 @@ fn become_soil_of<const D: usize>(
     let tau = fields.sigma[particle].map(|row| row.map(|stress| stress * stretch));
     let law = ScaledLaw::new(&*model.laws[fields.law[particle]], ratios)?;
     let history = law.initial_history(&principal_values::<D>(&tau));
-    let history = directed_history::<D>(&law, &tau, history);
+    let axes = case.method.section.axes_looked_at::<D>();
+    let history = directed_history::<D>(&law, &tau, history, axes);
     fields.internal[particle] = history.internal;
     fields.b_e[particle] = elastic_left_cauchy_green_of::<D>(&law, &tau, &history)?;
     Ok(())

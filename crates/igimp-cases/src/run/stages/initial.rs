@@ -37,7 +37,8 @@ pub(crate) fn level_ground<const D: usize>(
         let tensor =
             std::array::from_fn(|a| std::array::from_fn(|b| if a == b { sigma[a] } else { 0.0 }));
         let answer = |law: &dyn ConstitutiveModel| {
-            let history = directed_history::<D>(law, &tensor, law.initial_history(&sigma));
+            let axes = case.method.section.axes_looked_at::<D>();
+            let history = directed_history::<D>(law, &tensor, law.initial_history(&sigma), axes);
             let excess = law.yield_function(&sigma, &history);
             let is_admissible = excess <= 1e-9 * law.stress_scale(&sigma);
             let strain = is_admissible.then(|| law.elastic_strain(&sigma, &history));

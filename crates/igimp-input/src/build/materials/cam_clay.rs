@@ -7,6 +7,9 @@ use igimp_schema::schema::materials::CamClay;
 use igimp_schema::text::number;
 use igimp_schema::tree::read::At;
 
+/// M of a friction angle of 90°, in triaxial compression \[-\]: along q = M p the stress at the sides is zero.
+const STEEPEST: f64 = 3.0;
+
 /// The law of a table, with slopes of natural volumetric strain.
 pub(super) fn strength(own: &CamClay, problems: &mut Problems) -> Option<Strength> {
     let volume = 1.0 + own.void_ratio.as_ref().map_or(0.0, |own| **own);
@@ -42,7 +45,17 @@ pub(super) fn stiffness(own: CamClayParameters) -> Option<[f64; 2]> {
 /// M, as it is or from the friction angle at the critical state.
 fn critical_ratio(own: &CamClay, problems: &mut Problems) -> Option<f64> {
     match (&own.friction, &own.critical_ratio) {
-        (None, Some(ratio)) => Some(**ratio),
+        (None, Some(ratio)) if **ratio < STEEPEST => Some(**ratio),
+        (None, Some(ratio)) => {
+            let message = format!(
+                "`critical_ratio` is below 3, and here it is {}: no friction angle has more in triaxial compression",
+                number(**ratio)
+            );
+            problems
+                .error(ratio.place, message)
+                .help("M = 6 sin(friction)/(3 - sin(friction)): clay has 0.7 to 1.4");
+            None
+        }
         (Some(friction), None) if friction.to_degrees() < 89.0 => {
             Some(6.0 * friction.sin() / (3.0 - friction.sin()))
         }

@@ -1,9 +1,11 @@
 //! What materials ask of the grid, the stages and the solver.
 
 use igimp_linear::SolverKind;
-use igimp_model::{Case, Material, Profile, Stage, StageKind};
+use igimp_model::{BodyPart, Case, Material, Profile, Softens, Stage, StageKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number};
+
+use super::profiles::Extent;
 
 /// Parts between the least and the greatest friction at whose ends a law is looked at.
 const PARTS: u32 = 16;
@@ -32,10 +34,72 @@ pub(crate) fn possible(material: &Material, cell: f64) -> Result<(), String> {
     Ok(())
 }
 
+/// The least of the stiffness of soil over its strength, beside that of its material \[-\]: there a curve over plastic strain is
+/// nearest to snap-back. 1 where neither varies, and of soil that is in no body.
+fn least_stiffness_over_strength<const D: usize>(case: &Case<D>, index: usize) -> f64 {
+    let material = &case.materials[index];
+    let ground = case.ground();
+    let bodies: Vec<Option<BodyPart<D>>> = case.bodies.iter().cloned().map(Some).collect();
+    let extent = Extent {
+        name: &material.name,
+        material: index,
+        bodies: &bodies,
+        ground: &ground,
+    };
+    let over = |place: &[f64; D]| {
+        let ratios = material.ratios_at(place, &ground);
+        ratios.stiffness / ratios.strength
+    };
+    (extent.places().iter().map(over)).fold(1.0, f64::min)
+}
+
+/// Refuses strength that varies and softens so fast that stress snaps back where soil is soft beside its strength.
+fn check_where_soft<const D: usize>(
+    case: &Case<D>,
+    (index, cell): (usize, f64),
+    problems: &mut Problems,
+) {
+    let material = &case.materials[index];
+    let varies = material.profiles.strength.is_some() || material.profiles.young.is_some();
+    let Some(mut curves) = material.softening.filter(|_| varies) else {
+        return;
+    };
+    let least = least_stiffness_over_strength(case, index);
+    if least >= 1.0 {
+        return;
+    }
+    for curve in [
+        &mut curves.cohesive,
+        &mut curves.friction,
+        &mut curves.dilation,
+    ] {
+        // To the law strains are those of the soil times this.
+        *curve = curve.map(|own| Softens {
+            strain: own.strain * least,
+            ..own
+        });
+    }
+    let asked = Material {
+        softening: Some(curves),
+        ..material.clone()
+    };
+    if possible(&asked, cell).is_err() {
+        let message = format!(
+            "the material `{}` is not possible: where its `young` over its strength is {} of what it is where both are greatest, strength falls faster than elastic stress does, and stress snaps back within the point",
+            clip(&material.name, 40),
+            number(least)
+        );
+        problems
+            .error(None, message)
+            .help("a larger `strain` of its softening, or layers with a material each");
+    }
+}
+
 /// Refuses strength that softens so fast, on the cells of a case, that stress snaps back.
 pub(crate) fn check_on_cells<const D: usize>(case: &Case<D>, problems: &mut Problems) {
     let cell = case.grid.smallest_cell()[D - 1];
-    for material in &case.materials {
+    for (index, material) in case.materials.iter().enumerate() {
+        check_where_soft(case, (index, cell), problems);
         let Some(curves) = material.softening.filter(|own| own.band_width.is_some()) else {
             continue;
         };

@@ -24,7 +24,7 @@ pub(crate) struct Property {
 /// Where the soil of a material lies, and its name for messages.
 #[derive(Clone, Copy)]
 pub(crate) struct Extent<'a, const D: usize> {
-    pub name: &'a str,
+    pub(crate) name: &'a str,
     pub(crate) material: usize,
     pub(crate) bodies: &'a [Option<BodyPart<D>>],
     pub(crate) ground: &'a Ground<D>,
@@ -70,7 +70,7 @@ impl<'a, const D: usize> Extent<'a, D> {
     }
 
     /// Places all over its soil.
-    fn places(&self) -> Vec<[f64; D]> {
+    pub(super) fn places(&self) -> Vec<[f64; D]> {
         let edges = (self.of_material()).map(|body| self.ground.places(&*body.region));
         let mut places: Vec<[f64; D]> = edges.flatten().collect();
         let ends = places.clone();

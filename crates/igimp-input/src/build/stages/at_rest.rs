@@ -69,6 +69,9 @@ mod tests {
             &format!("{text}\n{search}"),
             "the material `clay` is modified Cam-clay: its strength is a result of the path",
         );
+        let list = CaseFile::parse("clay.toml", &format!("{text}\n{search}"), &[]).unwrap_err();
+        let stage = "| type = \"strength-reduction\"";
+        assert!(list.to_string().contains(stage), "{list}");
         let others = format!("{text}\n{search}materials = [\"sand\"]\n");
         CaseFile::parse("clay.toml", &others, &[]).unwrap();
         let jaky = text.replace("k0 = 0.70835", "k0 = \"jaky\"");

@@ -50,8 +50,14 @@ pub(super) fn materials<const D: usize>(
         let shown = clip(&material.name, 40);
         if let Some(reason) = material.strength.not_reduced() {
             let message = format!("the material `{shown}` {reason}");
+            // A list that was not stated is that of all strengths: the stage asks for it.
+            let place = if value.written {
+                value.place
+            } else {
+                about.stage.form.place
+            };
             problems
-                .error(value.place, message)
+                .error(place, message)
                 .help(match material.strength {
                     Strength::Elastic => "leave it out; it keeps its stiffness",
                     _ => "for a factor of safety, model = \"tresca\" with the undrained strength that it has",

@@ -189,6 +189,12 @@ fn share<const D: usize>(
         None => (1.0, None),
     };
     let value = |own: &Option<At<f64>>| own.as_ref().map(|own| **own);
+    if let (Some(exponent), None) = (&own.exponent, &own.ocr) {
+        let message = "`exponent` has no effect: it is that of `ocr`, which is not stated";
+        problems
+            .warning(exponent.place, message)
+            .help("add ocr = 2.0, or remove it");
+    }
     Ok(StressShare {
         ratio: value(&own.ratio).ok_or(Wrong)?,
         ocr,
