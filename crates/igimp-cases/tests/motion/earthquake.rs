@@ -124,6 +124,51 @@ fn a_layer_on_itself_moves_as_its_outcrop() {
     assert!((0.5 * (most - least) - 1.0).abs() < 0.02, "{least} {most}");
 }
 
+/// GOAL: a wavelet between samples that stand a second apart shakes as it does in an even record of the same function.
+/// ORACLE: each other; the wavelet brings the ground back with no velocity, and a step across it would see nothing.
+#[test]
+fn a_wavelet_among_wide_samples_is_not_passed_over() {
+    let wavelet = [
+        (3.4, 0.0),
+        (3.45, 3.0),
+        (3.5, -3.0),
+        (3.55, 0.0),
+        (3.6, -3.0),
+        (3.65, 3.0),
+        (3.7, 0.0),
+    ];
+    let largest = |samples: &[(f64, f64)]| {
+        let list = |of: &dyn Fn(&(f64, f64)) -> String| {
+            samples.iter().map(of).collect::<Vec<_>>().join(", ")
+        };
+        let (times, values) = (
+            list(&|own| format!("\"{} s\"", own.0)),
+            list(&|own| own.1.to_string()),
+        );
+        let stage = format!(
+            "geometry = \"given\"\nduration = \"10 s\"\nsteps = 10\ntied_sides = true\n\
+             rayleigh = {{ ratio = 0.05, periods = [\"0.6 s\", \"0.1 s\"] }}\n\
+             ground_motion = {{ unit = \"m/s2\", time = [{times}], values = [{values}] }}"
+        );
+        let run = ran(&layer(&stage).replace("\"newmark\"", "\"backward-euler\""));
+        assert_done(&run.summary);
+        let points = run.curves[0].points(0, 1);
+        let most = points
+            .iter()
+            .fold(0.0, |most: f64, own| most.max(own[1].abs()));
+        (most, run.summary.stages[1].steps)
+    };
+    let seconds = (0..=10).map(|k| (f64::from(k), 0.0));
+    let mut wide: Vec<_> = seconds.chain(wavelet).collect();
+    wide.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut even: Vec<_> = (0..=200).map(|k| (f64::from(k) / 20.0, 0.0)).collect();
+    even[68..=74].copy_from_slice(&wavelet);
+    let ((found, few), (expected, many)) = (largest(&wide), largest(&even));
+    println!("{found} m in {few} steps, {expected} m in {many} steps");
+    assert!(expected > 5e-3, "{expected}");
+    assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
+}
+
 /// GOAL: a record of velocity and one of acceleration of the same motion shake alike.
 /// ORACLE: each other; velocity that is linear between its samples has a constant acceleration there.
 #[test]
