@@ -41,6 +41,9 @@ pub struct Controls {
 pub struct WallTrack {
     /// The node of the grid.
     pub node: usize,
+    /// The components of displacement that a support held and the motion has let go.
+    #[serde(default)]
+    pub is_released: [bool; 3],
     /// Force of the support that the wall replaces \[N/m; N in space\].
     pub force: [f64; 3],
     /// Displacement since then \[m\].

@@ -169,6 +169,43 @@ fn a_wavelet_among_wide_samples_is_not_passed_over() {
     assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
 }
 
+/// GOAL: level ground at rest stays there in a second motion that lets go other supports than the first, at the corners too.
+/// ORACLE: rest. The forces of supports at corners that both sides hold were lost, and the ground sank by 12 mm.
+#[test]
+fn ground_stays_at_rest_in_a_second_motion() {
+    let still = "ground_motion = { unit = \"g\", time = [\"0 s\", \"1 s\"], values = [0, 0]";
+    let (tied, beside) = ("tied_sides = true", "free_field = [\"left\", \"right\"]");
+    let (rigid, compliant) = (
+        format!("{still} }}"),
+        format!("{still}, base = \"compliant\" }}"),
+    );
+    for (first, second) in [
+        (format!("{tied}\n{rigid}"), format!("{tied}\n{compliant}")),
+        (format!("{tied}\n{compliant}"), format!("{tied}\n{rigid}")),
+        (beside.to_owned(), format!("{beside}\n{compliant}")),
+        (
+            "absorbing = [\"bottom\"]".to_owned(),
+            "absorbing = [\"left\", \"right\"]".to_owned(),
+        ),
+        (
+            "absorbing = [\"left\"]".to_owned(),
+            "absorbing = [\"left\", \"bottom\"]".to_owned(),
+        ),
+    ] {
+        let keys = "duration = \"1 s\"\nsteps = 10\ngeometry = \"given\"\nlumped_share = 0";
+        let stages = format!(
+            "{keys}\n{first}\n[[stages]]\nname = \"again\"\ntype = \"dynamic\"\n{keys}\n{second}"
+        );
+        let text = layer(&stages).replace("\"gravity\"", "\"gravity\"\ngeometry = \"given\"");
+        let run = ran(&text);
+        assert_done(&run.summary);
+        let moved = (run.body.particles.displacement.iter().flatten())
+            .fold(0.0, |m: f64, u| m.max(u.abs()));
+        println!("{first:.20} then {second:.20}: {moved:e} m");
+        assert!(moved < 1e-9, "{first}, then {second}: {moved:e}");
+    }
+}
+
 /// GOAL: a record of velocity and one of acceleration of the same motion shake alike.
 /// ORACLE: each other; velocity that is linear between its samples has a constant acceleration there.
 #[test]
