@@ -354,6 +354,16 @@ fn records_that_make_no_sense() {
             "by its header",
         ),
         ("0,0\n", ", unit = \"g\"", "one sample only"),
+        (
+            "time [s], acceleration [m/s]\n0,0\n1,1\n",
+            "",
+            "its column 2 is `acceleration` by its header, and in `m/s`, a unit of velocity",
+        ),
+        (
+            "time [s], Velocity\n0,0\n1,1\n",
+            ", unit = \"g\"",
+            "its column 2 is `velocity` by its header, and in `g`, a unit of acceleration",
+        ),
     ] {
         let error = read(record, keys)
             .err()
