@@ -425,6 +425,10 @@ fn earthquakes_that_make_no_sense() {
             "tells no yield acceleration",
         ),
         (
+            format!("absorbing = [\"bottom\"]\n{motion} }}"),
+            "a rigid base moves it by the record",
+        ),
+        (
             "newmark_from = \"weight\"".to_owned(),
             "a block slides on ground that moves",
         ),
@@ -450,6 +454,40 @@ fn earthquakes_that_make_no_sense() {
         error.to_string().contains("does not take the soil along"),
         "{error}"
     );
+}
+
+/// GOAL: walls at sides of the grid that no body reaches are refused; sides that it reaches are not.
+/// ORACLE: the ground begins 3 m from the left side.
+#[test]
+fn walls_stand_where_ground_is() {
+    for (keys, said) in [
+        (
+            "absorbing = [\"left\"]",
+            "no body reaches the side left: nothing stands there",
+        ),
+        (
+            "free_field = [\"right\", \"left\"]",
+            "no body reaches the side left: nothing stands there",
+        ),
+        (
+            "absorbing = [\"top\"]",
+            "no body reaches the side top: nothing stands there",
+        ),
+        (
+            "tied_sides = true",
+            "no body reaches the side left: it moves with nothing",
+        ),
+        ("absorbing = [\"right\", \"bottom\"]", ""),
+    ] {
+        let text =
+            layer(&format!("duration = \"1 s\"\n{keys}")).replace("x = [\"0 m\"", "x = [\"-3 m\"");
+        let error = CaseFile::parse("layer.toml", &text, &[]).err();
+        let error = error.map(|error| error.to_string()).unwrap_or_default();
+        assert!(
+            error.contains(said) && error.is_empty() == said.is_empty(),
+            "{keys}: {error}"
+        );
+    }
 }
 
 /// GOAL: a block is told of no motion across its way.
