@@ -234,6 +234,22 @@ pub struct State<const D: usize> {
     pub controls: Controls,
 }
 
+impl<const D: usize> State<D> {
+    /// Takes all motion from the body, and what stands at walls that a motion had let go.
+    pub(crate) fn rest(&mut self) {
+        self.body.rest();
+        self.controls.walls.clear();
+    }
+
+    /// The same without motion.
+    #[must_use]
+    pub(crate) fn at_rest(&self) -> Self {
+        let mut state = self.clone();
+        state.rest();
+        state
+    }
+}
+
 /// Acceleration of gravity that turns unit weights of a case with this one into densities \[m/s²\]: that of the earth where
 /// the case has none.
 pub(crate) fn gravity_of_weights(gravity: f64) -> f64 {

@@ -206,6 +206,63 @@ fn ground_stays_at_rest_in_a_second_motion() {
     }
 }
 
+/// GOAL: a search between two motions leaves the second as it would be without the search, and static stages say what they stop.
+/// ORACLE: the run without the search, bit by bit; the words.
+#[test]
+fn a_search_between_motions_stops_nothing() {
+    let soil = "model = \"von-mises\"\ncu = \"40 kPa\"";
+    let motion = |name: &str| {
+        format!(
+            "[[stages]]\nname = \"{name}\"\ntype = \"dynamic\"\nduration = \"0.2 s\"\nsteps = 2\ngeometry = \"given\"\n\
+             free_field = [\"left\", \"right\"]\nground_motion = {{ unit = \"g\", time = [\"0 s\", \"0.1 s\", \"0.2 s\"], \
+             values = [0, 0.1, 0.2] }}\n"
+        )
+    };
+    let with = |between: &str| {
+        let (first, second) = (motion("first"), motion("second"));
+        // A search on the given geometry would give the stage before it the given one too.
+        let given = "\"gravity\"\ngeometry = \"given\"";
+        let text = layer("").replace("model = \"elastic\"", soil);
+        let text = text.replace("\"gravity\"", given);
+        let (before, after) = text.split_once("[[stages]]\nname = \"motion\"").unwrap();
+        let (_, after) = after.split_once("[[monitors]]").unwrap();
+        let after = after.replace("stage = \"motion\"", "stage = \"second\"");
+        ran(&format!(
+            "{before}{first}{between}{second}[[monitors]]{after}"
+        ))
+    };
+    let told = |run: &Run<2>, said: &str| run.summary.warnings.iter().any(|own| own.contains(said));
+    let alone = with("");
+    assert!(!told(&alone, "moves as it begins"));
+    for search in ["trials", "continuation"] {
+        let run = with(&format!(
+            "[[stages]]\nname = \"fos\"\ntype = \"strength-reduction\"\ngeometry = \"given\"\nsteps = 4\n\
+             search = \"{search}\"\nbracket = [1, 1.2]\ntolerance = 0.2\n"
+        ));
+        assert!(
+            told(&run, "the search takes it for at rest"),
+            "{:?}",
+            run.summary.warnings
+        );
+        assert_eq!(
+            run.body.particles.displacement, alone.body.particles.displacement,
+            "{search}"
+        );
+        assert_eq!(
+            run.body.particles.velocity, alone.body.particles.velocity,
+            "{search}"
+        );
+    }
+    let run =
+        with("[[stages]]\nname = \"still\"\ntype = \"gravity\"\nsteps = 1\ngeometry = \"given\"\n");
+    assert!(
+        told(&run, "a stage without inertia stops it"),
+        "{:?}",
+        run.summary.warnings
+    );
+    assert_ne!(run.body.particles.velocity, alone.body.particles.velocity);
+}
+
 /// GOAL: a record of velocity and one of acceleration of the same motion shake alike.
 /// ORACLE: each other; velocity that is linear between its samples has a constant acceleration there.
 #[test]
