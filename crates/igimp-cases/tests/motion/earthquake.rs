@@ -663,3 +663,25 @@ fn ground_that_moves_late_is_waited_for() {
         "{energy:?}"
     );
 }
+
+/// GOAL: a record that begins after its stage, and soil without mass, are told. ORACLE: the words; a case that has neither.
+#[test]
+fn motions_that_do_little_are_told() {
+    let warnings = |begins: &str, weight: &str| {
+        let stage = format!(
+            "duration = \"1 s\"\nground_motion = {{ unit = \"g\", time = [\"{begins} s\", \"9 s\"], values = [0, 1] }}"
+        );
+        let text = layer(&stage).replace("\"20 kN/m3\"", weight);
+        CaseFile::parse("layer.toml", &text, &[])
+            .unwrap()
+            .warnings()
+    };
+    let (late, massless) = (
+        "begins when the stage is over",
+        "has no weight, and so no mass",
+    );
+    let all = warnings("2", "\"0 kN/m3\"");
+    assert!(all.contains(late) && all.contains(massless), "{all}");
+    let none = warnings("0", "\"20 kN/m3\"");
+    assert!(!none.contains(late) && !none.contains(massless), "{none}");
+}
