@@ -150,7 +150,7 @@ fn planned<const D: usize>(case: &Case<D>, stage: &Stage) -> StepsTaken {
     }
 }
 
-/// The steps of a stage that takes time: by the cells that waves cross, and none longer than the interval of its record.
+/// The steps of a stage that takes time: by the cells that waves cross, and none longer than the intervals of its record.
 fn steps_of_time<const D: usize>(case: &Case<D>, own: &Dynamic) -> f64 {
     let speeds = case
         .materials
@@ -160,7 +160,7 @@ fn steps_of_time<const D: usize>(case: &Case<D>, own: &Dynamic) -> f64 {
     let cell = (case.grid.smallest_cell().into_iter()).fold(f64::INFINITY, f64::min);
     let by_waves = own.duration * fastest / (CELLS_PER_STEP * cell);
     let record = own.ground_motion.as_ref();
-    let by_record = record.map_or(0.0, |motion| own.duration / motion.interval());
+    let by_record = record.map_or(0.0, |motion| motion.steps(own.duration));
     by_waves.max(by_record)
 }
 

@@ -9,6 +9,8 @@ use crate::named::Trouble;
 pub(crate) struct Columns {
     /// The unit of each column, if the header says one: `ft` in `x [ft]` and `x (ft)`.
     pub(crate) units: Vec<Option<String>>,
+    /// The name of each column in lower case, if there is a header.
+    pub(crate) names: Vec<Option<String>>,
     /// Rows of as many numbers as there are columns.
     pub(crate) rows: Vec<Vec<f64>>,
     /// The line of each row.
@@ -19,6 +21,7 @@ pub(crate) struct Columns {
 pub(crate) fn columns(text: &str, names: &[&str]) -> Result<Columns, Trouble> {
     let mut found = Columns {
         units: vec![None; names.len()],
+        names: vec![None; names.len()],
         rows: Vec::new(),
         lines: Vec::new(),
     };
@@ -98,6 +101,7 @@ fn header(cells: &[&str], names: &[&str], found: &mut Columns) -> Result<(), Tro
             ));
         }
         found.units[column] = unit.filter(|unit| !unit.trim().is_empty());
+        found.names[column] = Some(name);
     }
     Ok(())
 }

@@ -63,6 +63,13 @@ fn samples(file: &Named, table: &Node, dimension: Dimension) -> Result<Vec<Entry
     ascending(&found)?;
     let column = |k: usize, dimension: Dimension| {
         let header = (COLUMNS[k], found.units[k].as_deref());
+        let Some(_) = header.1 else {
+            let (name, usual) = (COLUMNS[k], dimension.usual_unit());
+            return Err(Trouble::new(
+                format_args!("nothing says in which unit its {name} is"),
+                format_args!("write it into the header of the column, as in `{name} [{usual}]`"),
+            ));
+        };
         let unit = unit_of((COLUMNS[k], None), header, dimension)?;
         let values = found
             .rows

@@ -63,6 +63,7 @@ fn samples(file: &Named, table: &Node) -> Result<Vec<Entry>, Trouble> {
         Dimension::Time,
     )?;
     let unit = unit_of_values(table.text_at("unit"), found.units[1].as_deref())?;
+    agrees(found.names[1].as_deref(), unit)?;
     let times = (found.rows.iter()).map(|own| quantity(own[0], &time, Dimension::Time, table));
     let times = times.collect::<Result<Vec<_>, _>>()?;
     let value = |own: &Vec<f64>| Node::written(Value::Number(own[1]), table.place);
@@ -78,7 +79,7 @@ fn samples(file: &Named, table: &Node) -> Result<Vec<Entry>, Trouble> {
         .cloned()
         .collect();
     entries.extend([
-        entry("unit", Value::Text(unit)),
+        entry("unit", Value::Text(unit.name().to_owned())),
         entry("time", Value::List(times)),
         entry("values", Value::List(values)),
     ]);
@@ -118,7 +119,7 @@ pub(crate) fn ascending(found: &Columns) -> Result<(), Trouble> {
 }
 
 /// The unit of the second column: that of the case file or of the header, which have to agree.
-fn unit_of_values(stated: Option<&str>, header: Option<&str>) -> Result<String, Trouble> {
+fn unit_of_values(stated: Option<&str>, header: Option<&str>) -> Result<RecordUnit, Trouble> {
     let units = || {
         format!(
             "units of acceleration and velocity: {}",
@@ -146,10 +147,31 @@ fn unit_of_values(stated: Option<&str>, header: Option<&str>) -> Result<String, 
             ));
         }
     };
-    if RecordUnit::names().any(|own| own == unit) {
-        Ok(unit)
-    } else {
+    RecordUnit::named(&unit).ok_or_else(|| {
         let message = format!("unknown unit `{}` of its values", clip(&unit, 20));
-        Err(Trouble::new(message, units()))
+        Trouble::new(message, units())
+    })
+}
+
+/// Refuses a unit of velocity in a column that is called acceleration by the header, and the reverse.
+fn agrees(name: Option<&str>, unit: RecordUnit) -> Result<(), Trouble> {
+    let (_, is_velocity) = unit.in_si();
+    let kinds = ["acceleration", "velocity"];
+    let [of_unit, other] = if is_velocity {
+        [kinds[1], kinds[0]]
+    } else {
+        kinds
+    };
+    // `acc` and `vel` are usual short names.
+    match name.filter(|name| name.starts_with(&other[..3])) {
+        None => Ok(()),
+        Some(name) => Err(Trouble::new(
+            format_args!(
+                "its column 2 is `{}` by its header, and in `{}`, a unit of {of_unit}",
+                clip(name, 40),
+                unit.name()
+            ),
+            format_args!("name the column {of_unit}, or state a unit of {other}"),
+        )),
     }
 }

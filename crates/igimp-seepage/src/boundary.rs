@@ -74,11 +74,16 @@ fn at<const D: usize>(
     } else {
         (At::Closed, faces + 1)
     };
-    let last = (conditions.faces.iter().enumerate().rev())
-        .find(|(_, own)| own.within.holds(&facet.x, reach));
+    let mut boxes = (conditions.faces.iter().enumerate().rev())
+        .filter(|(_, own)| own.within.holds(&facet.x, reach))
+        .peekable();
+    let says_nothing = |what: OnFaces| matches!(what, OnFaces::Head(head) if !is_below(head));
+    let is_above_level = boxes.peek().is_some_and(|(_, own)| says_nothing(own.what));
+    // Above its level a head says nothing, and the box before it decides.
+    let last = boxes.find(|(_, own)| !says_nothing(own.what));
     match last.map(|(index, own)| (index, own.what)) {
-        Some((index, OnFaces::Head(head))) if is_below(head) => return (At::Head(head), index),
-        Some((_, OnFaces::Head(_))) => return else_at,
+        None if is_above_level => return else_at,
+        Some((index, OnFaces::Head(head))) => return (At::Head(head), index),
         Some((index, OnFaces::Inflow(inflow))) => return (At::Inflow(inflow), index),
         Some((index, OnFaces::Closed)) => return (At::Closed, index),
         _ => {}

@@ -213,6 +213,7 @@ pub fn march_from<const D: usize>(
     let mut stride = Stride::new(settings, &state);
     while state.at < 1.0 {
         let at = state.at;
+        stride.bound(&mut state, load_path.longest_step(at));
         let to = stride.next(at, state.size);
         let result = conditions_at(load_path, at, to).and_then(|conditions| {
             step(
@@ -280,6 +281,14 @@ impl<'a> Stride<'a> {
             // Where steps are chosen, the smallest goes by the one that is tried first.
             smallest: least * settings.pace.map_or(nominal, |_| state.size),
             cuts: 0,
+        }
+    }
+
+    /// Holds a step that is chosen to a longest size.
+    fn bound(&mut self, state: &mut MarchState, longest: f64) {
+        if self.settings.pace.is_some() && longest < state.size {
+            state.size = longest;
+            self.smallest = self.least * longest;
         }
     }
 

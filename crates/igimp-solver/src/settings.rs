@@ -9,6 +9,11 @@ pub trait LoadPath<const D: usize> {
     /// # Errors
     /// [`AssemblyError`] when the conditions cannot be stated.
     fn conditions(&self, from: f64, to: f64) -> Result<StepConditions<D>, AssemblyError>;
+
+    /// The longest step that may begin at load factor `at`, where the durations of steps are chosen, in load factor \[-\].
+    fn longest_step(&self, _at: f64) -> f64 {
+        f64::INFINITY
+    }
 }
 
 /// When a step counts as converged, and when it is given up.

@@ -23,7 +23,7 @@ use super::resources::memory::{self, Before};
 use super::resources::processor;
 use super::resume::{ResumePoint, Resumption, Search};
 use super::session::{Session, StageEnd};
-use super::stages::{construction, dynamic, fallen, initial, loading, run_out, safety};
+use super::stages::{construction, dynamic, fallen, initial, loading, run_out, safety, stilled};
 use super::state::State;
 use super::water::pores;
 use super::{Event, Failure, Listener, Run, Start, Target, failure, reinforcement};
@@ -416,9 +416,8 @@ fn dispatch<const D: usize>(
     search: Option<Search<D>>,
 ) -> Result<StageEnd, CaseError> {
     let stage = &session.model.case.stages[number];
-    if resumption.is_none() && !matches!(stage.kind, StageKind::Dynamic(_)) {
-        state.body.rest();
-        state.controls.walls.clear();
+    if resumption.is_none() {
+        stilled::still(session, number, state);
     }
     match &stage.kind {
         StageKind::K0 if resumption.is_none() => {

@@ -16,8 +16,8 @@ use igimp_results::ending::EndReason;
 use igimp_results::fields;
 use igimp_results::summary::{StageSummary, Summary};
 use igimp_solver::{
-    Accepted, MarchSettings, MarchState, Observer, Outcome, StepError, StepReport, Workspace,
-    march_from,
+    Accepted, LoadPath, MarchSettings, MarchState, Observer, Outcome, StepError, StepReport,
+    Workspace, march_from,
 };
 use igimp_text::short;
 
@@ -340,8 +340,29 @@ pub(crate) type OnGround<'a, const D: usize> = dyn Fn(&Controls, &Controls, Step
 pub(crate) struct TimeIntegration<'a, const D: usize> {
     pub(crate) scheme: TimeScheme,
     pub(crate) lumped: f64,
+    /// The longest step that may begin at a load factor \[-\].
+    pub(crate) longest_step: &'a dyn Fn(f64) -> f64,
     /// The conditions of a step between two controls with walls, motion of the ground and damping.
     pub(crate) on_ground: &'a OnGround<'a, D>,
+}
+
+/// The conditions of the steps of a march, and how long they may be.
+struct Steps<'a, F> {
+    conditions: F,
+    longest: Option<&'a dyn Fn(f64) -> f64>,
+}
+
+impl<F, const D: usize> LoadPath<D> for Steps<'_, F>
+where
+    F: Fn(f64, f64) -> Result<StepConditions<D>, AssemblyError>,
+{
+    fn conditions(&self, from: f64, to: f64) -> Result<StepConditions<D>, AssemblyError> {
+        (self.conditions)(from, to)
+    }
+
+    fn longest_step(&self, at: f64) -> f64 {
+        self.longest.map_or(f64::INFINITY, |own| own(at))
+    }
 }
 
 /// How a march ended.
@@ -380,7 +401,10 @@ pub(crate) fn march_path<const D: usize>(
         };
         (controls.with_tracks(&tracks.borrow())).with_walls(&walls.borrow())
     };
-    let load_path = |from: f64, to: f64| path.conditions(model, (from, to), (&at(from), &at(to)));
+    let load_path = Steps {
+        conditions: |from: f64, to: f64| path.conditions(model, (from, to), (&at(from), &at(to))),
+        longest: path.time.map(|own| own.longest_step),
+    };
     let mut march = MarchState::start(&path.settings);
     if let Some(left) = path.left {
         march = left.march;

@@ -41,6 +41,9 @@ pub struct Controls {
 pub struct WallTrack {
     /// The node of the grid.
     pub node: usize,
+    /// The components of displacement that a support held and the motion has let go.
+    #[serde(default)]
+    pub is_released: [bool; 3],
     /// Force of the support that the wall replaces \[N/m; N in space\].
     pub force: [f64; 3],
     /// Displacement since then \[m\].
@@ -229,6 +232,22 @@ pub struct State<const D: usize> {
     pub body: Body<D>,
     /// What acts on it.
     pub controls: Controls,
+}
+
+impl<const D: usize> State<D> {
+    /// Takes all motion from the body, and what stands at walls that a motion had let go.
+    pub(crate) fn rest(&mut self) {
+        self.body.rest();
+        self.controls.walls.clear();
+    }
+
+    /// The same without motion.
+    #[must_use]
+    pub(crate) fn at_rest(&self) -> Self {
+        let mut state = self.clone();
+        state.rest();
+        state
+    }
 }
 
 /// Acceleration of gravity that turns unit weights of a case with this one into densities \[m/s²\]: that of the earth where

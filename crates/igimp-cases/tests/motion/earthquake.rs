@@ -124,6 +124,145 @@ fn a_layer_on_itself_moves_as_its_outcrop() {
     assert!((0.5 * (most - least) - 1.0).abs() < 0.02, "{least} {most}");
 }
 
+/// GOAL: a wavelet between samples that stand a second apart shakes as it does in an even record of the same function.
+/// ORACLE: each other; the wavelet brings the ground back with no velocity, and a step across it would see nothing.
+#[test]
+fn a_wavelet_among_wide_samples_is_not_passed_over() {
+    let wavelet = [
+        (3.4, 0.0),
+        (3.45, 3.0),
+        (3.5, -3.0),
+        (3.55, 0.0),
+        (3.6, -3.0),
+        (3.65, 3.0),
+        (3.7, 0.0),
+    ];
+    let largest = |samples: &[(f64, f64)]| {
+        let list = |of: &dyn Fn(&(f64, f64)) -> String| {
+            samples.iter().map(of).collect::<Vec<_>>().join(", ")
+        };
+        let (times, values) = (
+            list(&|own| format!("\"{} s\"", own.0)),
+            list(&|own| own.1.to_string()),
+        );
+        let stage = format!(
+            "geometry = \"given\"\nduration = \"10 s\"\nsteps = 10\ntied_sides = true\n\
+             rayleigh = {{ ratio = 0.05, periods = [\"0.6 s\", \"0.1 s\"] }}\n\
+             ground_motion = {{ unit = \"m/s2\", time = [{times}], values = [{values}] }}"
+        );
+        let run = ran(&layer(&stage).replace("\"newmark\"", "\"backward-euler\""));
+        assert_done(&run.summary);
+        let points = run.curves[0].points(0, 1);
+        let most = points
+            .iter()
+            .fold(0.0, |most: f64, own| most.max(own[1].abs()));
+        (most, run.summary.stages[1].steps)
+    };
+    let seconds = (0..=10).map(|k| (f64::from(k), 0.0));
+    let mut wide: Vec<_> = seconds.chain(wavelet).collect();
+    wide.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut even: Vec<_> = (0..=200).map(|k| (f64::from(k) / 20.0, 0.0)).collect();
+    even[68..=74].copy_from_slice(&wavelet);
+    let ((found, few), (expected, many)) = (largest(&wide), largest(&even));
+    println!("{found} m in {few} steps, {expected} m in {many} steps");
+    assert!(expected > 5e-3, "{expected}");
+    assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
+}
+
+/// GOAL: level ground at rest stays there in a second motion that lets go other supports than the first, at the corners too.
+/// ORACLE: rest. The forces of supports at corners that both sides hold were lost, and the ground sank by 12 mm.
+#[test]
+fn ground_stays_at_rest_in_a_second_motion() {
+    let still = "ground_motion = { unit = \"g\", time = [\"0 s\", \"1 s\"], values = [0, 0]";
+    let (tied, beside) = ("tied_sides = true", "free_field = [\"left\", \"right\"]");
+    let (rigid, compliant) = (
+        format!("{still} }}"),
+        format!("{still}, base = \"compliant\" }}"),
+    );
+    for (first, second) in [
+        (format!("{tied}\n{rigid}"), format!("{tied}\n{compliant}")),
+        (format!("{tied}\n{compliant}"), format!("{tied}\n{rigid}")),
+        (beside.to_owned(), format!("{beside}\n{compliant}")),
+        (
+            "absorbing = [\"bottom\"]".to_owned(),
+            "absorbing = [\"left\", \"right\"]".to_owned(),
+        ),
+        (
+            "absorbing = [\"left\"]".to_owned(),
+            "absorbing = [\"left\", \"bottom\"]".to_owned(),
+        ),
+    ] {
+        let keys = "duration = \"1 s\"\nsteps = 10\ngeometry = \"given\"\nlumped_share = 0";
+        let stages = format!(
+            "{keys}\n{first}\n[[stages]]\nname = \"again\"\ntype = \"dynamic\"\n{keys}\n{second}"
+        );
+        let text = layer(&stages).replace("\"gravity\"", "\"gravity\"\ngeometry = \"given\"");
+        let run = ran(&text);
+        assert_done(&run.summary);
+        let moved = (run.body.particles.displacement.iter().flatten())
+            .fold(0.0, |m: f64, u| m.max(u.abs()));
+        println!("{first:.20} then {second:.20}: {moved:e} m");
+        assert!(moved < 1e-9, "{first}, then {second}: {moved:e}");
+    }
+}
+
+/// GOAL: a search between two motions leaves the second as it would be without the search, and static stages say what they stop.
+/// ORACLE: the run without the search, bit by bit; the words.
+#[test]
+fn a_search_between_motions_stops_nothing() {
+    let soil = "model = \"von-mises\"\ncu = \"40 kPa\"";
+    let motion = |name: &str| {
+        format!(
+            "[[stages]]\nname = \"{name}\"\ntype = \"dynamic\"\nduration = \"0.2 s\"\nsteps = 2\ngeometry = \"given\"\n\
+             free_field = [\"left\", \"right\"]\nground_motion = {{ unit = \"g\", time = [\"0 s\", \"0.1 s\", \"0.2 s\"], \
+             values = [0, 0.1, 0.2] }}\n"
+        )
+    };
+    let with = |between: &str| {
+        let (first, second) = (motion("first"), motion("second"));
+        // A search on the given geometry would give the stage before it the given one too.
+        let given = "\"gravity\"\ngeometry = \"given\"";
+        let text = layer("").replace("model = \"elastic\"", soil);
+        let text = text.replace("\"gravity\"", given);
+        let (before, after) = text.split_once("[[stages]]\nname = \"motion\"").unwrap();
+        let (_, after) = after.split_once("[[monitors]]").unwrap();
+        let after = after.replace("stage = \"motion\"", "stage = \"second\"");
+        ran(&format!(
+            "{before}{first}{between}{second}[[monitors]]{after}"
+        ))
+    };
+    let told = |run: &Run<2>, said: &str| run.summary.warnings.iter().any(|own| own.contains(said));
+    let alone = with("");
+    assert!(!told(&alone, "moves as it begins"));
+    for search in ["trials", "continuation"] {
+        let run = with(&format!(
+            "[[stages]]\nname = \"fos\"\ntype = \"strength-reduction\"\ngeometry = \"given\"\nsteps = 4\n\
+             search = \"{search}\"\nbracket = [1, 1.2]\ntolerance = 0.2\n"
+        ));
+        assert!(
+            told(&run, "the search takes it for at rest"),
+            "{:?}",
+            run.summary.warnings
+        );
+        assert_eq!(
+            run.body.particles.displacement, alone.body.particles.displacement,
+            "{search}"
+        );
+        assert_eq!(
+            run.body.particles.velocity, alone.body.particles.velocity,
+            "{search}"
+        );
+    }
+    let run =
+        with("[[stages]]\nname = \"still\"\ntype = \"gravity\"\nsteps = 1\ngeometry = \"given\"\n");
+    assert!(
+        told(&run, "a stage without inertia stops it"),
+        "{:?}",
+        run.summary.warnings
+    );
+    assert_ne!(run.body.particles.velocity, alone.body.particles.velocity);
+}
+
 /// GOAL: a record of velocity and one of acceleration of the same motion shake alike.
 /// ORACLE: each other; velocity that is linear between its samples has a constant acceleration there.
 #[test]
@@ -272,6 +411,16 @@ fn records_that_make_no_sense() {
             "by its header",
         ),
         ("0,0\n", ", unit = \"g\"", "one sample only"),
+        (
+            "time [s], acceleration [m/s]\n0,0\n1,1\n",
+            "",
+            "its column 2 is `acceleration` by its header, and in `m/s`, a unit of velocity",
+        ),
+        (
+            "time [s], Velocity\n0,0\n1,1\n",
+            ", unit = \"g\"",
+            "its column 2 is `velocity` by its header, and in `g`, a unit of acceleration",
+        ),
     ] {
         let error = read(record, keys)
             .err()
@@ -333,6 +482,10 @@ fn earthquakes_that_make_no_sense() {
             "tells no yield acceleration",
         ),
         (
+            format!("absorbing = [\"bottom\"]\n{motion} }}"),
+            "a rigid base moves it by the record",
+        ),
+        (
             "newmark_from = \"weight\"".to_owned(),
             "a block slides on ground that moves",
         ),
@@ -358,6 +511,40 @@ fn earthquakes_that_make_no_sense() {
         error.to_string().contains("does not take the soil along"),
         "{error}"
     );
+}
+
+/// GOAL: walls at sides of the grid that no body reaches are refused; sides that it reaches are not.
+/// ORACLE: the ground begins 3 m from the left side.
+#[test]
+fn walls_stand_where_ground_is() {
+    for (keys, said) in [
+        (
+            "absorbing = [\"left\"]",
+            "no body reaches the side left: nothing stands there",
+        ),
+        (
+            "free_field = [\"right\", \"left\"]",
+            "no body reaches the side left: nothing stands there",
+        ),
+        (
+            "absorbing = [\"top\"]",
+            "no body reaches the side top: nothing stands there",
+        ),
+        (
+            "tied_sides = true",
+            "no body reaches the side left: it moves with nothing",
+        ),
+        ("absorbing = [\"right\", \"bottom\"]", ""),
+    ] {
+        let text =
+            layer(&format!("duration = \"1 s\"\n{keys}")).replace("x = [\"0 m\"", "x = [\"-3 m\"");
+        let error = CaseFile::parse("layer.toml", &text, &[]).err();
+        let error = error.map(|error| error.to_string()).unwrap_or_default();
+        assert!(
+            error.contains(said) && error.is_empty() == said.is_empty(),
+            "{keys}: {error}"
+        );
+    }
 }
 
 /// GOAL: a block is told of no motion across its way.
@@ -475,4 +662,26 @@ fn ground_that_moves_late_is_waited_for() {
         energy.time > 0.39 && energy.most_kinetic > 0.01,
         "{energy:?}"
     );
+}
+
+/// GOAL: a record that begins after its stage, and soil without mass, are told. ORACLE: the words; a case that has neither.
+#[test]
+fn motions_that_do_little_are_told() {
+    let warnings = |begins: &str, weight: &str| {
+        let stage = format!(
+            "duration = \"1 s\"\nground_motion = {{ unit = \"g\", time = [\"{begins} s\", \"9 s\"], values = [0, 1] }}"
+        );
+        let text = layer(&stage).replace("\"20 kN/m3\"", weight);
+        CaseFile::parse("layer.toml", &text, &[])
+            .unwrap()
+            .warnings()
+    };
+    let (late, massless) = (
+        "begins when the stage is over",
+        "has no weight, and so no mass",
+    );
+    let all = warnings("2", "\"0 kN/m3\"");
+    assert!(all.contains(late) && all.contains(massless), "{all}");
+    let none = warnings("0", "\"20 kN/m3\"");
+    assert!(!none.contains(late) && !none.contains(massless), "{none}");
 }

@@ -323,3 +323,42 @@ fn a_slope_of_a_cone_for_plane_strain_is_one_of_mohr_coulomb() {
     );
     assert!(outer > 1.05 * pyramid, "{outer} for {pyramid}");
 }
+
+/// GOAL: level ground without gravity has no stress. ORACLE: a weight that is not there; stresses under gravity as control.
+#[test]
+fn ground_at_rest_without_gravity_has_no_stress() {
+    let largest = |gravity: &str| {
+        let text = format!(
+            r#"
+igimp = 1
+[case]
+title = "at rest"
+gravity = "{gravity}"
+[grid]
+cell = "1 m"
+domain = {{ x = ["0 m", "2 m"], y = ["0 m", "5 m"] }}
+[materials.clay]
+model = "elastic"
+unit_weight = "17 kN/m3"
+young = "20 MPa"
+poisson = 0.25
+[[bodies]]
+name = "layer"
+material = "clay"
+polygon = [["0 m", "0 m"], ["2 m", "0 m"], ["2 m", "5 m"], ["0 m", "5 m"]]
+[[stages]]
+name = "rest"
+type = "k0"
+steps = 1
+"#
+        );
+        let file = CaseFile::parse("rest.toml", &text, &[]).unwrap();
+        let run = in_memory(file.case()).unwrap();
+        assert_eq!(run.summary.stages[0].outcome, StageOutcome::Completed);
+        let stress = run.body.particles.sigma.iter().flatten().flatten();
+        stress.fold(0.0, |most: f64, own| most.max(own.abs()))
+    };
+    assert_eq!(largest("0 m/s2").to_bits(), 0.0_f64.to_bits());
+    let bottom = largest("9.81 m/s2");
+    assert!((bottom / 85e3 - 1.0).abs() < 0.06, "{bottom}");
+}

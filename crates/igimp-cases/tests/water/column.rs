@@ -215,3 +215,44 @@ figures = []
         }
     }
 }
+
+/// GOAL: a wait from which no water leaves is told. ORACLE: the keys that let it out, one by one.
+#[test]
+fn a_wait_without_an_outlet_is_told() {
+    let told = |keys: &str| {
+        let text = format!(
+            r#"
+igimp = 1
+[case]
+title = "wait"
+[grid]
+cell = "1 m"
+domain = {{ x = ["0 m", "2 m"], y = ["0 m", "5 m"] }}
+[materials.clay]
+model = "elastic"
+unit_weight = "17 kN/m3"
+young = "20 MPa"
+poisson = 0.25
+drainage = "coupled"
+permeability = "1e-9 m/s"
+[[bodies]]
+name = "layer"
+material = "clay"
+polygon = [["0 m", "0 m"], ["2 m", "0 m"], ["2 m", "4 m"], ["0 m", "4 m"]]
+[[stages]]
+name = "weight"
+type = "gravity"
+[[stages]]
+name = "wait"
+type = "wait"
+consolidation = {{ duration = "1 d"{keys} }}
+"#
+        );
+        let file = CaseFile::parse("wait.toml", &text, &[]).unwrap();
+        file.warnings()
+            .contains("water leaves nowhere in this stage")
+    };
+    assert!(told(", open_faces = false"));
+    assert!(!told(""));
+    assert!(!told(", open_faces = false, open_sides = [\"bottom\"]"));
+}

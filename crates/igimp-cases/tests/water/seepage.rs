@@ -604,6 +604,7 @@ fn what_changes_in_time_is_read() {
         "time [d], value [cm]\n0, 900\n1, 500\n",
     )
     .unwrap();
+    std::fs::write(place.join("bare.csv"), "time, value\n0, 9\n1, 5\n").unwrap();
     let inline = "{ time = [\"0 d\", \"1 d\"], values = [\"9 m\", \"5 m\"] }";
     let name = place.join("case.toml");
     let read = |text: &str| CaseFile::parse(name.to_str().unwrap(), text, &[]);
@@ -645,11 +646,17 @@ fn what_changes_in_time_is_read() {
         ),
         (inline, "{ time = [\"0 d\"] }", "has no values in time"),
         (inline, "{ file = \"none.csv\" }", "none.csv"),
+        (
+            inline,
+            "{ file = \"bare.csv\" }",
+            "write it into the header of the column, as in `time [",
+        ),
     ] {
         let found = read(&in_time(&[(from, to)]))
             .map(|_| ())
             .unwrap_err()
             .to_string();
         assert!(found.contains(message), "{message}: {found}");
+        assert!(!found.contains("beside the file"), "{found}");
     }
 }

@@ -42,6 +42,20 @@ impl RecordUnit {
         }
     }
 
+    /// The one that is written so.
+    pub fn named(text: &str) -> Option<Self> {
+        let all = [
+            Self::Gravity,
+            Self::MetrePerSecondSquared,
+            Self::CentimetrePerSecondSquared,
+            Self::MillimetrePerSecondSquared,
+            Self::MetrePerSecond,
+            Self::CentimetrePerSecond,
+            Self::MillimetrePerSecond,
+        ];
+        all.into_iter().find(|own| own.name() == text)
+    }
+
     /// All of them, as they are written.
     pub fn names() -> impl Iterator<Item = &'static str> {
         Self::CHOICES.iter().map(|choice| choice.name)

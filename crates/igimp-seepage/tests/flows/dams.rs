@@ -1,6 +1,7 @@
 //! Dams with vertical faces on an impervious base.
 
-use crate::common::dam;
+use crate::common::{dam, faces, flow, grid, rectangle};
+use igimp_seepage::{Conditions, OnFaces, Soil};
 
 /// Length, water upstream and downstream \[m\], cells over the height, exit point and free surface at L/4, L/2 and 3 L/4 \[m\].
 ///
@@ -54,4 +55,39 @@ fn the_place_of_the_grid_does_not_matter() {
             assert!((level - first).abs() < 0.001 * 10.0, "{level} {first}");
         }
     }
+}
+
+/// GOAL: a head that is drawn over a whole face leaves what stands above its level to the box before it.
+/// CASE: water at 1 m before a face that was called open, drawn up to the level and up to the crest.
+/// ORACLE: Charny's discharge, exact for any seepage face; the box that ends at the level. Without the open box the face
+/// is closed above it, and lets less through.
+#[test]
+fn above_its_level_a_head_says_nothing() {
+    let (length, crest, high, low) = (2.0, 8.0, 6.0, 1.0);
+    let grid = grid([0.0, 0.0], 0.125, [16, 64]);
+    let of = |is_open: bool, top: f64| {
+        let mut conditions = Conditions::of(vec![Soil::isotropic(1.0)]);
+        let open = faces("seep", [length, 0.0], [length, crest], OnFaces::Open);
+        conditions.faces.extend(is_open.then_some(open));
+        conditions.faces.extend([
+            faces("up", [0.0, 0.0], [0.0, crest], OnFaces::Head(high)),
+            faces("down", [length, 0.0], [length, top], OnFaces::Head(low)),
+        ]);
+        let body = [rectangle([0.0, 0.0], [length, crest])];
+        flow(&grid, &body, &conditions).unwrap()
+    };
+    let [whole, to_level, closed] =
+        [(true, crest), (true, low), (false, crest)].map(|(is_open, top)| of(is_open, top));
+    let exact = (high * high - low * low) / (2.0 * length);
+    println!(
+        "{} {} {}, exact {exact}",
+        whole.outflow, to_level.outflow, closed.outflow
+    );
+    assert!(
+        (whole.outflow / exact - 1.0).abs() < 5e-3,
+        "{}",
+        whole.outflow
+    );
+    assert_eq!(whole.outflow.to_bits(), to_level.outflow.to_bits());
+    assert!(closed.outflow < 0.99 * exact, "{}", closed.outflow);
 }

@@ -429,3 +429,43 @@ fn a_dam_drains_after_its_pool_has_fallen() {
         }
     }
 }
+
+/// GOAL: a head on an upright face that falls in time leaves the face above it to the box before it, an open one.
+/// CASE: a dam between upright faces, from 6 m on both sides to 2 m on the right.
+/// ORACLE: Charny's discharge after a long time, and the steady flow of a box that ends at the level.
+#[test]
+fn a_face_above_a_falling_head_lets_water_out() {
+    let day = 86_400.0;
+    let grid = grid([0.0, 0.0], 0.5, [20, 16]);
+    let soil = Soil {
+        drainable: 0.1,
+        specific_storage: 1e-4,
+        ..Soil::isotropic(1e-6)
+    };
+    let polygon = [rectangle([0.0, 0.0], [10.0, 8.0])];
+    let mut conditions = Conditions::of(vec![soil]);
+    conditions.faces = vec![
+        faces("seep", [10.0, 0.0], [10.0, 8.0], OnFaces::Open),
+        faces("up", [0.0, 0.0], [0.0, 8.0], OnFaces::Head(6.0)),
+        faces("down", [10.0, 0.0], [10.0, 8.0], OnFaces::Head(6.0)),
+    ];
+    let fall = History {
+        times: vec![0.0, 5.0 * day],
+        values: vec![6.0, 2.0],
+    };
+    let course = Course {
+        histories: vec![None, None, Some(fall)],
+        times: [5.0, 1e5].map(|time| time * day).to_vec(),
+    };
+    let (_, found) = follow(&grid, &polygon, &conditions, &course).unwrap();
+    conditions.faces[2] = faces("down", [10.0, 0.0], [10.0, 2.0], OnFaces::Head(2.0));
+    let steady = flow(&grid, &polygon, &conditions).unwrap();
+    let last = found.states.last().unwrap();
+    let exact = 1e-6 * (36.0 - 4.0) / 20.0;
+    println!(
+        "{:e}, steady {:e}, exact {exact:e}",
+        last.outflow, steady.outflow
+    );
+    assert!((last.outflow / exact - 1.0).abs() < 0.01);
+    assert!((last.outflow / steady.outflow - 1.0).abs() < 1e-3);
+}

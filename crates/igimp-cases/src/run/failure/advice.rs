@@ -50,7 +50,7 @@ pub(crate) fn advice<const D: usize>(
             | LinearSolverError::Inaccurate { .. },
         ) if yielding => no_equilibrium(case, (number, stage), error, near_worst),
         StepFailure::Assembly(assembly) => unformed(case, stage, assembly),
-        StepFailure::Linear(linear) => unsolved(case, linear),
+        StepFailure::Linear(linear) => unsolved(case, stage, linear),
         StepFailure::TooDeep { body, .. } => too_deep(case, stage, body),
         StepFailure::Penetration(Penetration { body, position, .. }) => {
             swallowed(case, stage, body, *position)
@@ -241,12 +241,28 @@ fn unformed<const D: usize>(case: &Case<D>, stage: &Stage, error: &AssemblyError
     }
 }
 
-fn unsolved<const D: usize>(case: &Case<D>, error: &LinearSolverError) -> Vec<String> {
+fn unsolved<const D: usize>(
+    case: &Case<D>,
+    stage: &Stage,
+    error: &LinearSolverError,
+) -> Vec<String> {
     if matches!(error, LinearSolverError::OutOfMemory { .. }) {
         return vec!["a coarser cell in [grid], or a computer with more memory".to_owned()];
     }
     let sides = &case.boundaries;
     let mut out = Vec::new();
+    if let StageKind::Dynamic(own) = &stage.kind
+        && own.lumped_share <= 0.0
+    {
+        // A particle alone in a cell gives its nodes a mass that moves as one.
+        out.push(format!(
+            "lumped_share = 0.01 in stage \"{}\", as nodes without a mass of their own move freely",
+            stage.name
+        ));
+        if let Some(body) = case.bodies.iter().find(|own| own.per_direction < 2) {
+            out.push(format!("points_per_cell = {} in \"{}\"", 1 << D, body.name));
+        }
+    }
     if sides.sides[D - 1][0] == Side::Free && sides.boxes.is_empty() {
         out.push("bottom = \"fixed\" in [boundaries]".to_owned());
     }

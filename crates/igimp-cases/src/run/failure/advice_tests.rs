@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use igimp_assembly::{Geometry, Locking, Method};
+use igimp_assembly::{Geometry, Locking, Method, TimeScheme};
 use igimp_model::{
-    BodyPart, Boundaries, Every, GridSpec, Load, LoadKind, MeshStudy, Output, Profiles, Reduction,
-    RunOut, SolverSettings, StopWhen, TitleBlock,
+    BodyPart, Boundaries, Dynamic, Every, GridSpec, Load, LoadKind, MeshStudy, Output, Profiles,
+    Reduction, RunOut, SolverSettings, StageWalls, StopWhen, TitleBlock,
 };
 
 use super::*;
@@ -247,6 +247,35 @@ fn a_singular_matrix_wants_a_ghost_penalty_and_supports() {
     let mut floating = gravity();
     floating.boundaries = Boundaries::default();
     assert!(advice(&floating, 0, &error, None)[0].starts_with("bottom = \"fixed\""));
+}
+
+#[test]
+fn a_singular_matrix_in_motion_wants_mass_at_nodes() {
+    let mut case = case(StageKind::Dynamic(Dynamic {
+        duration: 1.0,
+        scheme: TimeScheme::Newmark,
+        lumped_share: 0.0,
+        tied_below: 0.0,
+        longest_step: None,
+        reduction: None,
+        bodies: Vec::new(),
+        at_rest: None,
+        walls: StageWalls::default(),
+        ground_motion: None,
+        rayleigh: None,
+        newmark_from: None,
+    }));
+    case.bodies[1].per_direction = 1;
+    let error = failed(
+        LinearSolverError::Singular { unknown: Some(3) }.into(),
+        &[1.0],
+    );
+    let try_this = advice(&case, 0, &error, None);
+    assert!(
+        try_this[0].starts_with("lumped_share = 0.01 in stage \"first\""),
+        "{try_this:?}"
+    );
+    assert_eq!(try_this[1], "points_per_cell = 4 in \"soil\"");
 }
 
 #[test]

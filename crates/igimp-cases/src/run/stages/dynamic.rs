@@ -5,7 +5,7 @@
 //! many as the stage has steps. No factor of safety follows from motion.
 
 use igimp_assembly::{Method, Remedy, SmallCuts};
-use igimp_model::{Calm, Case, Dynamic, Stage, StageKind};
+use igimp_model::{Calm, Case, Dynamic, GroundMotion, Stage, StageKind};
 use igimp_results::ending::EndReason;
 use igimp_results::summary::{NewmarkSummary, StageSummary};
 use igimp_solver::{MarchSettings, Pace};
@@ -78,6 +78,7 @@ pub(crate) fn dynamic<const D: usize>(
         time: Some(TimeIntegration {
             scheme: dynamic.scheme,
             lumped: dynamic.lumped_share,
+            longest_step: &longest_step(dynamic),
             on_ground: &on_ground,
         }),
         left: resumption,
@@ -212,6 +213,16 @@ fn sliding_block<const D: usize>(
         peak_acceleration: motion.peak(dynamic.duration),
         displacement,
     })
+}
+
+/// The longest step of a stage that its record allows from a load factor on \[-\].
+fn longest_step(dynamic: &Dynamic) -> impl Fn(f64) -> f64 {
+    let record = dynamic.ground_motion.as_ref();
+    let usual = record.map_or(f64::INFINITY, GroundMotion::interval);
+    move |at| {
+        let longest = record.map_or(usual, |own| own.longest_step(at * dynamic.duration, usual));
+        longest / dynamic.duration
+    }
 }
 
 /// How steps of time are chosen.

@@ -8,7 +8,7 @@ use crate::error::CaseError;
 use crate::run::model::Model;
 use crate::run::state::State;
 
-/// Sets the stresses of level ground under full gravity in an undeformed body.
+/// Sets the stresses of level ground under full gravity in an undeformed body; where gravity is 0 there are none.
 ///
 /// The vertical stress is the weight of the ground above a particle, layer by layer, less the pressure of water in the
 /// pores where the law speaks of effective stress; the horizontal ones are K₀ times that. The elastic strain follows from the stress, so that the
@@ -18,6 +18,10 @@ pub(crate) fn level_ground<const D: usize>(
     state: &mut State<D>,
 ) -> Result<(), CaseError> {
     let case = model.case;
+    state.controls.gravity = 1.0;
+    if case.gravity <= 0.0 {
+        return Ok(());
+    }
     let ground = case.ground();
     let water = state.controls.water.and_then(|k| model.ground_water(k));
     let mut fields = (*state.body.particles).clone();
@@ -70,6 +74,5 @@ pub(crate) fn level_ground<const D: usize>(
         }
     }
     state.body.particles = Particles::from_fields(fields)?;
-    state.controls.gravity = 1.0;
     Ok(())
 }

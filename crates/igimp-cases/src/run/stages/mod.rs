@@ -9,4 +9,5 @@ pub(crate) mod loading;
 pub(crate) mod rigid_begin;
 pub(crate) mod run_out;
 pub(crate) mod safety;
+pub(crate) mod stilled;
 pub(crate) mod walls;

@@ -37,7 +37,7 @@ const FUTILE_TRIALS: usize = 4;
 /// Displacements of the last standing state above this share of the height are worth a remark \[-\].
 const SLID: f64 = 0.01;
 
-/// Searches for the factor of safety of a state, which is left as it was found.
+/// Searches for the factor of safety of a state at rest, which is left as it was found, with its motion.
 pub(crate) fn reduce_strength<const D: usize>(
     session: &mut Session<'_, D>,
     state: &State<D>,
@@ -57,11 +57,14 @@ pub(crate) fn reduce_strength<const D: usize>(
             ));
         }
     }
+    let still = state.at_rest();
     let ended = match reduction.search {
         SearchMethod::Continuation => {
-            continuation::search(session, state, number, reduction, summary)
+            continuation::search(session, &still, number, reduction, summary)
         }
-        SearchMethod::Trials => by_trials(session, state, number, reduction, summary, left),
+        SearchMethod::Trials => {
+            by_trials(session, (state, &still), number, reduction, summary, left)
+        }
     };
     if summary.safety.is_some()
         && let Some(text) = few_cells(session.model.case, &state.body.particles)
@@ -71,17 +74,17 @@ pub(crate) fn reduce_strength<const D: usize>(
     ended
 }
 
-/// Searches by trials, each of which stands or fails.
+/// Searches by trials, each of which stands or fails, from a state as it was found and at rest.
 fn by_trials<const D: usize>(
     session: &mut Session<'_, D>,
-    state: &State<D>,
+    (kept, state): (&State<D>, &State<D>),
     number: usize,
     reduction: &StrengthReduction,
     summary: &mut StageSummary,
     left: Option<Search<D>>,
 ) -> Result<StageEnd, CaseError> {
     let stage = &session.model.case.stages[number];
-    let mut trials = Trials::new(session, state, number, stage, reduction, left)?;
+    let mut trials = Trials::new(session, (kept, state), number, stage, reduction, left)?;
     // Where gravity is raised anew the state found is none that a trial begins with.
     if trials.made.is_empty() && reduction.path == ReductionPath::Reduce {
         begin(session, state, number)?;
@@ -96,7 +99,9 @@ struct Trials<'a, const D: usize> {
     number: usize,
     stage: &'a Stage,
     reduction: &'a StrengthReduction,
-    /// The state that the search was asked for.
+    /// The state that goes on after the search, with its motion.
+    kept: &'a State<D>,
+    /// The state that the search was asked for, at rest.
     found: &'a State<D>,
     /// The displacement at which the body counts as failed \[m\], if one does.
     limit: Option<f64>,
@@ -112,7 +117,7 @@ struct Trials<'a, const D: usize> {
 impl<'a, const D: usize> Trials<'a, D> {
     fn new(
         session: &Session<'_, D>,
-        found: &'a State<D>,
+        (kept, found): (&'a State<D>, &'a State<D>),
         number: usize,
         stage: &'a Stage,
         reduction: &'a StrengthReduction,
@@ -127,6 +132,7 @@ impl<'a, const D: usize> Trials<'a, D> {
             number,
             stage,
             reduction,
+            kept,
             found,
             limit,
             base,
@@ -159,7 +165,7 @@ impl<'a, const D: usize> Trials<'a, D> {
                     self.number,
                     session.model.case,
                     summary,
-                    self.found,
+                    self.kept,
                     &search,
                     &session.summary,
                 )?;

@@ -61,7 +61,7 @@ fn held_by_walls<const D: usize>(
         .collect())
 }
 
-/// What stands at the nodes of the walls as a stage begins: the forces of the supports that it lets go. Nodes that the
+/// What stands at the nodes of the walls as a stage begins: the forces of the supports that it lets go. Components that the
 /// motion before had already let go keep what they have.
 pub(super) fn begin<const D: usize>(
     model: &Model<'_, D>,
@@ -87,18 +87,23 @@ pub(super) fn begin<const D: usize>(
     Ok(nodes
         .into_iter()
         .map(|(node, is_held)| {
-            if let Some(&own) = before.get(&node) {
-                return own.clone();
-            }
-            let mut force = [0.0; 3];
-            for axis in (0..D).filter(|&axis| is_held[axis]) {
-                force[axis] = reactions[node][axis];
-            }
-            WallTrack {
+            let mut track = WallTrack {
                 node,
-                force,
+                is_released: [false; 3],
+                force: [0.0; 3],
                 displacement: [0.0; 3],
+            };
+            for axis in (0..D).filter(|&axis| is_held[axis]) {
+                track.is_released[axis] = true;
+                match before.get(&node).filter(|own| own.is_released[axis]) {
+                    Some(own) => {
+                        track.force[axis] = own.force[axis];
+                        track.displacement[axis] = own.displacement[axis];
+                    }
+                    None => track.force[axis] = reactions[node][axis],
+                }
             }
+            track
         })
         .collect())
 }

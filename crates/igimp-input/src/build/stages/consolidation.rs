@@ -64,13 +64,37 @@ pub(super) fn consolidation<const D: usize>(
             .help("write drainage = \"coupled\" and a permeability in the soil that consolidates, or a `rate` in soil whose strength goes with it");
         return Err(Wrong);
     }
-    Ok(Some(Consolidation {
+    let stated = Consolidation {
         duration: *own.duration,
         open_faces: *own.open_faces,
         open_sides: open_sides(about, own, problems)?,
         drains: drains(about, own, problems)?,
         longest_step: own.longest_step.as_ref().map(|own| **own),
-    }))
+    };
+    if let StageForm::Wait(_) = **form
+        && !has_outlet(about, &stated)
+    {
+        problems
+            .warning(
+                own.open_faces.place,
+                "water leaves nowhere in this stage: excess pressure evens out and stays",
+            )
+            .help("name open_sides or drains, or let open_faces be true");
+    }
+    Ok(Some(stated))
+}
+
+/// Whether water that flows may leave, as far as that is known: drained soil takes it too.
+fn has_outlet<const D: usize>(about: &About<'_, D>, own: &Consolidation) -> bool {
+    let mut used = (about.context.materials.iter().enumerate())
+        .filter(|&(index, _)| about.context.is_used(index))
+        .map(|(_, material)| material.as_ref().map(|own| own.drainage));
+    let takes_or_is_still =
+        |drainage: Option<Drainage>| drainage.is_none_or(|own| own == Drainage::Drained);
+    own.open_faces
+        || !own.open_sides.is_empty()
+        || !own.drains.is_empty()
+        || used.any(takes_or_is_still)
 }
 
 /// The sides of the grid where water leaves.

@@ -34,8 +34,24 @@ pub(crate) fn stage<const D: usize>(
     let walls = walls(about, own, problems);
     let ground_motion = match &own.ground_motion {
         None => None,
-        Some(stated) => Some(motion(about, stated, problems)?),
+        Some(stated) => {
+            let motion = motion(about, stated, problems)?;
+            if motion
+                .times
+                .first()
+                .is_some_and(|begins| *begins >= *own.duration)
+            {
+                problems
+                    .warning(
+                        stated.place,
+                        "the record begins when the stage is over: the ground does not move",
+                    )
+                    .help("let duration be longer, or the record begin earlier");
+            }
+            Some(motion)
+        }
     };
+    has_inertia(about, own, problems);
     let rayleigh = match &own.rayleigh {
         None => None,
         Some(stated) => Some(rayleigh(stated, problems)?),
@@ -59,6 +75,24 @@ pub(crate) fn stage<const D: usize>(
         bodies: bodies?,
         at_rest: own.at_rest.as_ref().map(|own| **own),
     }))
+}
+
+/// Remarks on soil without weight, which moves without inertia.
+fn has_inertia<const D: usize>(about: &About<'_, D>, own: &keys::Dynamic, problems: &mut Problems) {
+    for (index, material) in about.context.materials.iter().enumerate() {
+        if let Some(material) = material
+            && material.unit_weight <= 0.0
+            && about.context.is_used(index)
+        {
+            let name = clip(&material.name, 40);
+            problems
+                .warning(
+                    own.duration.place,
+                    format!("the material `{name}` has no weight, and so no mass: it moves without inertia"),
+                )
+                .help("state its unit_weight: its density is that over gravity");
+        }
+    }
 }
 
 /// Refuses materials whose strength is to be reduced where nothing says by how much.

@@ -5,11 +5,12 @@ use igimp_model::{Base, GroundMotion, StageWalls};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::grid::Side;
-use igimp_schema::schema::ground_motion::{self as keys, BaseKind, MotionAxis};
+use igimp_schema::schema::ground_motion::{self as keys, BaseKind, MotionAxis, Wall};
 use igimp_schema::schema::stages::{Dynamic, StageForm};
 use igimp_schema::tree::read::At;
 
 use super::consolidation::side;
+use crate::build::bodies::reach::meets_side;
 use crate::build::context::About;
 
 /// What lies beyond the walls.
@@ -37,6 +38,8 @@ pub(super) fn walls<const D: usize>(
     let free_field = beside_free_field::<D>(own, &absorbing, problems)?;
     let motion = own.ground_motion.as_ref();
     let below = (D - 1, false);
+    is_free_below::<D>(own, problems)?;
+    reaches_sides(about, own, problems)?;
     if motion.is_some_and(|own| *own.base == BaseKind::Compliant) && !absorbing.contains(&below) {
         absorbing.push(below);
     }
@@ -71,6 +74,65 @@ pub(super) fn walls<const D: usize>(
         tied: *own.tied_sides,
         free_field,
     })
+}
+
+/// Refuses dashpots at a bottom that moves by a record, whatever the soil does.
+fn is_free_below<const D: usize>(own: &Dynamic, problems: &mut Problems) -> Option<()> {
+    let is_rigid = |motion: &At<keys::GroundMotion>| *motion.base == BaseKind::Rigid;
+    if !own.ground_motion.as_ref().is_some_and(is_rigid) {
+        return Some(());
+    }
+    let bottom = own.absorbing.iter().find(|wall| ***wall == Wall::Bottom);
+    let Some(wall) = bottom else {
+        return Some(());
+    };
+    problems
+        .error(
+            wall.place,
+            "the bottom has dashpots, and a rigid base moves it by the record",
+        )
+        .help("write base = \"compliant\" in ground_motion for rock that takes waves, or remove bottom from absorbing");
+    None
+}
+
+/// Refuses walls at sides of the grid that no body reaches.
+fn reaches_sides<const D: usize>(
+    about: &About<'_, D>,
+    own: &Dynamic,
+    problems: &mut Problems,
+) -> Option<()> {
+    let context = about.context;
+    let Some(ends) = context.soil.ends() else {
+        return Some(());
+    };
+    let is_reached = |side| meets_side(context.bodies, context.sequence, side, ends);
+    for wall in own.absorbing.iter().chain(own.free_field.iter()) {
+        if !is_reached(side::<D>(wall, problems).ok()?) {
+            let message = format!(
+                "no body reaches the side {}: nothing stands there",
+                wall.name()
+            );
+            problems
+                .error(wall.place, message)
+                .help("name a side of the grid that the ground reaches, or let domain end where the ground does");
+            return None;
+        }
+    }
+    let missing = [(Wall::Left, false), (Wall::Right, true)];
+    let missing = missing
+        .into_iter()
+        .find(|&(_, upper)| !is_reached((0, upper)));
+    if let (true, Some((wall, _))) = (*own.tied_sides, missing) {
+        let message = format!(
+            "no body reaches the side {}: it moves with nothing",
+            wall.name()
+        );
+        problems
+            .error(own.tied_sides.place, message)
+            .help("let domain end where the ground does on the left and on the right, or remove tied_sides");
+        return None;
+    }
+    Some(())
 }
 
 /// The sides beside which soil moves in free field.
