@@ -51,7 +51,7 @@ pub use rigid::{
 };
 pub use stage::{
     Consolidation, Dynamic, Reduction, ReductionPath, RunOut, SearchMethod, Stage, StageKind,
-    StageWalls, StopWhen, StrengthReduction,
+    StageWalls, StopWhen, StrengthReduction, search_of,
 };
 pub use water::seepage::{InTime, SeepageCase};
 pub use water::{Construction, Drainage, Drained, PoreSource, WaterCondition, table_level};

@@ -269,6 +269,9 @@ impl<const D: usize> Stages<D> {
         };
         summary.outcome = outcome;
         summary.reason = reason.to_string();
+        if let Some(strength) = run_out::told(session, number) {
+            summary.reason = format!("{}; {strength}", summary.reason);
+        }
         reason.code().clone_into(&mut summary.code);
         self.close(session, number, state, summary, step_error)
     }

@@ -1,6 +1,8 @@
 //! Stages that reduce strength: the search for the factor of safety, and the run-out.
 
-use igimp_model::{Reduction, ReductionPath, RunOut, SearchMethod, Strength, StrengthReduction};
+use igimp_model::{
+    Reduction, ReductionPath, RunOut, SearchMethod, Strength, StrengthReduction, search_of,
+};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::stages::{self as keys, StageForm};
@@ -185,16 +187,26 @@ pub(super) fn reduction_of<const D: usize>(
 ) -> Option<Reduction> {
     match (&own.times_fos, &own.factor) {
         (Some(times), None) => {
-            let mut before = about.context.stages[..about.index].iter().flatten();
-            if !before.any(|stage| matches!(*stage.form, StageForm::StrengthReduction(_))) {
+            let stages = about.context.stages;
+            let is_search = |stage: usize| {
+                let own = stages[stage].as_ref();
+                own.is_some_and(|own| matches!(*own.form, StageForm::StrengthReduction(_)))
+            };
+            let from = |stage: usize| about.context.sequence.from(stage);
+            let is_before = (0..about.index).any(is_search);
+            if search_of(about.index, &from, &is_search).is_none() {
+                let help =
+                    "put a stage of type strength-reduction before it, or write factor = 1.5";
                 problems
                     .error(
                         times.place,
-                        "there is no earlier stage that finds a factor of safety",
+                        if is_before {
+                            "no earlier stage finds the factor of safety of the state that this stage starts from"
+                        } else {
+                            "there is no earlier stage that finds a factor of safety"
+                        },
                     )
-                    .help(
-                        "put a stage of type strength-reduction before it, or write factor = 1.5",
-                    );
+                    .help(help);
             }
             Some(Reduction::TimesFos(**times))
         }
