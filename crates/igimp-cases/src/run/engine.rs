@@ -307,6 +307,9 @@ impl<const D: usize> Stages<D> {
         } else {
             self.read(session, number, state, &summary)?;
         }
+        if goes_on && let Some(text) = reinforcement::locked_early(case, state) {
+            session.warn_of_stage(number, &text);
+        }
         // What a jack held is locked off.
         for own in &mut state.controls.reinforcement {
             own.jack = None;

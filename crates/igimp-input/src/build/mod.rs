@@ -133,7 +133,7 @@ fn in_plane(
         sequence,
     };
     ground::layers::check(&layers, problems);
-    let loads = loads::loads(tree, &site, problems);
+    let loads = loads::loads(tree, &site, (&stages, sequence), problems);
     let around = rigid::plane::Around {
         site: &site,
         loads: &loads,
@@ -172,6 +172,7 @@ fn in_plane(
     };
     let built = assemble::stages_of(&context, problems);
     let gravity = gravity(tree);
+    reinforcement::check_held(&context, &reinforcement, problems);
     ground::layers::check_stiffness(&layers, &built, gravity, problems);
     let upon = Surroundings {
         boundaries,
