@@ -10,5 +10,6 @@ mod resuming;
 mod column;
 mod construction;
 mod in_space;
+mod of_its_stage;
 mod pore_water;
 mod seepage;
