@@ -109,6 +109,7 @@ pub(super) fn build(
     let boundaries = boundaries.and_then(|own| boundaries::boundaries(&own, frame, problems));
     let loads = loads::loads(tree, &soil, (&stages, sequence), problems);
     let rigid = rigid::rigid(tree, &rigid::space::Around(frame), materials, problems);
+    rigid::apart::check((tree, frame), &rigid, (&stages, sequence), problems);
     rigid::stage::check_use(&things(Root::<3>::rigid(tree)), &stages, names, problems);
     let around = water::Around {
         own: &things(Root::<3>::water(tree)),
@@ -136,8 +137,8 @@ pub(super) fn build(
         site: None,
         sequence,
     };
-    let built = assemble::stages_of(&context, problems);
     reinforcement::check_held(&context, &reinforcement, problems);
+    let built = assemble::stages_of(&context, problems);
     check_level(&stages, (bodies, materials), &soil, problems);
     let upon = Surroundings {
         boundaries,
