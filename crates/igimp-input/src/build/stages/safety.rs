@@ -81,6 +81,9 @@ pub(crate) fn strength_reduction<const D: usize>(
         return None;
     }
     let materials = materials(about, &own.materials, problems);
+    if let Some(found) = &materials {
+        are_there(about, (own, found), problems);
+    }
     let path = match *own.path {
         keys::ReductionPath::Gravity => ReductionPath::Gravity,
         keys::ReductionPath::Reduce => ReductionPath::Reduce,
@@ -132,6 +135,59 @@ pub(crate) fn strength_reduction<const D: usize>(
         failure_displacement,
         monitor,
     })
+}
+
+/// Refuses to reduce the strength of a material of which no body is there: it decides nothing.
+fn are_there<const D: usize>(
+    about: &About<'_, D>,
+    (own, found): (&keys::StrengthReduction, &[usize]),
+    problems: &mut Problems,
+) {
+    let context = about.context;
+    let scene = context.sequence.before(about.index);
+    let bodies =
+        || std::iter::zip(&scene.present, &scene.material).filter(|(present, _)| **present);
+    if bodies().any(|(_, material)| material.is_none()) {
+        return;
+    }
+    let is_there = |material: usize| bodies().any(|(_, own)| *own == Some(material));
+    let Ok(Some(list)) = &own.materials else {
+        return;
+    };
+    let shown = |material: usize| clip(context.names.materials.name(material), 40);
+    if !found.iter().any(|&material| is_there(material)) && !list.written {
+        problems
+            .error(
+                about.stage.form.place,
+                format!(
+                    "stage `{}` has no strength to reduce: no body with strength is there",
+                    about.name
+                ),
+            )
+            .help("place the body before, in a stage of type construction");
+    }
+    for (value, &material) in std::iter::zip(list.iter(), found) {
+        if list.written && context.is_used(material) && !is_there(material) {
+            problems
+                .error(
+                    value.place,
+                    format!(
+                        "no body that is there in this stage consists of `{}`",
+                        shown(material)
+                    ),
+                )
+                .help("its strength decides nothing here: leave it out");
+        }
+    }
+    let unused = found.iter().all(|&material| !context.is_used(material));
+    if list.written && unused {
+        problems
+            .error(
+                list.place,
+                "no body consists of any of these materials: their strength decides nothing",
+            )
+            .help("name materials of bodies that are there in this stage");
+    }
 }
 
 /// Refuses what a path of equilibria has no place for.
