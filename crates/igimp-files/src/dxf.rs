@@ -11,6 +11,8 @@ use crate::named::Trouble;
 const BINARY: &str = "AutoCAD Binary DXF";
 /// Ends closer than this share of the drawing's extent meet \[-\].
 const MEET: f64 = 1e-6;
+/// An extrusion is that of the drawing if it leans by less than this \[-\].
+const ALONG: f64 = 1e-6;
 /// Most pieces of a line.
 const MOST: usize = 5000;
 /// What may stand beside lines on a layer: it has no shape.
@@ -75,6 +77,32 @@ impl<'t> Entity<'t> {
             return Err(Trouble::new(message, "is it an ASCII DXF file?"));
         }
         Ok(points)
+    }
+
+    /// Points in the plane of the drawing of those in the plane of the entity, which looks along its extrusion: seen from behind,
+    /// left and right are exchanged (AutoCAD DXF reference, "arbitrary axis algorithm").
+    fn seen(&self, points: Vec<[f64; 2]>) -> Result<Vec<[f64; 2]>, Trouble> {
+        let group = |code: i32, usual: f64| match self.text(code) {
+            Some(text) => text.parse().unwrap_or(f64::NAN),
+            None => usual,
+        };
+        let [x, y, z] = [group(210, 0.0), group(220, 0.0), group(230, 1.0)];
+        if x.abs() < ALONG * z.abs() && y.abs() < ALONG * z.abs() {
+            let side = z.signum();
+            return Ok(points.into_iter().map(|[x, y]| [side * x, y]).collect());
+        }
+        Err(Trouble::new(
+            format_args!(
+                "line {}: the {} on layer `{}` does not lie in the plane of the drawing: its extrusion is ({}, {}, {})",
+                self.line,
+                self.kind,
+                clip(self.layer(), 40),
+                number(x),
+                number(y),
+                number(z)
+            ),
+            "draw the line in the plane of x and y",
+        ))
     }
 
     fn curved(&self, line: usize, how: &str) -> Trouble {
@@ -216,7 +244,7 @@ fn piece(
 ) -> Result<(), Trouble> {
     let is_closed = entity.flags() & 1 == 1;
     let (points, is_closed) = match entity.kind {
-        "LWPOLYLINE" => (entity.points([10, 20])?, is_closed),
+        "LWPOLYLINE" => (entity.seen(entity.points([10, 20])?)?, is_closed),
         // 2 and 4: fitted curves; 16 and 64: meshes.
         "POLYLINE" if entity.flags() & (2 + 4 + 16 + 64) != 0 => {
             return Err(entity.curved(entity.line, "that is a fitted curve or a mesh"));
@@ -225,6 +253,10 @@ fn piece(
             let mut points = Vec::with_capacity(vertices.len());
             for vertex in vertices {
                 points.extend(vertex.points([10, 20])?);
+            }
+            // The vertices of one in space are those of the drawing.
+            if entity.flags() & 8 == 0 {
+                points = entity.seen(points)?;
             }
             (points, is_closed)
         }
@@ -362,6 +394,35 @@ mod tests {
             .unwrap();
         assert_eq!(found.points, [[0.0, 2.0], [1.0, 2.0]]);
         assert!(!found.is_closed);
+    }
+
+    // GOAL: a polyline that was drawn, or mirrored, from behind has left and right exchanged; one that leans is refused.
+    // ORACLE: the arbitrary axis algorithm of the AutoCAD DXF reference: for the extrusion (0, 0, -1) its x axis is
+    // (0, 1, 0) x (0, 0, -1) = (-1, 0, 0), its y axis (0, 0, -1) x (-1, 0, 0) = (0, 1, 0).
+    #[test]
+    fn a_polyline_seen_from_behind_is_mirrored() {
+        let points = "10\n1\n20\n2\n10\n4\n20\n3\n";
+        let light = |extrusion: &str| {
+            let text = drawn(&format!(
+                "0\nLWPOLYLINE\n8\nclay\n90\n2\n{points}{extrusion}"
+            ));
+            line_on(&text, Some("clay")).map_err(|trouble| trouble.message)
+        };
+        let vertices = "0\nVERTEX\n8\nclay\n10\n1\n20\n2\n0\nVERTEX\n8\nclay\n10\n4\n20\n3\n0\nSEQEND\n8\nclay\n";
+        let old = |head: &str| {
+            let text = drawn(&format!("0\nPOLYLINE\n8\nclay\n66\n1\n{head}{vertices}"));
+            let found = line_on(&text, Some("clay")).map_err(|trouble| trouble.message);
+            found.unwrap().points
+        };
+        let (front, behind) = ([[1.0, 2.0], [4.0, 3.0]], [[-1.0, 2.0], [-4.0, 3.0]]);
+        let from_behind = "210\n0\n220\n0\n230\n-1\n";
+        assert_eq!(light("").unwrap().points, front);
+        assert_eq!(light("230\n1\n").unwrap().points, front);
+        assert_eq!(light(from_behind).unwrap().points, behind);
+        assert_eq!(old(from_behind), behind);
+        assert_eq!(old(&format!("70\n8\n{from_behind}")), front);
+        let leans = light("210\n0\n220\n1\n230\n0\n").unwrap_err();
+        assert!(leans.contains("does not lie in the plane"), "{leans}");
     }
 
     // GOAL: the unit of a drawing is that of its header, and nothing where the header names none.

@@ -47,11 +47,11 @@ pub use reinforcement::{ReinforcementKind, ReinforcementPart, ReinforcementQuant
 pub use rigid::space::RigidSolid;
 pub use rigid::{
     Adhesion, COMPONENTS, RigidDrive, RigidForm, RigidInterface, RigidMove, RigidPart,
-    RigidQuantity, RigidShape, RigidShear, components,
+    RigidQuantity, RigidShape, RigidShear, components, overlap_of_rigid,
 };
 pub use stage::{
     Consolidation, Dynamic, Reduction, ReductionPath, RunOut, SearchMethod, Stage, StageKind,
-    StageWalls, StopWhen, StrengthReduction,
+    StageWalls, StopWhen, StrengthReduction, search_of,
 };
 pub use water::seepage::{InTime, SeepageCase};
 pub use water::{Construction, Drainage, Drained, PoreSource, WaterCondition, table_level};

@@ -5,7 +5,7 @@ pub(crate) mod space;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use igimp_assembly::{Surface, SurfaceError, Tension};
+use igimp_assembly::{RigidBody, Surface, SurfaceError, Tension};
 use igimp_text::short;
 
 /// A rigid body that soil touches, slides along and leaves.
@@ -147,6 +147,29 @@ impl<const D: usize> RigidPart<D> {
             None => Vec::new(),
         }
     }
+}
+
+/// How far two rigid bodies reach into each other where they stand: the greatest depth of a knot of one below the surface of the
+/// other \[m\]; zero where none does.
+pub fn overlap_of_rigid<const D: usize>(a: &RigidBody<D>, b: &RigidBody<D>) -> f64 {
+    let knots = [a.knots(), b.knots()];
+    let [of_a, of_b] = [&knots[0], &knots[1]].map(|knots| {
+        let end = |axis: usize| {
+            let places = knots.iter().map(move |knot| knot[axis]);
+            places.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| {
+                [least.min(x), most.max(x)]
+            })
+        };
+        std::array::from_fn::<_, D, _>(end)
+    });
+    if (0..D).any(|axis| of_a[axis][1] <= of_b[axis][0] || of_b[axis][1] <= of_a[axis][0]) {
+        return 0.0;
+    }
+    let deepest = |knots: &[[f64; D]], other: &RigidBody<D>| {
+        let depths = knots.iter().map(|knot| -other.distance(knot));
+        depths.fold(0.0, f64::max)
+    };
+    deepest(&knots[0], b).max(deepest(&knots[1], a))
 }
 
 /// The shape of a rigid body in the plane, where it starts.

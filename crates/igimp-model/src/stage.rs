@@ -203,10 +203,38 @@ pub struct StageWalls {
 /// By how much strength is reduced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reduction {
-    /// A multiple of the factor of safety found before (middle of its interval).
+    /// A multiple of the factor of safety of the state that the stage starts from (middle of its interval).
     TimesFos(f64),
     /// A factor.
     Factor(f64),
+}
+
+/// The search that tells the factor of safety of the state which a stage starts from: the last one of that state in the file, or of
+/// the nearest state before it that has one; by number, none where no state was searched. `from` is the stage that a stage starts
+/// from. A search leaves its state as it was, so that a stage which starts from a search starts from that state.
+pub fn search_of(
+    number: usize,
+    from: &dyn Fn(usize) -> Option<usize>,
+    is_search: &dyn Fn(usize) -> bool,
+) -> Option<usize> {
+    let mut at = from(number);
+    loop {
+        if let Some(search) = at.filter(|&stage| is_search(stage)) {
+            return Some(search);
+        }
+        let of_state = |&stage: &usize| {
+            let mut state = from(stage);
+            while let Some(search) = state.filter(|&own| is_search(own)) {
+                state = from(search);
+            }
+            is_search(stage) && state == at
+        };
+        let found = (0..number).rev().find(of_state);
+        if found.is_some() || at.is_none() {
+            return found;
+        }
+        at = at.and_then(from);
+    }
 }
 
 impl StageKind {
@@ -246,4 +274,50 @@ pub struct StopWhen {
     pub no_equilibrium: bool,
     /// The reaction of the pushed footing grows by less than this share in a step \[-\].
     pub load_grows_less_than: Option<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::search_of;
+
+    // GOAL: the factor of safety that a run-out refers to is that of the state which it starts from, in whatever order the
+    // searches stand in the file.
+    // ORACLE: trees of stages by hand; a letter s marks a search.
+    #[test]
+    fn the_search_is_that_of_the_state() {
+        let of = |stages: &[(&str, Option<usize>)], number: usize| {
+            let from = |stage: usize| stages[stage].1;
+            search_of(number, &from, &|stage| stages[stage].0 == "s")
+        };
+        // Weight, dry search, water, wet search, run-out of the dry slope: then the other order.
+        let [w, s] = ["w", "s"];
+        let dry_first = [
+            (w, None),
+            (s, Some(0)),
+            (w, Some(0)),
+            (s, Some(2)),
+            (w, Some(0)),
+        ];
+        assert_eq!(of(&dry_first, 4), Some(1));
+        let wet_first = [
+            (w, None),
+            (w, Some(0)),
+            (s, Some(1)),
+            (s, Some(0)),
+            (w, Some(0)),
+        ];
+        assert_eq!(of(&wet_first, 4), Some(3));
+        // Of two searches of one state the last; the one named, where the run-out starts from a search.
+        let two = |start| [(w, None), (s, Some(0)), (s, Some(1)), (w, Some(start))];
+        assert_eq!(of(&two(0), 3), Some(2));
+        assert_eq!(of(&two(1), 3), Some(1));
+        // A state that nobody searched has the factor of the state before it; a branch beside it has none to give.
+        let before = [(w, None), (s, Some(0)), (w, Some(1)), (w, Some(2))];
+        assert_eq!(of(&before, 3), Some(1));
+        let beside = [(w, None), (w, Some(0)), (s, Some(1)), (w, Some(0))];
+        assert_eq!(of(&beside, 3), None);
+        // Gravity raised anew is a search of undeformed bodies, the root of all states.
+        let root = [(s, None), (w, None), (w, Some(1))];
+        assert_eq!(of(&root, 2), Some(0));
+    }
 }

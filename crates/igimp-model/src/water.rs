@@ -30,6 +30,22 @@ impl<const D: usize> Case<D> {
         there
     }
 
+    /// The material that a body consists of at the end of a stage, by index; `None`: before the first one. A body that was taken
+    /// away keeps it for the time that it comes back.
+    pub fn material_after(&self, stage: Option<usize>, body: usize) -> usize {
+        let mut at = stage;
+        while let Some(stage) = at {
+            let stage = &self.stages[stage];
+            if let StageKind::Construction(own) = &stage.kind
+                && let Some((_, material)) = own.materials.iter().find(|(other, _)| *other == body)
+            {
+                return *material;
+            }
+            at = stage.start_from;
+        }
+        self.bodies[body].material
+    }
+
     /// The condition of the water at the end of a stage, by index; none without water.
     pub fn water_after(&self, stage: usize) -> Option<usize> {
         let stage = &self.stages[stage];

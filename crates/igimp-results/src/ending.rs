@@ -86,6 +86,8 @@ pub enum EndReason {
     IntervalIsNarrow,
     /// The body stands at no strength that a search can give it.
     NoStrengthHolds,
+    /// Nothing fails at the greatest strength reduction factor that a search goes to.
+    NothingFails,
     /// A path of equilibria came to an end.
     PathEnded {
         /// How.
@@ -160,6 +162,7 @@ impl EndReason {
             Self::ReachedItsEnd => "reached-its-end",
             Self::IntervalIsNarrow => "interval-is-narrow",
             Self::NoStrengthHolds => "no-strength-holds",
+            Self::NothingFails => "nothing-fails",
             Self::PathEnded { .. } => "path-ended",
             Self::StepsOfPathRanOut => "steps-of-path-ran-out",
             Self::PathLost { .. } => "path-lost",
@@ -183,6 +186,7 @@ impl fmt::Display for EndReason {
             Self::ReachedItsEnd => f.write_str("reached its end"),
             Self::IntervalIsNarrow => f.write_str("the interval is narrow enough"),
             Self::NoStrengthHolds => f.write_str("no strength holds the body"),
+            Self::NothingFails => f.write_str("nothing fails, however little strength is left"),
             Self::PathEnded { end, reached: None } => f.write_str(end.sentence()),
             Self::PathEnded {
                 end,
@@ -254,6 +258,7 @@ mod tests {
             EndReason::ReachedItsEnd,
             EndReason::IntervalIsNarrow,
             EndReason::NoStrengthHolds,
+            EndReason::NothingFails,
             EndReason::PathEnded {
                 end: PathEnd::Limit,
                 reached: Some(0.5),

@@ -269,6 +269,9 @@ impl<const D: usize> Stages<D> {
         };
         summary.outcome = outcome;
         summary.reason = reason.to_string();
+        if let Some(strength) = run_out::told(session, number) {
+            summary.reason = format!("{}; {strength}", summary.reason);
+        }
         reason.code().clone_into(&mut summary.code);
         self.close(session, number, state, summary, step_error)
     }
@@ -303,6 +306,9 @@ impl<const D: usize> Stages<D> {
             session.summary.interrupted = true;
         } else {
             self.read(session, number, state, &summary)?;
+        }
+        if goes_on && let Some(text) = reinforcement::locked_early(case, state) {
+            session.warn_of_stage(number, &text);
         }
         // What a jack held is locked off.
         for own in &mut state.controls.reinforcement {

@@ -5,10 +5,14 @@ use igimp_model::{Case, ReinforcementPart, ReinforcementQuantity, Stage, distanc
 use igimp_results::reinforcement::Installed;
 use igimp_results::summary::MemberSummary;
 
+use igimp_text::short;
+
 use super::state::{Controls, ReinforcementControls, State};
 
 /// Stations per cell along a bonded length.
 const STATIONS_PER_CELL: f64 = 4.0;
+/// A part of a station that round-off makes \[-\].
+const ROUND_OFF: f64 = 1e-9;
 
 /// A member of a case where it is installed, without tension.
 pub(crate) fn made<const D: usize>(
@@ -65,7 +69,7 @@ fn stations_between<const D: usize>(case: &Case<D>, a: [f64; D], b: [f64; D]) ->
     let cell = axes
         .map(|(k, own)| own.smallest_between(a[k].min(b[k]), a[k].max(b[k])))
         .fold(f64::INFINITY, f64::min);
-    (STATIONS_PER_CELL * distance(&a, &b) / cell).ceil()
+    (STATIONS_PER_CELL * distance(&a, &b) / cell - ROUND_OFF).ceil()
 }
 
 /// The straight parts of a member, and whether they are bonded to the ground.
@@ -114,6 +118,30 @@ pub(crate) fn begin<const D: usize>(case: &Case<D>, state: &mut State<D>, stage:
         };
         state.body.reinforcement.insert(slot, made(case, part));
     }
+}
+
+/// What is said where a stage ended before its jacks held all of the prestress: the tension that was locked off.
+pub(crate) fn locked_early<const D: usize>(case: &Case<D>, state: &State<D>) -> Option<String> {
+    let unit = format!("kN{}", case.per_metre());
+    let parts = std::iter::zip(&case.reinforcement, &state.controls.reinforcement);
+    let early = parts.filter_map(|(part, own)| {
+        let (held, wanted) = (own.jack?, part.prestress?);
+        (held < (1.0 - 1e-9) * wanted).then(|| {
+            format!(
+                "\"{}\" at {} of {} {unit}",
+                part.name,
+                short(1e-3 * held),
+                short(1e-3 * wanted)
+            )
+        })
+    });
+    let early: Vec<String> = early.collect();
+    (!early.is_empty()).then(|| {
+        format!(
+            "it ended early, and anchors were locked off with a part of their prestress: {}",
+            early.join(", ")
+        )
+    })
 }
 
 /// What acts on the members that are there, at the end of a step with these controls.

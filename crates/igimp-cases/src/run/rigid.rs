@@ -1,11 +1,16 @@
 //! Rigid bodies of a case as the solver has them: made, placed, moved, and what they did.
 
-use igimp_assembly::{Drive, Interface, Particles, RigidBody, RigidMotion, Shear};
+use igimp_assembly::{
+    Drive, Geometry, Interface, Particles, RigidBody, RigidMotion, Shear, Stencils, System,
+};
 use igimp_model::{
     Adhesion, Case, RigidInterface, RigidPart, RigidQuantity, RigidShear, components, in_space,
+    overlap_of_rigid,
 };
 use igimp_solver::{Accepted, StepFailure};
+use igimp_text::short;
 
+use super::model::Model;
 use super::state::{Controls, RigidTrack, State};
 use crate::error::CaseError;
 
@@ -151,6 +156,41 @@ pub(crate) fn gap_below<const D: usize>(part: &RigidPart<D>, particles: &Particl
     least
 }
 
+/// Whether a body stands on a level base: what lies under it touches all of the base at once.
+pub(crate) fn has_level_base<const D: usize>(part: &RigidPart<D>) -> bool {
+    const SHARES: [f64; 5] = [0.2, 0.35, 0.5, 0.65, 0.8];
+    let (lower, upper) = part.bounds();
+    let off = |share: f64| {
+        let at = std::array::from_fn(|axis| lower[axis] + share * (upper[axis] - lower[axis]));
+        (part.shape.underside(&at, &at) - lower[D - 1]).abs()
+    };
+    let height = upper[D - 1] - lower[D - 1];
+    SHARES.into_iter().all(|share| off(share) <= 1e-9 * height)
+}
+
+/// The smallest mean gap around a point of the sides of a body that has touched nothing yet \[m\]; none where no soil is near.
+/// The rounding of its edges has no such point.
+pub(crate) fn least_mean_gap<const D: usize>(
+    model: &Model<'_, D>,
+    state: &State<D>,
+    slot: usize,
+) -> Result<Option<f64>, CaseError> {
+    let method = model.method(Geometry::Moving);
+    let conditions = model.conditions(&state.controls, &state.controls, 0.0)?;
+    let particles = &state.body.particles;
+    let stencils = Stencils::build_under(particles, &method, &conditions, &state.body.load_points)?;
+    let structures = state.body.structures();
+    let system = System::with_structures(particles, &structures, &stencils, &conditions, &method)?;
+    let still = vec![[0.0; D]; system.node_count()];
+    let Ok(contact) = system.bodies_at(&still) else {
+        return Ok(None);
+    };
+    let knots = contact.bodies[slot].contact.knots.iter();
+    let gaps = knots.filter(|knot| knot.area > 0.0).map(|knot| knot.gap);
+    let least = gaps.fold(f64::INFINITY, f64::min);
+    Ok(Some(least).filter(|gap| gap.is_finite()))
+}
+
 /// A number of a rigid body; zero for one that is not there.
 pub(crate) fn quantity<const D: usize>(
     case: &Case<D>,
@@ -256,6 +296,36 @@ pub(crate) fn too_deep<const D: usize>(
             position: in_space(&deepest),
         })
     })
+}
+
+/// Rigid bodies that reach into each other by less than this share of a cell touch \[-\].
+const TOUCH: f64 = 1e-3;
+
+/// What is to be said of two rigid bodies that have come into each other: which they are, and how far. Nothing keeps them apart.
+pub(crate) fn meet<const D: usize>(
+    case: &Case<D>,
+    controls: &Controls,
+    bodies: &[RigidBody<D>],
+) -> Option<(String, String)> {
+    let there: Vec<_> = std::iter::zip(controls.placed(), bodies).collect();
+    let pairs = (there.iter().enumerate())
+        .flat_map(|(k, second)| there[..k].iter().map(move |first| (first, second)));
+    let mut deep = pairs.filter_map(|(&(a, first), &(b, second))| {
+        let depth = overlap_of_rigid(first, second);
+        let cell = cell_near(case, &case.rigid[a]).min(cell_near(case, &case.rigid[b]));
+        (depth > TOUCH * cell).then_some((a, b, depth))
+    });
+    let (a, b, depth) = deep.next()?;
+    let [first, second] = [a, b].map(|index| &case.rigid[index].name);
+    Some((
+        format!(
+            "the rigid bodies \"{first}\" and \"{second}\" have met, and nothing keeps them apart: "
+        ),
+        format!(
+            "they overlap by {} m; what follows is that of bodies which pass through each other",
+            short(depth)
+        ),
+    ))
 }
 
 /// The outlines of the rigid bodies that are there, where they stand \[m\]; a circle as so many points.

@@ -70,6 +70,14 @@ impl<const D: usize> Session<'_, D> {
         self.summary.warnings.push(text);
     }
 
+    /// The same of something that goes on: with how it was when it began.
+    pub(crate) fn warn_once(&mut self, what: &str, how: &str) {
+        let mut told = self.summary.warnings.iter();
+        if !told.any(|text| text.starts_with(what)) {
+            self.warn(format!("{what}{how}"));
+        }
+    }
+
     /// The same of a stage, by its number.
     pub(crate) fn warn_of_stage(&mut self, number: usize, text: &str) {
         let name = &self.model.case.stages[number].name;
@@ -508,6 +516,9 @@ impl<const D: usize> Watch<'_, '_, D> {
         if self.path.to.settlement > self.path.from.settlement {
             let before = self.stage.peak_resistance.unwrap_or(taken.resistance);
             self.stage.peak_resistance = Some(before.max(taken.resistance));
+        }
+        if let Some((pair, by)) = rigid::meet(model.case, &controls, &accepted.body.rigid) {
+            self.session.warn_once(&pair, &by);
         }
         let reason = (self.each)(self.session, self.stage, &taken)?;
         self.session.tell(&Event::Step {

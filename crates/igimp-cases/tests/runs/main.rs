@@ -7,6 +7,7 @@ mod resuming;
 
 mod column;
 mod engine;
+mod factors;
 mod given_law;
 mod in_space;
 mod killed;

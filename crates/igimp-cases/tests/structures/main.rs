@@ -9,6 +9,7 @@ mod closing;
 mod reinforcement;
 mod rigid;
 mod rigid_results;
+mod rigid_room;
 
 use std::fs;
 use std::path::{Path, PathBuf};

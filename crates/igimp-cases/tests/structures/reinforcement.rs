@@ -188,3 +188,64 @@ fn explained_files_state_the_same() {
     let [head, end] = file.case().reinforcement[0].fastened;
     assert!((head / 25e3 - 1.0).abs() < 1e-12 && end.abs() < 1e-12);
 }
+
+// GOAL: a prestress is locked off at its value, or the file is refused; where a stage ends early all the same the tension that was
+// locked off is told.
+// ORACLE: by hand: after one of three even steps the jack holds a third of 12 kN/m.
+#[test]
+fn a_prestress_is_not_locked_off_in_part_unsaid() {
+    let stop = (
+        "install = [\"anchor\"]",
+        "install = [\"anchor\"]\nstop_when = { displacement = \"0.1 mm\" }",
+    );
+    let refused = messages_of_each(("tied_cut.toml", TEXT), &[stop]);
+    assert!(
+        refused.contains("would lock off `anchor` with a part of its prestress"),
+        "{refused}"
+    );
+    let unstressed = edited(TEXT, &[stop, ("prestress = \"12 kN/m\"\n", "")]);
+    assert!(CaseFile::parse("tied_cut.toml", &unstressed, &[]).is_ok());
+    let mut case = parsed(&[]).case().clone();
+    case.stages.truncate(2);
+    case.checks.clear();
+    case.stages[1].stop_when.displacement = Some(1e-9);
+    let run = in_memory(&case).unwrap();
+    let told = run
+        .summary
+        .warnings
+        .iter()
+        .filter(|text| text.contains("locked off"));
+    let told: Vec<&String> = told.collect();
+    assert_eq!(told.len(), 1, "{:?}", run.summary.warnings);
+    assert!(told[0].contains("\"anchor\" at 4 of 12 kN/m"), "{told:?}");
+}
+
+// GOAL: members in soil that is dug, or that comes later, are refused as the file is read: the run would end there.
+// ORACLE: by hand: the nail lies from x = 6 m to 3 m below y = 1.6 m.
+#[test]
+fn members_lie_in_soil_while_they_are_there() {
+    let body = "polygon = [\n    [\"0 m\", \"0 m\"],\n    [\"8 m\", \"0 m\"],\n    [\"8 m\", \"1 m\"],\n    [\"6.2 m\", \"1 m\"],\n    [\"5.2 m\", \"4 m\"],\n    [\"0 m\", \"4 m\"],\n]";
+    let upper = "polygon = [[\"0 m\", \"2.2 m\"], [\"5.8 m\", \"2.2 m\"], [\"5.2 m\", \"4 m\"], [\"0 m\", \"4 m\"]]\n\
+                 [[bodies]]\nname = \"lower\"\nmaterial = \"clay\"\npolygon = [[\"0 m\", \"0 m\"], [\"8 m\", \"0 m\"], [\"8 m\", \"1 m\"], [\"6.2 m\", \"1 m\"], [\"5.8 m\", \"2.2 m\"], [\"0 m\", \"2.2 m\"]]";
+    let later = "[[stages]]\nname = \"later\"\ntype = \"construction\"\nstart_from = \"weight\"\n";
+    let safety = "[[stages]]\nname = \"safety\"";
+    let with = |lines: &str| {
+        let text = edited(
+            TEXT,
+            &[(body, upper), (safety, &format!("{later}{lines}{safety}"))],
+        );
+        CaseFile::parse("tied_cut.toml", &text, &[]).map(|file| file.warnings())
+    };
+    assert!(with("remove = [\"soil\"]\n").is_ok());
+    let dug = with("remove = [\"lower\"]\n").unwrap_err().to_string();
+    assert!(
+        dug.contains("the nail `nail` is held at (")
+            && dug.contains("where no soil is in stage `later`"),
+        "{dug}"
+    );
+    let placed = with("place = [\"lower\"]\n").unwrap_err().to_string();
+    assert!(
+        placed.contains("where no soil is from the start"),
+        "{placed}"
+    );
+}

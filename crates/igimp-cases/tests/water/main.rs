@@ -10,6 +10,7 @@ mod resuming;
 mod column;
 mod construction;
 mod in_space;
+mod of_its_stage;
 mod pore_water;
 mod seepage;
 mod state_stiffness;

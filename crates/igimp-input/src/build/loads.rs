@@ -9,10 +9,13 @@ use igimp_schema::schema::loads::{
     self as keys, Footing, FootingInterface, LoadForm, Patch, PointLoad, Pressure,
     PressureDirection,
 };
+use igimp_schema::schema::stages::{Stage, StageForm};
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number, point};
+use igimp_schema::tree::read::At;
 use igimp_schema::tree::{Node, Wrong};
 
+use super::bodies::sequence::Sequence;
 use super::bodies::site::{Site, Soil};
 use super::grid::Frame;
 use super::things;
@@ -29,38 +32,60 @@ pub(super) trait Bearing<const D: usize>: Soil<D> {
         problems: &mut Problems,
     ) -> Option<LoadKind<D>>;
 
-    /// A pressure on its surface.
+    /// A pressure on its surface, by name, and the scenes in which it acts.
     fn pressure(
         &self,
         own: &Pressure<D>,
-        name: &str,
+        about: (&str, &[&[bool]]),
         problems: &mut Problems,
     ) -> Option<LoadKind<D>>;
 
-    /// A pressure on a part of its surface that is stated in plan; with the name of the load, its place, and that of its type.
+    /// A pressure on a part of its surface that is stated in plan; with the name of the load, its place, and that of its type,
+    /// and the scenes in which it acts.
     fn patch(
         &self,
         own: &Result<Patch, Wrong>,
-        about: (&str, Place, Place),
+        about: (&str, Place, Place, &[&[bool]]),
         problems: &mut Problems,
     ) -> Option<LoadKind<D>>;
+}
+
+/// Which bodies are there, by index, in each stage that applies a load.
+fn scenes_of<'a>(
+    name: &str,
+    (stages, sequence): (&[Thing<Stage>], &'a Sequence),
+) -> Vec<&'a [bool]> {
+    let applies = |own: &At<Stage>| {
+        let is_off = match &*own.form {
+            StageForm::Load(Ok(own)) => own.factor.as_ref().is_ok_and(|factor| **factor == 0.0),
+            _ => false,
+        };
+        !is_off && own.loads().iter().any(|load| load.value == name)
+    };
+    let applied = stages.iter().enumerate();
+    let applied = applied.filter(|(_, own)| own.as_ref().is_some_and(applies));
+    applied
+        .map(|(stage, _)| &*sequence.before(stage).present)
+        .collect()
 }
 
 /// The loads.
 pub(super) fn loads<const D: usize>(
     tree: &Node,
     soil: &impl Bearing<D>,
+    course: (&[Thing<Stage>], &Sequence),
     problems: &mut Problems,
 ) -> Vec<Option<Load<D>>> {
     let mut has_footing = false;
     let load = |own: Thing<keys::Load<D>>| {
         let own = own?;
         let name = own.name.as_str();
+        let scenes = scenes_of(name, course);
         let kind = match &*own.form {
             LoadForm::RigidFooting(own) => soil.footing(own, name, problems),
-            LoadForm::Pressure(own) => soil.pressure(own.as_ref().ok()?, name, problems),
+            LoadForm::Pressure(own) => soil.pressure(own.as_ref().ok()?, (name, &scenes), problems),
             LoadForm::Patch(patch) => {
-                soil.patch(patch, (name, own.place, own.form.place), problems)
+                soil.patch(patch, (name, own.place, own.form.place, &scenes), problems)
             }
             LoadForm::Point(own) => Some(at_point(own.as_ref().ok()?, name, soil, problems)),
         }?;
@@ -93,16 +118,16 @@ impl Bearing<2> for Site {
     fn pressure(
         &self,
         own: &Pressure<2>,
-        name: &str,
+        about: (&str, &[&[bool]]),
         problems: &mut Problems,
     ) -> Option<LoadKind<2>> {
-        pressure(own, name, self, problems)
+        pressure(own, about, self, problems)
     }
 
     fn patch(
         &self,
         _own: &Result<Patch, Wrong>,
-        (_, _, form): (&str, Place, Place),
+        (_, _, form, _): (&str, Place, Place, &[&[bool]]),
         problems: &mut Problems,
     ) -> Option<LoadKind<2>> {
         problems
@@ -299,7 +324,7 @@ fn better_cell(edge: f64, ends: [f64; 2], frame: &Frame<2>) -> Option<String> {
 
 fn pressure(
     own: &Pressure<2>,
-    name: &str,
+    (name, scenes): (&str, &[&[bool]]),
     site: &Site,
     problems: &mut Problems,
 ) -> Option<LoadKind<2>> {
@@ -318,7 +343,7 @@ fn pressure(
     let left = [-along[1] / length, along[0] / length];
     let mut inward = is_down.then_some([0.0, -1.0]);
     if site.is_complete {
-        let normal = soil_side(own, &shown, left, site, problems)?;
+        let normal = soil_side(own, (&shown, scenes), left, site, problems)?;
         inward = inward.or(Some(normal));
     }
     let inward = inward?;
@@ -329,45 +354,76 @@ fn pressure(
     })
 }
 
-/// The normal of a segment that points into the soil; reports a segment that is not on a surface.
-fn soil_side(
+/// Places along a segment at which soil is looked for.
+const SAMPLES: u32 = 21;
+
+/// How many places along a segment have soil on the left alone, on the right alone, and on both sides; of the bodies that are
+/// there, if they are stated.
+fn soil_beside(
     own: &Pressure<2>,
-    name: &str,
     left: [f64; 2],
-    site: &Site,
-    problems: &mut Problems,
-) -> Option<[f64; 2]> {
-    const SAMPLES: u32 = 21;
+    (site, present): (&Site, Option<&[bool]>),
+) -> [u32; 3] {
     let (from, to) = (*own.from, *own.to);
     let length = (to[0] - from[0]).hypot(to[1] - from[1]);
     let step = 1e-2 * site.cell().min(length);
-    let (mut on_left, mut on_right, mut buried) = (0, 0, 0);
+    let mut found = [0; 3];
     for k in 0..SAMPLES {
         let t = (f64::from(k) + 0.5) / f64::from(SAMPLES);
         let at = [
             from[0] + t * (to[0] - from[0]),
             from[1] + t * (to[1] - from[1]),
         ];
-        let beside = |side: f64| [at[0] + side * step * left[0], at[1] + side * step * left[1]];
-        match (site.is_inside(beside(1.0)), site.is_inside(beside(-1.0))) {
-            (true, true) => buried += 1,
-            (true, false) => on_left += 1,
-            (false, true) => on_right += 1,
+        let is_soil = |side: f64| {
+            let beside = [at[0] + side * step * left[0], at[1] + side * step * left[1]];
+            site.is_inside(present, beside)
+        };
+        match (is_soil(1.0), is_soil(-1.0)) {
+            (true, true) => found[2] += 1,
+            (true, false) => found[0] += 1,
+            (false, true) => found[1] += 1,
             (false, false) => {}
         }
     }
-    if on_left == SAMPLES {
+    found
+}
+
+/// The normal of a segment that points into the soil of the stages in which it is loaded; reports a segment that is not on a
+/// surface there.
+fn soil_side(
+    own: &Pressure<2>,
+    (name, scenes): (&str, &[&[bool]]),
+    left: [f64; 2],
+    site: &Site,
+    problems: &mut Problems,
+) -> Option<[f64; 2]> {
+    let found = scenes
+        .iter()
+        .map(|present| soil_beside(own, left, (site, Some(*present))));
+    // A load on soil that is not there is refused where the stage applies it.
+    let mut found: Vec<_> = found.filter(|own| *own != [0; 3]).collect();
+    if found.is_empty() {
+        found.push(soil_beside(own, left, (site, None)));
+    }
+    let is_on = |side: usize| found.iter().all(|own| own[side] == SAMPLES);
+    if is_on(0) {
         return Some(left);
     }
-    if on_right == SAMPLES {
+    if is_on(1) {
         return Some(left.map(|component| -component));
     }
-    let message = if buried + on_left + on_right == 0 {
-        format!("no body lies along the segment of the pressure `{name}`")
-    } else if buried > 0 {
-        format!("the segment of the pressure `{name}` lies inside the soil, not on its surface")
-    } else {
-        format!("only a part of the segment of the pressure `{name}` lies on the surface of a body")
+    let is_wrong = |own: &&[u32; 3]| own[0] < SAMPLES && own[1] < SAMPLES;
+    let message = match found.iter().find(is_wrong) {
+        Some([0, 0, 0]) => format!("no body lies along the segment of the pressure `{name}`"),
+        Some([_, _, buried]) if *buried > 0 => {
+            format!("the segment of the pressure `{name}` lies inside the soil, not on its surface")
+        }
+        Some(_) => format!(
+            "only a part of the segment of the pressure `{name}` lies on the surface of a body"
+        ),
+        None => format!(
+            "soil lies on one side of the segment of the pressure `{name}` in one stage, and on the other in another"
+        ),
     };
     problems
         .error(own.from.place, message)

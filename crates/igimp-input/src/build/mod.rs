@@ -133,7 +133,7 @@ fn in_plane(
         sequence,
     };
     ground::layers::check(&layers, problems);
-    let loads = loads::loads(tree, &site, problems);
+    let loads = loads::loads(tree, &site, (&stages, sequence), problems);
     let around = rigid::plane::Around {
         site: &site,
         loads: &loads,
@@ -141,6 +141,8 @@ fn in_plane(
         sequence,
     };
     let rigid = rigid::rigid(tree, &around, materials, problems);
+    let frame = site.frame.as_ref();
+    rigid::apart::check((tree, frame), &rigid, (&stages, sequence), problems);
     let held_by = (boundaries.as_ref(), rigid.as_slice());
     bodies::check_support(&own, bodies, held_by, &site, problems);
     rigid::stage::check_use(&things(Root::<2>::rigid(tree)), &stages, names, problems);
@@ -170,6 +172,7 @@ fn in_plane(
         site: Some(&site),
         sequence,
     };
+    reinforcement::check_held(&context, &reinforcement, problems);
     let built = assemble::stages_of(&context, problems);
     let gravity = gravity(tree);
     ground::layers::check_stiffness(&layers, &built, gravity, problems);

@@ -6,7 +6,7 @@ use igimp_model::{ReinforcementKind, ReinforcementPart, distance};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::reinforcement::{Member, MemberForm};
-use igimp_schema::schema::stages::{ReductionPath, Stage, StageForm};
+use igimp_schema::schema::stages::{ReductionPath, Stage, StageForm, StopWhen};
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number, point};
 use igimp_schema::tree::Node;
@@ -15,7 +15,7 @@ use igimp_schema::tree::read::At;
 use super::bodies::site::{Site, Soil};
 use super::{AllNames, things};
 use crate::build::Thing;
-use crate::build::context::About;
+use crate::build::context::{About, Context};
 
 /// Places along a member at which soil is looked for.
 const SAMPLES: u32 = 40;
@@ -198,12 +198,7 @@ fn in_soil<const D: usize>(
     if !soil.is_known() {
         return true;
     }
-    let length = part.length();
-    let free = (0..=SAMPLES)
-        .map(|k| f64::from(k) / f64::from(SAMPLES) * length)
-        .filter(|&at| at == 0.0 || at >= part.free_length)
-        .map(|at| place(&part.line, at))
-        .find(|at| !soil.holds_point(at, 1e-2 * soil.cell()));
+    let free = held_places(part).find(|at| !soil.holds_point(at, 1e-2 * soil.cell()));
     let Some(at) = free else { return true };
     problems
         .error(
@@ -217,6 +212,15 @@ fn in_soil<const D: usize>(
         )
         .help("its head and all of its bonded length lie in soil, as [[bodies]] have it");
     false
+}
+
+/// Places at which soil holds a member: its head, and along its bonded length.
+fn held_places<const D: usize>(part: &ReinforcementPart<D>) -> impl Iterator<Item = [f64; D]> {
+    let length = part.length();
+    (0..=SAMPLES)
+        .map(move |k| f64::from(k) / f64::from(SAMPLES) * length)
+        .filter(|&at| at == 0.0 || at >= part.free_length)
+        .map(|at| place(&part.line, at))
 }
 
 /// The point of a line at a distance from its beginning.
@@ -345,6 +349,87 @@ pub(super) fn installs<const D: usize>(
         members.push(member);
     }
     Some(members)
+}
+
+/// Refuses an early end of a stage that stresses an anchor: its jack would lock off a part of the prestress.
+pub(super) fn check_stressed<const D: usize>(
+    about: &About<'_, D>,
+    members: &[usize],
+    stop: &StopWhen,
+    problems: &mut Problems,
+) {
+    let all = things(Root::<D>::reinforcement(about.context.tree));
+    let is_stressed = |&&member: &&usize| match all.get(member) {
+        Some(Some(own)) => {
+            matches!(&*own.form, MemberForm::Anchor(Ok(own)) if own.prestress.is_some())
+        }
+        _ => false,
+    };
+    let early = (stop.displacement.as_ref().map(|own| own.key_place))
+        .or(stop.load_grows_less_than.as_ref().map(|own| own.key_place));
+    if let (Some(place), Some(&member)) = (early, members.iter().find(is_stressed)) {
+        let name = clip(about.context.names.reinforcement.name(member), 40);
+        problems
+            .error(
+                place,
+                format!(
+                    "an early end would lock off `{name}` with a part of its prestress, which comes on over the stage"
+                ),
+            )
+            .help(format!(
+                "install = [\"{name}\"] in a stage of its own before, such as one of type gravity, and stop_when in the next"
+            ));
+    }
+}
+
+/// Refuses members in soil that is dug, or that is placed later: the run would end there.
+pub(super) fn check_held<const D: usize>(
+    context: &Context<'_, D>,
+    members: &[Option<ReinforcementPart<D>>],
+    problems: &mut Problems,
+) {
+    let soil = context.soil;
+    if !soil.is_known() {
+        return;
+    }
+    let all = things(Root::<D>::reinforcement(context.tree));
+    for (part, own) in std::iter::zip(members, &all) {
+        let (Some(part), Some(own)) = (part, own) else {
+            continue;
+        };
+        let installs =
+            |stage: &At<Stage>| stage.installs().iter().any(|name| name.value == part.name);
+        let is_there = |stage: usize| {
+            let here = context.stages[stage].iter();
+            part.from_start || here.chain(context.before(stage)).any(installs)
+        };
+        let start = part.from_start.then_some((None, &context.sequence.start));
+        let ends = (context.sequence.ends.iter().enumerate())
+            .filter(|(stage, _)| is_there(*stage))
+            .map(|(stage, scene)| (Some(stage), scene));
+        let lost = start.into_iter().chain(ends).find_map(|(stage, scene)| {
+            let at =
+                held_places(part).find(|at| !soil.is_held_by(&scene.present, at, soil.cell()))?;
+            Some((stage, at))
+        });
+        let Some((stage, at)) = lost else { continue };
+        let stage = stage.and_then(|stage| context.stages[stage].as_ref());
+        let when = match stage {
+            Some(stage) => format!("in stage `{}`", clip(&stage.name, 40)),
+            None => "from the start".to_owned(),
+        };
+        problems
+            .error(
+                own.name.place,
+                format!(
+                    "the {} `{}` is held at {}, where no soil is {when}",
+                    part.kind.name(),
+                    clip(&part.name, 40),
+                    point(at)
+                ),
+            )
+            .help("install it once all of its soil is there, and let it end where soil is dug");
+    }
 }
 
 /// Refuses a search that begins anew, with bodies in which a stage has installed nothing yet.

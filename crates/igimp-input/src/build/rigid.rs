@@ -1,5 +1,6 @@
 //! Rigid bodies: what their sides are like, and whether the grid has a place for them.
 
+pub(crate) mod apart;
 mod narrow;
 pub(crate) mod plane;
 pub(crate) mod space;

@@ -39,6 +39,12 @@ impl Soil<3> for Solids {
             .any(|region| near(&**region, point, margin))
     }
 
+    fn is_held_by(&self, present: &[bool], point: &[f64; 3], margin: f64) -> bool {
+        let bodies = std::iter::zip(present, &self.regions);
+        let mut there = bodies.filter(|(present, _)| **present);
+        there.any(|(_, region)| near(&**region, point, margin))
+    }
+
     fn bears(&self, body: usize, load: &LoadKind<3>) -> bool {
         let Some(region) = self.regions.get(body).filter(|_| self.is_complete) else {
             return false;
@@ -101,8 +107,9 @@ pub(super) fn build(
     check_bodies((tree, &own), frame, (bodies, sequence), &soil, problems);
     let boundaries = Root::boundaries(tree).ok();
     let boundaries = boundaries.and_then(|own| boundaries::boundaries(&own, frame, problems));
-    let loads = loads::loads(tree, &soil, problems);
+    let loads = loads::loads(tree, &soil, (&stages, sequence), problems);
     let rigid = rigid::rigid(tree, &rigid::space::Around(frame), materials, problems);
+    rigid::apart::check((tree, frame), &rigid, (&stages, sequence), problems);
     rigid::stage::check_use(&things(Root::<3>::rigid(tree)), &stages, names, problems);
     let around = water::Around {
         own: &things(Root::<3>::water(tree)),
@@ -130,6 +137,7 @@ pub(super) fn build(
         site: None,
         sequence,
     };
+    reinforcement::check_held(&context, &reinforcement, problems);
     let built = assemble::stages_of(&context, problems);
     check_level(&stages, (bodies, materials), &soil, problems);
     let upon = Surroundings {

@@ -51,6 +51,9 @@ fn stage<const D: usize>(
     let stop_when = common.stop_when.as_ref().ok();
     let stop_when = stop_when.and_then(|own| stop_when_of(&about, own, problems));
     let install = super::reinforcement::installs(&about, problems);
+    if let (Some(members), Ok(stop)) = (&install, &common.stop_when) {
+        super::reinforcement::check_stressed(&about, members, stop, problems);
+    }
     let consolidation = consolidation::consolidation(&about, common, problems);
     Some(Stage {
         drained: **common.drained.as_ref().ok()?,

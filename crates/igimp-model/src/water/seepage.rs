@@ -4,7 +4,7 @@ use igimp_geometry::region::Region;
 use igimp_seepage::{Conditions, Extent, History, InGround, Named, Soil};
 
 use super::PoreSource;
-use crate::{Case, Material, StageKind};
+use crate::{Case, Material};
 
 /// A flow in time, and one moment of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,16 +101,7 @@ impl<const D: usize> Case<D> {
             Some(stage) if condition > 0 => self.bodies_after(stage),
             _ => self.bodies.iter().map(|body| body.from_start).collect(),
         };
-        let changed = |body: usize| {
-            let until = first.filter(|_| condition > 0)?;
-            (self.stages[..=until].iter().rev()).find_map(|stage| match &stage.kind {
-                StageKind::Construction(own) => {
-                    let change = own.materials.iter().find(|(other, _)| *other == body);
-                    change.map(|(_, material)| *material)
-                }
-                _ => None,
-            })
-        };
+        let until = first.filter(|_| condition > 0);
         let bodies = self
             .bodies
             .iter()
@@ -120,7 +111,7 @@ impl<const D: usize> Case<D> {
             .map(|(body, part)| {
                 (
                     &*part.region as &dyn Region<D>,
-                    changed(body).unwrap_or(part.material),
+                    self.material_after(until, body),
                 )
             })
             .collect()

@@ -240,7 +240,7 @@ pub fn outcome(summary: &StageSummary) -> String {
     if cut_short.contains(&summary.outcome) {
         let _ = write!(text, " at {} %", short(100.0 * summary.reached));
     }
-    if !summary.reason.is_empty() && summary.code != EndReason::ReachedItsEnd.code() {
+    if !summary.reason.is_empty() && summary.reason != EndReason::ReachedItsEnd.to_string() {
         let _ = write!(text, ": {}", summary.reason);
     }
     text

@@ -7,13 +7,13 @@
 use std::sync::Arc;
 
 use igimp_assembly::{
-    Kinematics, ParticleFields, Particles, PoreSite, PoreWater as _, Stencils, System,
+    Kinematics, ParticleFields, Particles, PoreSite, PoreWater as _, RigidBody, Stencils, System,
 };
 use igimp_material::{
     ConstitutiveModel, ScaledLaw, TangentKind, directed_history, elastic_left_cauchy_green_of,
     principal_values,
 };
-use igimp_model::{Construction, Drainage, Ground, StageKind};
+use igimp_model::{Case, Construction, Drainage, Ground, StageKind, distance};
 use igimp_results::ending::EndReason;
 use igimp_results::summary::StageSummary;
 use igimp_text::short;
@@ -38,13 +38,16 @@ pub(crate) fn build<const D: usize>(
     let StageKind::Construction(own) = &stage.kind else {
         return Ok(StageEnd::Completed(EndReason::ReachedItsEnd));
     };
-    let changed = changed(model, start.unwrap_or(state), own)?;
+    let (changed, pushed) = changed(model, start.unwrap_or(state), number, own)?;
     let held = holding(model, &changed, number)?;
     if resumption.is_none() {
         for &body in &own.place {
             if let Some(text) = moved_below(model, state, body) {
                 session.warn(text);
             }
+        }
+        if let Some(text) = pushed {
+            session.warn_of_stage(number, &text);
         }
         *state = changed;
     }
@@ -57,14 +60,16 @@ pub(crate) fn build<const D: usize>(
     )
 }
 
-/// A state with everything that a stage changes.
+/// A state with everything that a stage changes, and what is to be said of it.
 fn changed<const D: usize>(
     model: &Model<'_, D>,
     start: &State<D>,
+    number: usize,
     own: &Construction,
-) -> Result<State<D>, CaseError> {
+) -> Result<(State<D>, Option<String>), CaseError> {
     let case = model.case;
     let mut state = start.clone();
+    let mut pushed = None;
     let body_of =
         |particles: &Particles<D>, particle: usize| model.seeded.body[particles.number[particle]];
     if !own.place.is_empty()
@@ -72,7 +77,7 @@ fn changed<const D: usize>(
     {
         let placed = later.keeping(|particle| own.place.contains(&body_of(later, particle)))?;
         state.body.particles = state.body.particles.joined_by(&placed);
-        state.body.particles.resolve_overlap(&state.body.rigid);
+        pushed = pushed_aside(case, &mut state);
     }
     if !own.remove.is_empty() {
         let particles = &state.body.particles;
@@ -86,8 +91,13 @@ fn changed<const D: usize>(
         if own.dissipate {
             let_water_out(&mut fields, particle);
         }
-        let new = own.materials.iter().find(|(of, _)| *of == body);
-        if let Some(&(_, material)) = new {
+        let stated = own.materials.iter().find(|(of, _)| *of == body);
+        // A body that comes back consists of what it consisted of last.
+        let kept = || {
+            let last = case.material_after(case.stages[number].start_from, body);
+            (own.place.contains(&body) && last != case.bodies[body].material).then_some(last)
+        };
+        if let Some(material) = stated.map(|(_, material)| *material).or_else(kept) {
             let law = fields.law[particle];
             fields.law[particle] = case.law_beside(law, material);
             // What is placed is free of stress, whatever its law speaks of.
@@ -103,7 +113,41 @@ fn changed<const D: usize>(
     }
     state.body.particles = Particles::from_fields(fields)?;
     state.controls.water = own.water.or(state.controls.water);
-    Ok(state)
+    Ok((state, pushed))
+}
+
+/// A rigid body stands elsewhere than it is drawn when its reference point is further from there \[m\].
+const LEAST_SHIFT: f64 = 1e-9;
+
+/// Fill that is moved off rigid bodies by more than this share of the half-length of its particles is worth a warning \[-\].
+const PUSHED: f64 = 0.25;
+
+/// Moves fill off rigid bodies that stand elsewhere than they are drawn; what is to be said of it where that is far.
+fn pushed_aside<const D: usize>(case: &Case<D>, state: &mut State<D>) -> Option<String> {
+    let stands_elsewhere = |(index, body): (usize, &RigidBody<D>)| {
+        distance(&body.pose.origin, &case.rigid[index].reference) > LEAST_SHIFT
+    };
+    let mut bodies = std::iter::zip(state.controls.placed(), &state.body.rigid);
+    let is_meant = !bodies.any(stands_elsewhere);
+    let before = state.body.particles.x.clone();
+    let particles = &mut state.body.particles;
+    particles.resolve_overlap(&state.body.rigid);
+    let moved = |particle: usize| -> (f64, f64) {
+        let by = (0..D).map(|axis| (particles.x[particle][axis] - before[particle][axis]).abs());
+        let halves = particles.half_length[particle];
+        std::iter::zip(by, halves).fold((0.0, 0.0), |(most, share), (by, half)| {
+            (by.max(most), (by / half).max(share))
+        })
+    };
+    let all = (0..particles.len()).map(moved);
+    let (most, share) = all.fold((0.0, 0.0), |a: (f64, f64), b| (a.0.max(b.0), a.1.max(b.1)));
+    (share > PUSHED && !is_meant).then(|| {
+        format!(
+            "soil that is placed overlaps a rigid body which has moved from where it is drawn, and was shifted off it by up to {} m \
+             without strain; draw the fill to where the body stands",
+            short(most)
+        )
+    })
 }
 
 /// Makes the stress of a particle that had another law before that of which its law speaks, total or effective; the total

@@ -58,7 +58,7 @@ pub(crate) fn dynamic<const D: usize>(
         state.controls.walls = walls;
     }
     let start = resumption.map_or(&state.controls, |left| &left.from);
-    let Some(mut from) = first_controls(session, start, dynamic, stage) else {
+    let Some(mut from) = first_controls(session, start, dynamic, number) else {
         return Ok(StageEnd::Stopped(EndReason::NoFactorOfSafety));
     };
     let mut to = target(model.case, stage, &from);
@@ -155,16 +155,16 @@ fn first_controls<const D: usize>(
     session: &Session<'_, D>,
     start: &Controls,
     dynamic: &Dynamic,
-    stage: &Stage,
+    number: usize,
 ) -> Option<Controls> {
     let mut from = start.clone();
     if let Some((materials, reduction)) = &dynamic.reduction {
-        let factor = divisor(session, reduction)?;
+        let factor = divisor(session, number, reduction)?;
         for &material in materials {
             from.srf[material] = factor;
         }
     }
-    if stage.start_from.is_none() {
+    if session.model.case.stages[number].start_from.is_none() {
         // What begins with motion falls from the first moment on.
         from.gravity = 1.0;
     }

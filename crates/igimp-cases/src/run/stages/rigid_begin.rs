@@ -5,7 +5,7 @@ use igimp_model::{RigidDrive, RigidMove};
 use igimp_text::short;
 
 use crate::CaseError;
-use crate::run::rigid::{cell_near, gap_below, made};
+use crate::run::rigid::{cell_near, gap_below, has_level_base, least_mean_gap, made};
 use crate::run::{Model, State};
 
 /// Prepares a state for a stage that moves rigid bodies: those that are not there are placed, and what
@@ -82,7 +82,7 @@ pub(crate) fn place<const D: usize>(
     let case = model.case;
     let part = &case.rigid[index];
     let mut body = made(case, index, model.laws.len())?;
-    let settled = gap_below(part, &state.body.particles) - model.gaps[index];
+    let mut settled = gap_below(part, &state.body.particles) - model.gaps[index];
     let is_shifted = settled.is_finite() && settled.abs() > LEAST_SHIFT * cell_near(case, part);
     if is_shifted {
         body.pose.origin[D - 1] -= settled;
@@ -91,6 +91,18 @@ pub(crate) fn place<const D: usize>(
     let slot = state.controls.placed().take_while(|&k| k < index).count();
     state.body.rigid.insert(slot, body);
     state.controls.rigid[index].placed = true;
+    let stands = model.gaps[index].abs() <= LEAST_SHIFT * cell_near(case, part);
+    if is_shifted
+        && stands
+        && has_level_base(part)
+        && let Some(gap) = least_mean_gap(model, state, slot)?
+        && gap > LAID * cell_near(case, part)
+    {
+        // The highest soil alone carries nothing: contact is averaged.
+        settled += gap;
+        state.body.rigid[slot].pose.origin[D - 1] -= gap;
+        state.controls.rigid[index].track.lowered = settled;
+    }
     state.body.particles.resolve_overlap(&state.body.rigid);
     let way = if settled > 0.0 { "down" } else { "up" };
     Ok(is_shifted.then(|| {
@@ -101,6 +113,9 @@ pub(crate) fn place<const D: usize>(
         )
     }))
 }
+
+/// A body whose gap to soil is less than this share of a cell lies on it \[-\].
+const LAID: f64 = 1e-7;
 
 /// A body is not set down by less than this share of a cell \[-\].
 pub(crate) const LEAST_SHIFT: f64 = 1e-9;

@@ -11,10 +11,11 @@
 use std::cell::Cell;
 
 use igimp_assembly::{DomainUpdate, Geometry, Locking, Method};
-use igimp_model::{Reduction, RunOut};
+use igimp_model::{Reduction, RunOut, StageKind, search_of};
 use igimp_results::ending::EndReason;
 use igimp_results::fields::length;
 use igimp_results::summary::StageSummary;
+use igimp_text::short;
 
 use super::loading::{begin, reason_to_stop};
 use crate::error::CaseError;
@@ -39,7 +40,7 @@ pub(crate) fn run_out<const D: usize>(
     let (case, stage) = (model.case, &model.case.stages[number]);
     let mut to = state.controls.clone();
     to.drained = stage.drained;
-    let Some(factor) = divisor(session, &run_out.reduction) else {
+    let Some(factor) = divisor(session, number, &run_out.reduction) else {
         return Ok(StageEnd::Stopped(EndReason::NoFactorOfSafety));
     };
     for &material in &run_out.materials {
@@ -116,14 +117,42 @@ pub(crate) fn run_out<const D: usize>(
 /// What strength is divided by; none where the factor of safety that it refers to was not found.
 pub(super) fn divisor<const D: usize>(
     session: &Session<'_, D>,
+    number: usize,
     reduction: &Reduction,
 ) -> Option<f64> {
     match reduction {
         Reduction::Factor(factor) => Some(*factor),
-        Reduction::TimesFos(times) => {
-            let found = session.records.factor_of_safety;
-            found.is_finite().then_some(times * found)
-        }
+        Reduction::TimesFos(times) => Some(times * factor_found(session, number)?.1),
+    }
+}
+
+/// The search that a stage refers to, by number, and the middle of its interval.
+fn factor_found<const D: usize>(session: &Session<'_, D>, number: usize) -> Option<(usize, f64)> {
+    let stages = &session.model.case.stages;
+    let is_search = |stage: usize| matches!(stages[stage].kind, StageKind::StrengthReduction(_));
+    let search = search_of(number, &|stage| stages[stage].start_from, &is_search)?;
+    let safety = session.summary.stages.get(search)?.safety.as_ref()?;
+    Some((search, 0.5 * (safety.stable? + safety.failed?)))
+}
+
+/// By how much strength is divided in a stage, of what search it is a multiple, for the verdict; none where the case states it.
+pub(crate) fn told<const D: usize>(session: &Session<'_, D>, number: usize) -> Option<String> {
+    let stages = &session.model.case.stages;
+    let times = match &stages[number].kind {
+        StageKind::RunOut(own) => own.reduction,
+        StageKind::Dynamic(own) => own.reduction.as_ref()?.1,
+        _ => return None,
+    };
+    let (search, factor) = factor_found(session, number)?;
+    match times {
+        Reduction::Factor(_) => None,
+        Reduction::TimesFos(times) => Some(format!(
+            "strength over {}, {} times the {} of stage \"{}\"",
+            short(times * factor),
+            short(times),
+            short(factor),
+            stages[search].name
+        )),
     }
 }
 

@@ -35,6 +35,9 @@ pub(crate) trait Soil<const D: usize> {
     /// Whether a point lies in a body or nearly on its edge.
     fn holds_point(&self, point: &[f64; D], margin: f64) -> bool;
 
+    /// Whether a point lies in one of the bodies that are there, or no further off it than a margin.
+    fn is_held_by(&self, present: &[bool], point: &[f64; D], margin: f64) -> bool;
+
     /// Whether a body lies along a load: near its edge, or around it.
     fn bears(&self, body: usize, load: &LoadKind<D>) -> bool;
 
@@ -55,6 +58,12 @@ impl Soil<2> for Site {
 
     fn holds_point(&self, point: &[f64; 2], margin: f64) -> bool {
         self.holds(*point, margin)
+    }
+
+    fn is_held_by(&self, present: &[bool], point: &[f64; 2], margin: f64) -> bool {
+        self.near(*point, margin).any(|(body, polygon)| {
+            present[body] && (contains(polygon, *point) || near_edge(polygon, *point, margin))
+        })
     }
 
     fn bears(&self, body: usize, load: &LoadKind<2>) -> bool {
@@ -166,10 +175,11 @@ impl Site {
         start
     }
 
-    /// Whether a point lies within a body, well inside.
-    pub(crate) fn is_inside(&self, point: [f64; 2]) -> bool {
-        self.near(point, 0.0)
-            .any(|(_, polygon)| contains(polygon, point))
+    /// Whether a point lies within a body, well inside; one of those that are there, if they are stated.
+    pub(crate) fn is_inside(&self, present: Option<&[bool]>, point: [f64; 2]) -> bool {
+        self.near(point, 0.0).any(|(body, polygon)| {
+            present.is_none_or(|present| present[body]) && contains(polygon, point)
+        })
     }
 
     /// Whether a point lies outside all bodies at some time when a body is there.

@@ -104,7 +104,7 @@ fn check_pairs(
             let pieces = facing(a.polygon(), b.polygon(), narrow);
             let place = layers.own[second].as_ref().map(polygon_place);
             let gap = pieces.iter().find(|piece| {
-                piece.distance > layers.site.round_off && !layers.site.is_inside(piece.middle)
+                piece.distance > layers.site.round_off && !layers.site.is_inside(None, piece.middle)
             });
             if let Some(gap) = gap {
                 problems

@@ -29,28 +29,68 @@ impl Bearing<3> for Solids {
     fn pressure(
         &self,
         own: &Pressure<3>,
-        name: &str,
+        about: (&str, &[&[bool]]),
         problems: &mut Problems,
     ) -> Option<LoadKind<3>> {
-        pressure(own, name, self, problems)
+        pressure(own, about, self, problems)
     }
 
     fn patch(
         &self,
         own: &Result<Patch, Wrong>,
-        (name, place, _): (&str, Place, Place),
+        (name, place, _, scenes): (&str, Place, Place, &[&[bool]]),
         problems: &mut Problems,
     ) -> Option<LoadKind<3>> {
-        patch(own.as_ref().ok()?, (name, place), self, problems)
+        patch(own.as_ref().ok()?, (name, place), (self, scenes), problems)
     }
+}
+
+/// Whether a place lies in soil; of the bodies that are there, if they are stated.
+fn is_soil(soil: &Solids, present: Option<&[bool]>, at: [f64; 3]) -> bool {
+    let mut bodies = soil.regions.iter().enumerate();
+    bodies.any(|(body, region)| present.is_none_or(|present| present[body]) && region.encloses(at))
+}
+
+/// How many places of a rectangle across an axis have soil behind it alone, before it alone, and on both sides; of the bodies that
+/// are there, if they are stated.
+fn soil_beside(
+    own: &Pressure<3>,
+    normal: usize,
+    (soil, present): (&Solids, Option<&[bool]>),
+) -> [usize; 3] {
+    let (from, to) = (*own.from, *own.to);
+    let step = 1e-2 * soil.cell;
+    let mut found = [0; 3];
+    for k in 0..SAMPLES * SAMPLES {
+        let mut share = [0.0; 3];
+        let places = [k % SAMPLES, k / SAMPLES].map(|place| (place as f64 + 0.5) / SAMPLES as f64);
+        let along = (0..3).filter(|&axis| axis != normal);
+        for (axis, place) in along.zip(places) {
+            share[axis] = place;
+        }
+        let is_soil = |side: f64| {
+            let mut at: [f64; 3] =
+                std::array::from_fn(|axis| from[axis] + share[axis] * (to[axis] - from[axis]));
+            at[normal] += side * step;
+            is_soil(soil, present, at)
+        };
+        match (is_soil(1.0), is_soil(-1.0)) {
+            (true, true) => found[2] += 1,
+            (true, false) => found[0] += 1,
+            (false, true) => found[1] += 1,
+            (false, false) => {}
+        }
+    }
+    found
 }
 
 fn pressure(
     own: &Pressure<3>,
-    name: &str,
+    (name, scenes): (&str, &[&[bool]]),
     soil: &Solids,
     problems: &mut Problems,
 ) -> Option<LoadKind<3>> {
+    const ALL: usize = SAMPLES * SAMPLES;
     let (from, to) = (*own.from, *own.to);
     let shown = clip(name, 40);
     let flat: Vec<usize> = (0..3)
@@ -65,48 +105,37 @@ fn pressure(
             .help("two corners that lie across from each other have one coordinate in common");
         return None;
     };
-    let step = 1e-2 * soil.cell;
-    let is_soil = |share: [f64; 3], side: f64| {
-        let mut at: [f64; 3] =
-            std::array::from_fn(|axis| from[axis] + share[axis] * (to[axis] - from[axis]));
-        at[normal] += side * step;
-        soil.regions.iter().any(|region| region.encloses(at))
-    };
-    let mut sides = [0_usize; 2];
-    let mut buried = 0;
-    for k in 0..SAMPLES * SAMPLES {
-        let mut share = [0.0; 3];
-        let places = [k % SAMPLES, k / SAMPLES].map(|place| (place as f64 + 0.5) / SAMPLES as f64);
-        let along = (0..3).filter(|&axis| axis != normal);
-        for (axis, place) in along.zip(places) {
-            share[axis] = place;
-        }
-        match (is_soil(share, 1.0), is_soil(share, -1.0)) {
-            (true, true) => buried += 1,
-            (true, false) => sides[0] += 1,
-            (false, true) => sides[1] += 1,
-            (false, false) => {}
-        }
+    let scenes = scenes.iter().filter(|_| soil.is_complete);
+    let found = scenes.map(|present| soil_beside(own, normal, (soil, Some(*present))));
+    // A load on soil that is not there is refused where the stage applies it.
+    let mut found: Vec<_> = found.filter(|own| *own != [0; 3]).collect();
+    if found.is_empty() {
+        found.push(soil_beside(own, normal, (soil, None)));
     }
-    let mut inward = [0.0; 3];
-    if soil.is_complete && sides.iter().all(|&side| side < SAMPLES * SAMPLES) {
-        let message = if buried > 0 {
-            format!(
+    let is_on = |side: usize| found.iter().all(|own| own[side] == ALL);
+    if soil.is_complete && !is_on(0) && !is_on(1) {
+        let is_wrong = |own: &&[usize; 3]| own[0] < ALL && own[1] < ALL;
+        let message = match found.iter().find(is_wrong) {
+            Some([0, 0, 0]) => {
+                format!("no body lies along the rectangle of the pressure `{shown}`")
+            }
+            Some([_, _, buried]) if *buried > 0 => format!(
                 "the rectangle of the pressure `{shown}` lies inside the soil, not on its surface"
-            )
-        } else if sides == [0, 0] {
-            format!("no body lies along the rectangle of the pressure `{shown}`")
-        } else {
-            format!(
+            ),
+            Some(_) => format!(
                 "only a part of the rectangle of the pressure `{shown}` lies on the surface of a body"
-            )
+            ),
+            None => format!(
+                "soil lies on one side of the rectangle of the pressure `{shown}` in one stage, and on the other in another"
+            ),
         };
         problems
             .error(own.from.place, message)
             .help("the rectangle lies on a level or upright face of a body");
         return None;
     }
-    inward[normal] = if sides[0] > 0 { 1.0 } else { -1.0 };
+    let mut inward = [0.0; 3];
+    inward[normal] = if found[0][0] > 0 { 1.0 } else { -1.0 };
     if *own.direction == PressureDirection::Down {
         inward = [0.0, 0.0, -1.0];
     }
@@ -121,7 +150,7 @@ fn pressure(
 fn patch(
     own: &Patch,
     (name, place): (&str, Place),
-    soil: &Solids,
+    (soil, scenes): (&Solids, &[&[bool]]),
     problems: &mut Problems,
 ) -> Option<LoadKind<3>> {
     let shown = clip(name, 40);
@@ -159,15 +188,8 @@ fn patch(
         }
     };
     let (level, pressure) = (*own.level, *own.pressure);
-    let step = 1e-2 * soil.cell;
-    let is_soil = |at: &[f64; 3], by: f64| {
-        let at = [at[0], at[1], at[2] + by];
-        soil.regions.iter().any(|region| region.encloses(at))
-    };
-    let places = places(&plan, level, soil);
-    let lies_on = |at: &&[f64; 3]| is_soil(at, -step) && !is_soil(at, step);
-    if let Some(at) = places.iter().find(|at| soil.is_complete && !lies_on(at)) {
-        let what = if is_soil(at, step) {
+    if let Some((at, is_buried)) = off_surface(&places(&plan, level, soil), soil, scenes) {
+        let what = if is_buried {
             "lies inside the soil, not on its surface,"
         } else {
             "does not lie on the surface of a body"
@@ -185,6 +207,32 @@ fn patch(
         plan,
         level,
         traction: [0.0, 0.0, 0.0 - pressure],
+    })
+}
+
+/// The first of some places that is on no surface in a scene, and whether soil is above it; where all bodies are known.
+fn off_surface(places: &[[f64; 3]], soil: &Solids, scenes: &[&[bool]]) -> Option<([f64; 3], bool)> {
+    let step = 1e-2 * soil.cell;
+    let is_soil = |at: &[f64; 3], by: f64, present: Option<&[bool]>| {
+        is_soil(soil, present, [at[0], at[1], at[2] + by])
+    };
+    // A load on soil that is not there is refused where the stage applies it.
+    let bears = |present: Option<&[bool]>| {
+        let mut at = places.iter();
+        at.any(|at| is_soil(at, -step, present) || is_soil(at, step, present))
+    };
+    if !soil.is_complete {
+        return None;
+    }
+    let scenes = scenes.iter().map(|own| Some(*own));
+    let mut scenes: Vec<_> = scenes.filter(|own| bears(*own)).collect();
+    if scenes.is_empty() {
+        scenes.push(None);
+    }
+    scenes.into_iter().find_map(|scene| {
+        let lies_on = |at: &&[f64; 3]| is_soil(at, -step, scene) && !is_soil(at, step, scene);
+        let wrong = places.iter().find(|at| !lies_on(at))?;
+        Some((*wrong, is_soil(wrong, step, scene)))
     })
 }
 

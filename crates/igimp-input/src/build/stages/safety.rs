@@ -1,6 +1,8 @@
 //! Stages that reduce strength: the search for the factor of safety, and the run-out.
 
-use igimp_model::{Reduction, ReductionPath, RunOut, SearchMethod, Strength, StrengthReduction};
+use igimp_model::{
+    Reduction, ReductionPath, RunOut, SearchMethod, Strength, StrengthReduction, search_of,
+};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::stages::{self as keys, StageForm};
@@ -85,6 +87,9 @@ pub(crate) fn strength_reduction<const D: usize>(
         return None;
     }
     let materials = materials(about, &own.materials, problems);
+    if let Some(found) = &materials {
+        are_there(about, (own, found), problems);
+    }
     let path = match *own.path {
         keys::ReductionPath::Gravity => ReductionPath::Gravity,
         keys::ReductionPath::Reduce => ReductionPath::Reduce,
@@ -136,6 +141,59 @@ pub(crate) fn strength_reduction<const D: usize>(
         failure_displacement,
         monitor,
     })
+}
+
+/// Refuses to reduce the strength of a material of which no body is there: it decides nothing.
+fn are_there<const D: usize>(
+    about: &About<'_, D>,
+    (own, found): (&keys::StrengthReduction, &[usize]),
+    problems: &mut Problems,
+) {
+    let context = about.context;
+    let scene = context.sequence.before(about.index);
+    let bodies =
+        || std::iter::zip(&scene.present, &scene.material).filter(|(present, _)| **present);
+    if bodies().any(|(_, material)| material.is_none()) {
+        return;
+    }
+    let is_there = |material: usize| bodies().any(|(_, own)| *own == Some(material));
+    let Ok(Some(list)) = &own.materials else {
+        return;
+    };
+    let shown = |material: usize| clip(context.names.materials.name(material), 40);
+    if !found.iter().any(|&material| is_there(material)) && !list.written {
+        problems
+            .error(
+                about.stage.form.place,
+                format!(
+                    "stage `{}` has no strength to reduce: no body with strength is there",
+                    about.name
+                ),
+            )
+            .help("place the body before, in a stage of type construction");
+    }
+    for (value, &material) in std::iter::zip(list.iter(), found) {
+        if list.written && context.is_used(material) && !is_there(material) {
+            problems
+                .error(
+                    value.place,
+                    format!(
+                        "no body that is there in this stage consists of `{}`",
+                        shown(material)
+                    ),
+                )
+                .help("its strength decides nothing here: leave it out");
+        }
+    }
+    let unused = found.iter().all(|&material| !context.is_used(material));
+    if list.written && unused {
+        problems
+            .error(
+                list.place,
+                "no body consists of any of these materials: their strength decides nothing",
+            )
+            .help("name materials of bodies that are there in this stage");
+    }
 }
 
 /// Refuses what a path of equilibria has no place for.
@@ -191,16 +249,26 @@ pub(super) fn reduction_of<const D: usize>(
 ) -> Option<Reduction> {
     match (&own.times_fos, &own.factor) {
         (Some(times), None) => {
-            let mut before = about.context.stages[..about.index].iter().flatten();
-            if !before.any(|stage| matches!(*stage.form, StageForm::StrengthReduction(_))) {
+            let stages = about.context.stages;
+            let is_search = |stage: usize| {
+                let own = stages[stage].as_ref();
+                own.is_some_and(|own| matches!(*own.form, StageForm::StrengthReduction(_)))
+            };
+            let from = |stage: usize| about.context.sequence.from(stage);
+            let is_before = (0..about.index).any(is_search);
+            if search_of(about.index, &from, &is_search).is_none() {
+                let help =
+                    "put a stage of type strength-reduction before it, or write factor = 1.5";
                 problems
                     .error(
                         times.place,
-                        "there is no earlier stage that finds a factor of safety",
+                        if is_before {
+                            "no earlier stage finds the factor of safety of the state that this stage starts from"
+                        } else {
+                            "there is no earlier stage that finds a factor of safety"
+                        },
                     )
-                    .help(
-                        "put a stage of type strength-reduction before it, or write factor = 1.5",
-                    );
+                    .help(help);
             }
             Some(Reduction::TimesFos(**times))
         }

@@ -50,6 +50,7 @@ pub(crate) fn check<const D: usize>(
             checker.scene(end, Some(index), problems);
         }
     }
+    through_one_ground(around, conditions, problems);
     let mut called = around.stages.iter().flatten().filter_map(called_water);
     if called.any(|name| around.names.water.position(name).is_none()) {
         // A name that is not defined may be a slip for one that is not used.
@@ -67,6 +68,51 @@ pub(crate) fn check<const D: usize>(
                     format!("no stage calls for the water `{name}`"),
                 )
                 .help("write water = \"NAME\" in a stage of type construction; the first condition holds from the start");
+        }
+    }
+}
+
+/// Refuses a second call for water that flows where other bodies are there: its flow is that through the ground of the first.
+fn through_one_ground<const D: usize>(
+    around: &Around<'_, D>,
+    conditions: &[Option<WaterCondition>],
+    problems: &mut Problems,
+) {
+    for (stage, scene) in around.sequence.ends.iter().enumerate() {
+        let Some(called) = around.stages[stage].as_ref().and_then(called_water) else {
+            continue;
+        };
+        let Some(index) = around.names.water.position(called) else {
+            continue;
+        };
+        let source = conditions[index].as_ref().map(|own| &own.source);
+        let first = around.sequence.first_with(index);
+        let bodies_differ = first.present != scene.present;
+        let is_drawn_down = around.own[index]
+            .as_ref()
+            .is_some_and(|own| own.inside.is_some());
+        let is_other = match source {
+            Some(PoreSource::Seepage(_)) => {
+                let soil = |own: &Scene| -> Vec<Option<usize>> {
+                    let bodies = std::iter::zip(&own.present, &own.material);
+                    bodies
+                        .map(|(there, soil)| soil.filter(|_| *there))
+                        .collect()
+                };
+                bodies_differ || soil(first) != soil(scene)
+            }
+            _ => is_drawn_down && bodies_differ,
+        };
+        if is_other {
+            problems
+                .error(
+                    called.place,
+                    format!(
+                        "the water `{}` flows through the ground in which it is called first, and here the ground is another",
+                        clip(called, 40)
+                    ),
+                )
+                .help("give this ground a condition of its own in [[water]], with the same keys under another name");
         }
     }
 }

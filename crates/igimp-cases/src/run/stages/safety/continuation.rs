@@ -29,6 +29,9 @@ use crate::run::state::{Controls, State};
 /// no strength holds.
 const LEAST_FACTOR: f64 = 0.01;
 
+/// A path goes no further than this factor \[-\]: with a thousandth of its strength a body that stands is one that needs none.
+const MOST_FACTOR: f64 = 1000.0;
+
 /// First changes of the factor with which a path is followed, as a share of it \[-\]: each but the first where the path before
 /// was lost.
 const FIRST_CHANGES: [f64; 3] = [0.05, 0.035, 0.025];
@@ -345,10 +348,18 @@ impl<'w, 's, const D: usize> Watch<'w, 's, D> {
         }
         let displacement = self.search.reduction.failure_displacement;
         let end = limit::end(&self.points, Course::RISING, displacement);
-        Ok(end.map(|(end, limit)| {
-            (self.end, self.limit) = (end, Some(limit));
-            StageEnd::Completed(EndReason::PathEnded { end, reached: None })
-        }))
+        Ok(match end {
+            Some((end, limit)) => {
+                (self.end, self.limit) = (end, Some(limit));
+                Some(StageEnd::Completed(EndReason::PathEnded {
+                    end,
+                    reached: None,
+                }))
+            }
+            None => {
+                (report.to >= MOST_FACTOR).then_some(StageEnd::Completed(EndReason::NothingFails))
+            }
+        })
     }
 }
 
@@ -476,6 +487,14 @@ fn remarks(path: &PathSummary) -> Vec<String> {
         remarks.push(
             "the body does not stand at full strength: the factor of safety is below 1".to_owned(),
         );
+    }
+    if last.factor >= MOST_FACTOR && path.limit.is_none() {
+        remarks.push(format!(
+            "nothing fails: the body still stands with a thousandth of its strength, at a factor of {}, and no larger one was tried; \
+             what `materials` names decides nothing here",
+            short(last.factor)
+        ));
+        return remarks;
     }
     let Some(mechanism) = path.mechanism else {
         return remarks;
