@@ -1,8 +1,6 @@
 //! Rigid bodies of a case as the solver has them: made, placed, moved, and what they did.
 
-use igimp_assembly::{
-    Drive, Geometry, Interface, Particles, RigidBody, RigidMotion, Shear, Stencils, System,
-};
+use igimp_assembly::{Drive, Interface, Particles, RigidBody, RigidMotion, Shear};
 use igimp_model::{
     Adhesion, Case, RigidInterface, RigidPart, RigidQuantity, RigidShear, components, in_space,
     overlap_of_rigid,
@@ -10,7 +8,6 @@ use igimp_model::{
 use igimp_solver::{Accepted, StepFailure};
 use igimp_text::short;
 
-use super::model::Model;
 use super::state::{Controls, RigidTrack, State};
 use crate::error::CaseError;
 
@@ -166,29 +163,6 @@ pub(crate) fn has_level_base<const D: usize>(part: &RigidPart<D>) -> bool {
     };
     let height = upper[D - 1] - lower[D - 1];
     SHARES.into_iter().all(|share| off(share) <= 1e-9 * height)
-}
-
-/// The smallest mean gap around a point of the sides of a body that has touched nothing yet \[m\]; none where no soil is near.
-/// The rounding of its edges has no such point.
-pub(crate) fn least_mean_gap<const D: usize>(
-    model: &Model<'_, D>,
-    state: &State<D>,
-    slot: usize,
-) -> Result<Option<f64>, CaseError> {
-    let method = model.method(Geometry::Moving);
-    let conditions = model.conditions(&state.controls, &state.controls, 0.0)?;
-    let particles = &state.body.particles;
-    let stencils = Stencils::build_under(particles, &method, &conditions, &state.body.load_points)?;
-    let structures = state.body.structures();
-    let system = System::with_structures(particles, &structures, &stencils, &conditions, &method)?;
-    let still = vec![[0.0; D]; system.node_count()];
-    let Ok(contact) = system.bodies_at(&still) else {
-        return Ok(None);
-    };
-    let knots = contact.bodies[slot].contact.knots.iter();
-    let gaps = knots.filter(|knot| knot.area > 0.0).map(|knot| knot.gap);
-    let least = gaps.fold(f64::INFINITY, f64::min);
-    Ok(Some(least).filter(|gap| gap.is_finite()))
 }
 
 /// A number of a rigid body; zero for one that is not there.

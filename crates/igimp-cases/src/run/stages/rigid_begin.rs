@@ -1,11 +1,11 @@
 //! Rigid bodies at the beginning of a stage that moves them.
 
-use igimp_assembly::Geometry;
+use igimp_assembly::{Geometry, Stencils, System};
 use igimp_model::{RigidDrive, RigidMove};
 use igimp_text::short;
 
 use crate::CaseError;
-use crate::run::rigid::{cell_near, gap_below, has_level_base, least_mean_gap, made};
+use crate::run::rigid::{cell_near, gap_below, has_level_base, made};
 use crate::run::{Model, State};
 
 /// Prepares a state for a stage that moves rigid bodies: those that are not there are placed, and what
@@ -119,3 +119,26 @@ const LAID: f64 = 1e-7;
 
 /// A body is not set down by less than this share of a cell \[-\].
 pub(crate) const LEAST_SHIFT: f64 = 1e-9;
+
+/// The smallest mean gap around a point of the sides of a body that has touched nothing yet \[m\]; none where no soil is near.
+/// The rounding of its edges has no such point.
+fn least_mean_gap<const D: usize>(
+    model: &Model<'_, D>,
+    state: &State<D>,
+    slot: usize,
+) -> Result<Option<f64>, CaseError> {
+    let method = model.method(Geometry::Moving);
+    let conditions = model.conditions(&state.controls, &state.controls, 0.0)?;
+    let particles = &state.body.particles;
+    let stencils = Stencils::build_under(particles, &method, &conditions, &state.body.load_points)?;
+    let structures = state.body.structures();
+    let system = System::with_structures(particles, &structures, &stencils, &conditions, &method)?;
+    let still = vec![[0.0; D]; system.node_count()];
+    let Ok(contact) = system.bodies_at(&still) else {
+        return Ok(None);
+    };
+    let knots = contact.bodies[slot].contact.knots.iter();
+    let gaps = knots.filter(|knot| knot.area > 0.0).map(|knot| knot.gap);
+    let least = gaps.fold(f64::INFINITY, f64::min);
+    Ok(Some(least).filter(|gap| gap.is_finite()))
+}
