@@ -137,7 +137,7 @@ pub(crate) fn strength_reduction<const D: usize>(
     })
 }
 
-/// Refuses to reduce the strength of a material of which no body is there: it decides nothing.
+/// Refuses to reduce the strength of materials of which no body is there: it decides nothing.
 fn are_there<const D: usize>(
     about: &About<'_, D>,
     (own, found): (&keys::StrengthReduction, &[usize]),
@@ -150,44 +150,25 @@ fn are_there<const D: usize>(
     if bodies().any(|(_, material)| material.is_none()) {
         return;
     }
-    let is_there = |material: usize| bodies().any(|(_, own)| *own == Some(material));
+    let is_there = |material: &usize| bodies().any(|(_, own)| *own == Some(*material));
+    if found.iter().any(is_there) {
+        return;
+    }
     let Ok(Some(list)) = &own.materials else {
         return;
     };
-    let shown = |material: usize| clip(context.names.materials.name(material), 40);
-    if !found.iter().any(|&material| is_there(material)) && !list.written {
-        problems
-            .error(
-                about.stage.form.place,
-                format!(
-                    "stage `{}` has no strength to reduce: no body with strength is there",
-                    about.name
-                ),
-            )
-            .help("place the body before, in a stage of type construction");
-    }
-    for (value, &material) in std::iter::zip(list.iter(), found) {
-        if list.written && context.is_used(material) && !is_there(material) {
-            problems
-                .error(
-                    value.place,
-                    format!(
-                        "no body that is there in this stage consists of `{}`",
-                        shown(material)
-                    ),
-                )
-                .help("its strength decides nothing here: leave it out");
-        }
-    }
-    let unused = found.iter().all(|&material| !context.is_used(material));
-    if list.written && unused {
-        problems
-            .error(
-                list.place,
-                "no body consists of any of these materials: their strength decides nothing",
-            )
-            .help("name materials of bodies that are there in this stage");
-    }
+    let place = if list.written {
+        list.place
+    } else {
+        about.stage.form.place
+    };
+    let name = about.name;
+    problems
+        .error(
+            place,
+            format!("no body that is there in stage `{name}` has the strength that it reduces"),
+        )
+        .help("name materials of bodies that are there, or place the body before, in a stage of type construction");
 }
 
 /// Refuses what a path of equilibria has no place for.
@@ -250,7 +231,9 @@ pub(super) fn reduction_of<const D: usize>(
             };
             let from = |stage: usize| about.context.sequence.from(stage);
             let is_before = (0..about.index).any(is_search);
-            if search_of(about.index, &from, &is_search).is_none() {
+            // A stage that is found to start from nothing was reported.
+            let is_known = !is_before || from(about.index).is_some();
+            if is_known && search_of(about.index, &from, &is_search).is_none() {
                 let help =
                     "put a stage of type strength-reduction before it, or write factor = 1.5";
                 problems
