@@ -60,8 +60,6 @@ pub struct StepConditions<const D: usize> {
     pub damping: Option<Rayleigh>,
     /// Whether rigid bodies at which soil stands without a gap are laid on it, as those are that a force pushes (theory, eq. 46).
     pub is_laid: bool,
-    /// Whether contact closes softly (theory, eq. 46), as in all steps that take time.
-    pub is_soft: bool,
 }
 
 impl<const D: usize> StepConditions<D> {
@@ -91,7 +89,6 @@ impl<const D: usize> StepConditions<D> {
             ground: None,
             damping: None,
             is_laid: false,
-            is_soft: false,
         };
         conditions.validate_fields()?;
         Ok(conditions)
@@ -111,13 +108,6 @@ impl<const D: usize> StepConditions<D> {
     #[must_use]
     pub fn with_bodies_laid(mut self) -> Self {
         self.is_laid = true;
-        self
-    }
-
-    /// The same with contact that closes softly.
-    #[must_use]
-    pub fn with_soft_contact(mut self) -> Self {
-        self.is_soft = true;
         self
     }
 

@@ -99,9 +99,10 @@ fn step_of_body<const D: usize>(
     held.small_cuts.ghost_penalty = GHOST_PENALTY;
     let lies = failure.is_singular() && lies_on_nothing(body, conditions);
     let laid = lies.then(|| conditions.clone().with_bodies_laid());
-    let has_bodies = conditions.time.is_none() && !body.rigid.is_empty();
-    let may_soften = has_bodies && failure.is_want_of_equilibrium();
-    let soft = may_soften.then(|| conditions.clone().with_soft_contact());
+    let on_bodies = laid.as_ref().map(|conditions| Attempt {
+        conditions,
+        ..attempt
+    });
     let again = if may_hold && history.is_weakly_held() {
         Some(Attempt {
             method: &held,
@@ -116,11 +117,7 @@ fn step_of_body<const D: usize>(
     } else {
         None
     };
-    let on_bodies = laid.iter().chain(&soft).map(|conditions| Attempt {
-        conditions,
-        ..attempt
-    });
-    for attempt in on_bodies.chain(again) {
+    for attempt in on_bodies.into_iter().chain(again) {
         // What fails all the same fails for the first reason.
         let mut own = ResidualHistory::default();
         if let Ok(accepted) = equilibrium(&attempt, body, workspace, &mut own) {

@@ -25,13 +25,17 @@ const LEAST_COVER: f64 = 1e-10;
 /// Soil that is no further from a body touches it, in cells: as drawn, but for round-off. A body that a force pushes is laid on it \[-\].
 const BESIDE: f64 = 1e-6;
 
+/// A side whose normal has so much of an axis of the grid is along the grid, within some 6°: domains of particles end along it, and
+/// in steps beside others \[-\].
+const ALONG_THE_GRID: f64 = 0.995;
+
 /// Contact of one step, with directions and weights frozen at its start.
 #[derive(Debug)]
 pub(crate) struct Contact<'a, const D: usize> {
     bodies: &'a [RigidBody<D>],
-    /// How stiff contact of each body is in this step.
-    penalties: Vec<Penalty>,
     rows: Vec<Row<D>>,
+    /// How stiff contact is, by row.
+    penalties: Vec<Penalty>,
     /// The first of the nodes that stand for bodies.
     first_node: usize,
 }
@@ -56,15 +60,10 @@ impl<'a, const D: usize> Contact<'a, D> {
         unknowns: &Unknowns<D>,
     ) -> Self {
         let first_node = conditions.grid.node_count();
-        let is_soft = conditions.is_soft || conditions.time.is_some();
-        let penalty = |body: &RigidBody<D>| {
-            let own = body.penalty;
-            if is_soft { own.softly() } else { own }
-        };
         let mut contact = Self {
             bodies,
-            penalties: bodies.iter().map(penalty).collect(),
             rows: Vec::new(),
+            penalties: Vec::new(),
             first_node,
         };
         for body in 0..bodies.len() {
@@ -81,7 +80,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         (conditions, method): (&StepConditions<D>, &Method),
         unknowns: &Unknowns<D>,
     ) {
-        let (body, penalty) = (&self.bodies[index], self.penalties[index]);
+        let body = &self.bodies[index];
         let surface = &*body.surface;
         let images = Images::of(body, &conditions.grid);
         let tents = match surface.space() {
@@ -141,6 +140,13 @@ impl<'a, const D: usize> Contact<'a, D> {
                 slip: [functional(&sums.slip[0]), functional(&sums.slip[1])],
                 before,
             };
+            let is_along = surface.radius().is_none() && sums.facing() >= ALONG_THE_GRID;
+            let is_soft = conditions.time.is_some() || !is_along;
+            let penalty = if is_soft {
+                body.penalty.softly()
+            } else {
+                body.penalty
+            };
             let whole = tents[knot] * (sums.area / sums.length);
             row.carry_force(interface, &penalty, whole);
             if interface.tension == Tension::None && !rolls {
@@ -150,6 +156,7 @@ impl<'a, const D: usize> Contact<'a, D> {
                 row.seat(&penalty);
             }
             self.rows.push(row);
+            self.penalties.push(penalty);
         }
     }
 
@@ -214,10 +221,10 @@ impl<'a, const D: usize> Contact<'a, D> {
                 own.is_broken = before.is_broken;
             }
         }
-        for row in &self.rows {
+        for (row, penalty) in std::iter::zip(&self.rows, &self.penalties) {
             let body = &self.bodies[row.body];
             let side = body.surface.side_of(row.knot);
-            let traction = row.traction(&body.interfaces[side], &self.penalties[row.body], u);
+            let traction = row.traction(&body.interfaces[side], penalty, u);
             let bonded = body.interfaces[side].tension != Tension::None;
             let is_broken = row.before.is_broken || traction.breaks;
             let gap = row.gap_at(u);
@@ -304,10 +311,10 @@ impl<const D: usize> NodalForces<D> for Contact<'_, D> {
     }
 
     fn add(&self, u: &[[f64; D]], f: &mut [[f64; D]], mut blocks: Option<&mut AddBlock<'_, D>>) {
-        for row in &self.rows {
+        for (row, penalty) in std::iter::zip(&self.rows, &self.penalties) {
             let body = &self.bodies[row.body];
             let interface = &body.interfaces[body.surface.side_of(row.knot)];
-            let traction = row.traction(interface, &self.penalties[row.body], u);
+            let traction = row.traction(interface, penalty, u);
             match &mut blocks {
                 Some(blocks) => row.add(&traction, f, Some(&mut **blocks)),
                 None => row.add(&traction, f, None),

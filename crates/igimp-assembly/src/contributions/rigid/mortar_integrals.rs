@@ -28,6 +28,8 @@ pub(crate) struct Sums<const D: usize> {
     gap: f64,
     seen_gap: f64,
     seen_area: f64,
+    /// The greatest component of the normal times area.
+    facing: f64,
     pub(crate) young: f64,
     pub(crate) adhesion: f64,
     pub(crate) cell: f64,
@@ -39,6 +41,11 @@ impl<const D: usize> Sums<D> {
     /// The mean gap of all soil around the knot \[length\].
     pub(crate) fn mean_gap(&self) -> f64 {
         self.gap / self.area
+    }
+
+    /// How much of an axis of the grid the normal has around the knot \[-\].
+    pub(crate) fn facing(&self) -> f64 {
+        self.facing / self.area
     }
 
     /// The mean gap of soil that sees the side, of all where none does \[length\].
@@ -263,6 +270,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
         sums.cell += weight * cell;
         let of_body = |direction: &[f64; D]| rigid_shares(body, place, direction, node);
         let normal = &soil.face.normal;
+        sums.facing += weight * normal.iter().fold(0.0_f64, |most, own| most.max(own.abs()));
         add(&mut sums.opening, weight, normal, shares, of_body(normal));
         for (slip, tangent) in std::iter::zip(&mut sums.slip, &tangents).take(D - 1) {
             add(slip, weight, tangent, shares, of_body(tangent));
