@@ -2,8 +2,25 @@
 //! CASE: a smooth plate above an elastic slab between smooth walls.
 //! ORACLE: nothing touches across a gap; one-dimensional compression in series with eq. 46.
 
-use igimp_cases::run::in_memory;
+use igimp_cases::run::{Run, in_memory};
 use igimp_input::CaseFile;
+
+fn parsed(text: &str) -> CaseFile {
+    let file = CaseFile::parse("case.toml", text, &[]);
+    file.unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The last point of the curve of a run that reached its end, and what was warned of.
+fn end_of<const D: usize>(run: &Run<D>) -> (Vec<f64>, String) {
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let end = run.curves[0].rows.last().unwrap().clone();
+    (end, run.summary.warnings.join("\n"))
+}
+
+/// The same of a case in the plane.
+fn ended(text: &str) -> (Vec<f64>, String) {
+    end_of(&in_memory(parsed(text).case()).unwrap())
+}
 
 /// The force under a plate that starts a gap above a slab 2 m high and goes down by a way \[m\] in so many steps, per metre run \[N/m\],
 /// and what was warned of.
@@ -49,12 +66,8 @@ figures = []
 "#,
         base = 2.0 + gap,
     );
-    let file = CaseFile::parse("plate.toml", &text, &[]);
-    let file = file.unwrap_or_else(|error| panic!("{error}"));
-    let run = in_memory(file.case()).unwrap();
-    assert!(run.failure.is_none(), "{:?}", run.failure);
-    let end = run.curves[0].rows.last().unwrap()[1];
-    (end, run.summary.warnings.join("\n"))
+    let (end, warned) = ended(&text);
+    (end[1], warned)
 }
 
 /// GOAL: a body that no soil is near on a geometry that stays as it is drawn is told of, with the gap; one that is near, or moves, is not.
@@ -164,11 +177,7 @@ figures = []
 "#,
             factor = if from < 0.0 { 1 } else { 2 },
         );
-        let file = CaseFile::parse("strip.toml", &text, &[]);
-        let file = file.unwrap_or_else(|error| panic!("{error}"));
-        let run = in_memory(file.case()).unwrap();
-        assert!(run.failure.is_none(), "{:?}", run.failure);
-        run.curves[0].rows.last().unwrap()[1]
+        ended(&text).0[1]
     };
     for cell in [0.5, 0.4] {
         let (whole, half) = (strip(cell, -4.0), strip(cell, 0.0));
@@ -225,11 +234,7 @@ figures = []
 "#,
             factor = if from < 0.0 { 1 } else { 4 },
         );
-        let file = CaseFile::parse("plate.toml", &text, &[]);
-        let file = file.unwrap_or_else(|error| panic!("{error}"));
-        let run = in_memory(file.case_in_space()).unwrap();
-        assert!(run.failure.is_none(), "{:?}", run.failure);
-        run.curves[0].rows.last().unwrap()[1]
+        end_of(&in_memory(parsed(&text).case_in_space()).unwrap()).0[1]
     };
     let (whole, quarter) = (plate(-1.0), plate(0.0));
     println!("{whole} and {quarter} N");
@@ -285,11 +290,7 @@ figures = []
         y3 = y + 3.0,
         below = y - 0.5,
     );
-    let file = CaseFile::parse("wall.toml", &text, &[]);
-    let file = file.unwrap_or_else(|error| panic!("{error}"));
-    let run = in_memory(file.case()).unwrap();
-    assert!(run.failure.is_none(), "{:?}", run.failure);
-    let end = run.curves[0].rows.last().unwrap();
+    let end = ended(&text).0;
     [end[0], end[1]]
 }
 
