@@ -200,7 +200,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         u: &[[f64; D]],
         particles: &Particles<D>,
         stencils: &Stencils<D>,
-        geometry: Geometry,
+        (geometry, takes_time): (Geometry, bool),
     ) -> Result<AcceptedContact<D>, Penetration> {
         let mut moved: Vec<RigidBody<D>> = self.bodies.to_vec();
         for (index, body) in moved.iter_mut().enumerate() {
@@ -260,7 +260,7 @@ impl<'a, const D: usize> Contact<'a, D> {
             let (x, step) = (&particles.x[particle], stencils.displacement(particle, u));
             std::array::from_fn(|axis| x[axis] + step[axis])
         };
-        let acts = |body: usize, at: &[f64; D]| self.acts_near(body, at);
+        let acts = |body: usize, at: &[f64; D]| !takes_time && self.acts_near(body, at);
         let push_out = push_out((self.bodies, &moved), particles.domains(), place, acts)?;
         Ok(AcceptedContact {
             bodies: moved,

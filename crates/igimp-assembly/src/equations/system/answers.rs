@@ -175,8 +175,9 @@ impl<const D: usize> System<'_, D> {
             method,
             ..
         } = self;
+        let of_step = (method.geometry, self.conditions.time.is_some());
         let contact = &self.beside.contact;
-        let mut contact = contact.accepted(u, particles, stencils, method.geometry)?;
+        let mut contact = contact.accepted(u, particles, stencils, of_step)?;
         if let Some(motion) = self.motion(u) {
             let of_grid = self.conditions.grid.node_count();
             let velocities = motion.after[of_grid..].as_chunks().0;
