@@ -187,6 +187,11 @@ impl Method {
         Self::with(Arc::new(Gimp), Locking::SharedStrain)
     }
 
+    /// Whether domains are those of soil that flows, as in run-outs and motion: contact closes softly then (theory, eq. 46).
+    pub fn flows(&self) -> bool {
+        self.domain_update == DomainUpdate::Moments
+    }
+
     /// The variant's name as the paper writes it, such as `iGIMP + B-bar`; of a body of revolution that it is one.
     pub fn label(&self) -> String {
         let basis = if self.is_of_points() { "iMPM" } else { "iGIMP" };

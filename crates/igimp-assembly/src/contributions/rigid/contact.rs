@@ -141,7 +141,7 @@ impl<'a, const D: usize> Contact<'a, D> {
                 before,
             };
             let is_along = surface.radius().is_none() && sums.facing() >= ALONG_THE_GRID;
-            let is_soft = conditions.time.is_some() || !is_along;
+            let is_soft = conditions.time.is_some() || method.flows() || !is_along;
             let penalty = if is_soft {
                 body.penalty.softly()
             } else {
@@ -200,7 +200,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         u: &[[f64; D]],
         particles: &Particles<D>,
         stencils: &Stencils<D>,
-        (geometry, takes_time): (Geometry, bool),
+        (method, takes_time): (&Method, bool),
     ) -> Result<AcceptedContact<D>, Penetration> {
         let mut moved: Vec<RigidBody<D>> = self.bodies.to_vec();
         for (index, body) in moved.iter_mut().enumerate() {
@@ -239,7 +239,7 @@ impl<'a, const D: usize> Contact<'a, D> {
                 gap,
                 is_closed,
                 slips: traction.slips && holds,
-                way: match geometry {
+                way: match method.geometry {
                     Geometry::Moving => row.way(u),
                     Geometry::Given => 0.0,
                 },
@@ -247,7 +247,7 @@ impl<'a, const D: usize> Contact<'a, D> {
             };
         }
         // On a given geometry nothing goes anywhere.
-        if geometry == Geometry::Given {
+        if method.geometry == Geometry::Given {
             for (body, before) in moved.iter_mut().zip(self.bodies) {
                 body.pose = before.pose.clone();
             }
@@ -260,7 +260,10 @@ impl<'a, const D: usize> Contact<'a, D> {
             let (x, step) = (&particles.x[particle], stencils.displacement(particle, u));
             std::array::from_fn(|axis| x[axis] + step[axis])
         };
-        let acts = |body: usize, at: &[f64; D]| !takes_time && self.acts_near(body, at);
+        // What creeps against a drag goes a share of a cell in a step, and is pressed off what it meets in the next.
+        let acts = |body: usize, at: &[f64; D]| {
+            !takes_time && (method.flows() || self.acts_near(body, at))
+        };
         let push_out = push_out((self.bodies, &moved), particles.domains(), place, acts)?;
         Ok(AcceptedContact {
             bodies: moved,

@@ -175,7 +175,7 @@ impl<const D: usize> System<'_, D> {
             method,
             ..
         } = self;
-        let of_step = (method.geometry, self.conditions.time.is_some());
+        let of_step = (*method, self.conditions.time.is_some());
         let contact = &self.beside.contact;
         let mut contact = contact.accepted(u, particles, stencils, of_step)?;
         if let Some(motion) = self.motion(u) {
