@@ -31,12 +31,11 @@ fn circular_footing_is_that_of_slip_lines() {
 }
 
 /// GOAL: a force and a weight on a rigid body of revolution are those of the whole body.
-/// ORACLE: the settlement at which the body, displaced, has that resistance; a body that is laid on soil overlaps it by five millionths
-/// of a cell at first.
+/// ORACLE: the settlement at which the body, displaced, has that resistance; a body that is laid on soil overlaps it by up to
+/// five millionths of a cell at first (eq. 46), 3.5e-4 of the settlement.
 #[test]
 fn a_circle_under_load_settles_as_far_as_one_that_is_displaced() {
     let curve = "curves=[{ name = \"w\", x = { of = \"rigid.footing.settlement\" }, y = { of = \"rigid.footing.resistance\" } }]";
-    let cell = 0.21;
     let end = |overrides: &[&str]| {
         let common = ["grid.cell=0.21 m", "output.figures=[]", curve];
         let ran = ran("circular_footing", &[&common, overrides].concat());
@@ -55,8 +54,8 @@ fn a_circle_under_load_settles_as_far_as_one_that_is_displaced() {
         "stages=[{ name = \"weight\", type = \"gravity\", geometry = \"given\", steps = 4 }, { name = \"free\", type = \"rigid\", geometry = \"given\", bodies = [{ body = \"footing\", free = [\"y\"] }], steps = 4 }]",
     ];
     for loaded in [end(&["stages.0.steps=4", &force]), end(&pulled)] {
-        let ratio = (loaded[0] + 5e-6 * cell) / settlement;
-        assert!((ratio - 1.0).abs() < 1e-5, "{ratio}");
+        let ratio = loaded[0] / settlement;
+        assert!((ratio - 1.0).abs() < 4e-4, "{ratio}");
     }
 }
 
