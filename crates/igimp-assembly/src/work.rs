@@ -9,6 +9,10 @@ use crate::equations::system::System;
 use crate::equations::trial::Trial;
 use crate::error::AssemblyError;
 
+/// What elastic work that particles only exchange counts as, over that which is left in the sum \[-\]. A choice: where bodies move as
+/// mechanisms they exchange less than a tenth of the gross work, and where few particles begin to yield all of it and more.
+const EXCHANGE: f64 = 0.1;
+
 /// The work of effective stress and of reinforcement on the strain of a step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepWork {
@@ -16,6 +20,8 @@ pub struct StepWork {
     pub whole: f64,
     /// Its part on the elastic strain \[force·length\].
     pub elastic: f64,
+    /// The magnitudes of that of all particles and members, added up \[force·length\].
+    pub exchanged: f64,
     /// Its part on the plastic strain, by law \[force·length\].
     pub dissipated: Vec<f64>,
     /// Its part on slip and yield of reinforcement \[force·length\].
@@ -24,9 +30,10 @@ pub struct StepWork {
 
 impl StepWork {
     /// The share of the gross work of the external force, `gross` \[force·length\], that is not elastic \[-\]: 1 where
-    /// stresses stay and the body moves as a mechanism.
+    /// stresses stay and the body moves as a mechanism (theory, eq. 33c).
     pub fn dissipated_share(&self, gross: f64) -> f64 {
-        1.0 - (self.elastic / gross).abs()
+        let elastic = self.elastic.abs().max(EXCHANGE * self.exchanged);
+        1.0 - (elastic / gross).abs()
     }
 }
 
@@ -64,11 +71,13 @@ impl<const D: usize> System<'_, D> {
             let [whole, elastic] = part?;
             work.whole += whole;
             work.elastic += elastic;
+            work.exchanged += elastic.abs();
             work.dissipated[self.particles.law[particle as usize]] += whole - elastic;
         }
         let [whole, elastic] = self.work_of_reinforcement(u);
         work.whole += whole;
         work.elastic += elastic;
+        work.exchanged += elastic.abs();
         work.in_reinforcement = whole - elastic;
         Ok(work)
     }

@@ -16,8 +16,8 @@ const LEAST_HEIGHT: f64 = 0.5;
 /// within the body, and the way back could lead through its other side.
 const MOST_DEPTH: f64 = 1.0;
 
-/// Soil that a body did not see as a step began comes no nearer than this in it, in half-lengths as seeded \[-\]: nearer
-/// its domain would lie within the body before contact has acted.
+/// Soil that a body did not see as a step began comes no nearer than this in it, in half-lengths as seeded, or in half of its
+/// thickness where it is flatter \[-\]: nearer its domain would lie within the body before contact has acted.
 const UNSEEN_HEIGHT: f64 = 1.0;
 
 /// In a notch, or between two bodies, the way off one side leads to another: the sides are looked at so often.
@@ -114,14 +114,12 @@ pub fn push_out<const D: usize>(
             let depth = deepest(extent, &from, &x, half);
             let is_unseen = || {
                 let to = extent.body.pose.into_body(&x);
-                !is_seen(old, particles, particle) && !acts(body, &to)
+                depth > -UNSEEN_HEIGHT * thickness(extent.body, particles, particle).min(half)
+                    && !is_seen(old, particles, particle)
+                    && !acts(body, &to)
             };
-            let most = if depth > -UNSEEN_HEIGHT * half && is_unseen() {
-                -UNSEEN_HEIGHT
-            } else {
-                MOST_DEPTH
-            };
-            if depth > most * half {
+            let is_too_near = depth > -UNSEEN_HEIGHT * half && is_unseen();
+            if is_too_near || depth > MOST_DEPTH * half {
                 return Err(Penetration {
                     particle,
                     body: extent.body.name.clone(),
@@ -133,6 +131,17 @@ pub fn push_out<const D: usize>(
         out.extend(way_off(&extents, &x, half).map(|way| (particle, way)));
     }
     Ok(out)
+}
+
+/// Half of the thickness of a particle towards a body \[length\].
+fn thickness<const D: usize>(
+    body: &RigidBody<D>,
+    particles: Domains<'_, D>,
+    particle: usize,
+) -> f64 {
+    let normal = body.nearest(&particles.x[particle]).1;
+    let half = &particles.half_length[particle];
+    (0..D).map(|axis| half[axis] * normal[axis].abs()).sum()
 }
 
 /// Whether a particle turns a face to a body (theory, eq. 45b), or is in it.

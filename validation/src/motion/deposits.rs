@@ -45,6 +45,37 @@ pub(super) fn hold(study: &mut Study, level: Level) -> Result<(), CaseError> {
     if level >= Level::Default {
         beads(study)?;
     }
+    if level >= Level::Full {
+        on_a_rigid_floor(study)?;
+    }
+    Ok(())
+}
+
+/// The shipped column on a rigid body as floor, which sand slides on: it comes to rest, and friction takes energy from it.
+fn on_a_rigid_floor(study: &mut Study) -> Result<(), CaseError> {
+    for cell in ["1 cm", "5 mm"] {
+        let mut changes = column(1.0, cell, "1 s");
+        changes.retain(|change| !change.starts_with("boundaries"));
+        changes.push("boundaries.bottom = free".into());
+        changes.push("boundaries.boxes = []".into());
+        changes.push(
+            "rigid = [{ name = \"floor\", type = \"rectangle\", from = [\"-20 cm\", \"-6 cm\"], to = [\"80 cm\", \"0 cm\"], \
+             interface = { friction = 0.6 }, from_start = true, rounding = 0 }]"
+                .into(),
+        );
+        let computed = Computed::<2>::new(shipped_case("column_collapse", changes)?)?;
+        let variant = format!("column of sand on a rigid floor, a = 1, cells of {cell}");
+        let run = RunRecord::new(variant, &computed.report, computed.elapsed);
+        let run = study.run_to_end(run);
+        let deposit = Deposit::of(run, 1.0, computed.particles(), HALF_WIDTH);
+        let quantity = "run-out over half the width [-]";
+        let band = Band::Between(1.0, 3.25);
+        study.check(run, quantity, COLUMNS.says(1.2), band, deposit.run_out);
+        study.notes.push(format!(
+            "motion: sand on a rigid floor, cells of {cell}, leaves a height of {:.2} over half its width; {}",
+            deposit.height, computed.run.summary.stages[0].reason
+        ));
+    }
     Ok(())
 }
 

@@ -269,7 +269,16 @@ impl<const D: usize> Linearised<D> {
         let (y, h) = (self.y.as_flattened_mut(), self.h.as_flattened_mut());
         let stride = LANES * self.lanes;
         let pushed = std::iter::zip(&self.g, &self.g_bar).zip(&self.hoops);
-        for (i, ((g, g_bar), &Hoop { own: t, bar: t_bar })) in pushed.enumerate() {
+        for (
+            i,
+            (
+                (g, g_bar),
+                &Hoop {
+                    own: t, bar: t_bar, ..
+                },
+            ),
+        ) in pushed.enumerate()
+        {
             let added = moduli.trace * (t_bar - t) + hoop.right * t;
             for c in 0..D {
                 for d in 0..D {

@@ -313,6 +313,7 @@ impl<const D: usize> CellSoil<D> {
                 let hoop = Hoop {
                     own: own * at_part + (1.0 - own) * shared,
                     bar: shared,
+                    place: at_part,
                 };
                 hoops[place] = hoops[place].plus(weight, hoop);
             }

@@ -7,15 +7,21 @@ use crate::method::Section;
 /// How much a support stretches a particle around the axis, for a radial displacement of one \[1/length\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Hoop {
-    /// T_i, of the particle's own place: the mean of N_i/r, by volume.
+    /// T_i, of the particle: the mean of N_i/r by volume, as far as it is not shared with the soil of its cells.
     pub(crate) own: f64,
     /// T̄_i, of the soil of its cells.
     pub(crate) bar: f64,
+    /// T_i of the particle's place alone, by which it moves (theory, eq. 130h).
+    pub(crate) place: f64,
 }
 
 impl Hoop {
     /// A stretch of nothing.
-    pub(crate) const UNSTRETCHED: Self = Self { own: 1.0, bar: 1.0 };
+    pub(crate) const UNSTRETCHED: Self = Self {
+        own: 1.0,
+        bar: 1.0,
+        place: 1.0,
+    };
 
     /// Strain around the axis u_r/r of nodal displacements `u` \[-\].
     #[inline(never)]
@@ -36,6 +42,7 @@ impl Hoop {
         Self {
             own: self.own + factor * other.own,
             bar: self.bar + factor * other.bar,
+            place: self.place + factor * other.place,
         }
     }
 
@@ -44,6 +51,7 @@ impl Hoop {
         Self {
             own: self.own * other.own,
             bar: self.bar * other.bar,
+            place: self.place * other.place,
         }
     }
 
@@ -52,6 +60,7 @@ impl Hoop {
         Self {
             own: self.own.recip(),
             bar: self.bar.recip(),
+            place: self.place.recip(),
         }
     }
 }

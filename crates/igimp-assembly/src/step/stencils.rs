@@ -140,10 +140,10 @@ impl<const D: usize> Stencils<D> {
             }
             return displacement;
         }
-        let whole: f64 = hoops.iter().map(|hoop| hoop.own).sum();
+        let whole: f64 = hoops.iter().map(|hoop| hoop.place).sum();
         for (support, hoop) in supports.iter().zip(hoops) {
             for axis in 0..D {
-                displacement[axis] += hoop.own / whole * u[support.node][axis];
+                displacement[axis] += hoop.place / whole * u[support.node][axis];
             }
         }
         displacement

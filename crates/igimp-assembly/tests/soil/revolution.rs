@@ -105,10 +105,15 @@ fn trial(
 #[test]
 fn places_move_with_the_stretch() {
     let [a, b] = [0.03, -0.02];
-    for method in methods() {
+    let soil = MohrCoulomb::new(Elasticity::new(100.0, 0.3).unwrap(), 1e3, 0.4, 0.1).unwrap();
+    let laws: [SharedLaw; 2] = [elastic(), Arc::new(soil)];
+    for (law, method) in laws
+        .iter()
+        .flat_map(|law| methods().into_iter().map(move |m| (law, m)))
+    {
         let grid = grid();
         let mut particles = body(&grid);
-        let (trial, stencils, _) = trial(&method, elastic(), [a, b]);
+        let (trial, stencils, _) = trial(&method, law.clone(), [a, b]);
         let u: Vec<[f64; 2]> = (0..grid.node_count())
             .map(|node| grid.node_position(node))
             .map(|[r, z]| [a * r, b * z])

@@ -11,5 +11,6 @@ mod factors;
 mod given_law;
 mod in_space;
 mod killed;
+mod mechanism;
 mod remarks;
 mod revolution;

@@ -150,7 +150,13 @@ impl<'a, const D: usize> Contact<'a, D> {
             let whole = tents[knot] * (sums.area / sums.length);
             row.carry_force(interface, &penalty, whole);
             if interface.tension == Tension::None && !rolls {
-                row.take_soil_that_came(sums.mean_gap(), interface, &penalty);
+                // Where time passes motion alone makes pressure: domains that overlap a side would throw soil off it.
+                let least = if conditions.time.is_some() {
+                    row.gap
+                } else {
+                    f64::NEG_INFINITY
+                };
+                row.take_soil_that_came(sums.mean_gap().max(least), interface, &penalty);
             }
             if is_laid {
                 row.seat(&penalty);
