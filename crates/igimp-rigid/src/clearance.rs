@@ -235,3 +235,42 @@ fn way_off<const D: usize>(extents: &[Extent<'_, D>], x: &[f64; D], half: f64) -
     }
     is_close.then_some(way)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Interface;
+    use igimp_surface::Surface;
+
+    // GOAL: a particle that has become flat comes on towards a body in steps, however small they are.
+    // CASE: one that was seeded 0.25 thick and is 0.1 thick, 0.4 to 0.05 above a floor, in steps of any length.
+    // ORACLE: its domain reaches the floor at a height of 0.1; the body sees it within 0.2, when it comes nearer with contact.
+    #[test]
+    fn flat_soil_comes_up_to_a_body() {
+        let corners = [[-2.0, -1.0], [2.0, -1.0], [2.0, 0.0], [-2.0, 0.0]];
+        let surface = Surface::polygon(&corners, 0.0, 0.5).unwrap();
+        let body = [RigidBody::new(
+            surface,
+            vec![Interface::smooth(); 4],
+            [0.0; 2],
+        )];
+        let comes = |from: f64, to: f64| {
+            let particles = Domains {
+                x: &[[0.0, from]],
+                half_length: &[[0.4, 0.1]],
+                half_length0: &[[0.25; 2]],
+            };
+            push_out((&body, &body), particles, |_| [0.0, to], |_, _| false)
+        };
+        for (from, to) in [(0.4, 0.24), (0.26, 0.201), (0.21, 0.199), (0.21, 0.13)] {
+            assert!(comes(from, to).unwrap().is_empty(), "{from} {to}");
+        }
+        for (from, to) in [(0.4, 0.09), (0.21, 0.05)] {
+            let depth = comes(from, to).unwrap_err().depth;
+            assert!((depth + to / 0.25).abs() < 1e-12, "{from} {to}: {depth}");
+        }
+        // In sight of the body contact acts, and what has crept too close is moved off.
+        let off = comes(0.19, 0.05).unwrap();
+        assert!((off[0].1[1] - 0.075).abs() < 1e-12, "{off:?}");
+    }
+}
