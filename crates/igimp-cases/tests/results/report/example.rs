@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use igimp_assembly::Geometry;
+use igimp_results::fields::Axes;
 use igimp_assembly::{Method, ParticleFields, Particles, SharedLaw};
 use igimp_geometry::seed::fill_polygon;
 use igimp_model::{
@@ -289,7 +290,7 @@ pub(crate) fn draw(folder: &Path, case: &Case<2>) -> Vec<FigureNote> {
     }
     for section in &case.sections {
         let table = findings::section_table(section);
-        let drawn = pictures::section_pictures(folder, title, section, "surcharge", &[], &table);
+        let drawn = pictures::section_pictures(folder, (title, Axes::Plane), section, "surcharge", &[], &table);
         notes.extend(drawn.unwrap());
     }
     let (particles, laws) = particles(case);

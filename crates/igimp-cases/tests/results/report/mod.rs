@@ -7,6 +7,7 @@ mod findings;
 use std::path::Path;
 
 use igimp_assembly::Particles;
+use igimp_results::fields::Axes;
 use igimp_model::{Field, ReferenceValues, TitleBlock};
 use igimp_report::ReportError;
 use igimp_report::patches::Pieces;
@@ -326,7 +327,7 @@ fn empty_tables_make_empty_pictures() {
     let mut table = findings::section_table(section);
     table.rows.clear();
     assert_eq!(
-        pictures::section_pictures(&folder, "", section, "s", &[], &table)
+        pictures::section_pictures(&folder, ("", Axes::Plane), section, "s", &[], &table)
             .unwrap()
             .len(),
         2
