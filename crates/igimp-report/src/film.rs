@@ -254,7 +254,11 @@ impl Look {
             ""
         };
         Self {
-            label: format!("{total}{}{}", fields::label_in(axes_of(case), field, scale), colours.told()),
+            label: format!(
+                "{total}{}{}",
+                fields::label_in(axes_of(case), field, scale),
+                colours.told()
+            ),
             colours: Colours {
                 range: colours
                     .range

@@ -12,7 +12,7 @@ use crate::step::cell_soil::{CellSoil, Moments};
 use crate::step::domain::bounds;
 use crate::step::hoops::Hoop;
 use crate::step::node_shares::{NodeShare, node_shares};
-use crate::step::small_cuts::{full_volume, extrapolations, masters_of_cuts, small_cuts};
+use crate::step::small_cuts::{extrapolations, full_volume, masters_of_cuts, small_cuts};
 use crate::step::strips::Strips;
 use crate::step::supports::Supports;
 use crate::step::ties::{Carrier, Ties, carried};

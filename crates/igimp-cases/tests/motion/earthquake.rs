@@ -215,10 +215,7 @@ fn a_compliant_base_carries_a_column_in_space_as_in_the_plane() {
         kinks.into_iter().map(grown).sum::<f64>()
     };
     let most = outcrop(0.3);
-    let (plane, space) = (
-        plane.curves[0].points(0, 1),
-        space.curves[0].points(0, 1),
-    );
+    let (plane, space) = (plane.curves[0].points(0, 1), space.curves[0].points(0, 1));
     assert_eq!(plane.len(), space.len());
     let mut off: f64 = 0.0;
     for (one, other) in std::iter::zip(&plane, &space) {

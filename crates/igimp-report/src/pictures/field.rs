@@ -120,7 +120,11 @@ pub fn field_picture(
         title: titled(&case.title, &shown.title),
         domains,
         values: whose.iter().map(|&k| values[k] / scale.divide_by).collect(),
-        label: format!("{total}{}{}", fields::label_in(axes_of(case), field, scale), colours.told()),
+        label: format!(
+            "{total}{}{}",
+            fields::label_in(axes_of(case), field, scale),
+            colours.told()
+        ),
         range: colours.range,
         map: colours.map,
         outlines: edges(case, canvas.pieces, particles)
@@ -142,7 +146,10 @@ pub fn field_picture(
     };
     let caption = format!(
         "{} {}. Lines: the edges of the bodies; dashed: before they moved{}.{members}{same}",
-        sentence(&format!("{total}{}", fields::plain(field.title_in(axes_of(case))))),
+        sentence(&format!(
+            "{total}{}",
+            fields::plain(field.title_in(axes_of(case)))
+        )),
         shown.when,
         water::told(&over.outlines),
     );

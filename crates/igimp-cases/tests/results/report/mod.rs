@@ -7,7 +7,6 @@ mod findings;
 use std::path::Path;
 
 use igimp_assembly::Particles;
-use igimp_results::fields::Axes;
 use igimp_model::{Field, ReferenceValues, TitleBlock};
 use igimp_report::ReportError;
 use igimp_report::patches::Pieces;
@@ -16,6 +15,7 @@ use igimp_report::report::write_report;
 use igimp_report::setup;
 use igimp_report::viewer::Surroundings;
 use igimp_results::ResultsError;
+use igimp_results::fields::Axes;
 use igimp_results::summary::{FigureNote, SafetySummary, SetupTable, StageOutcome, Summary};
 use igimp_results::tables::table::Table;
 
