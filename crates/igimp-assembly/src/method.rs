@@ -92,11 +92,11 @@ pub enum DomainUpdate {
 
 /// What is done about nodes that a body only touches at a corner (theory, "small cuts").
 ///
-/// A node is a small cut when Σ S V is below a fraction of its cell's volume. Left alone, such
+/// A node is a small cut when Σ S V is below a fraction of what full soil leaves there. Left alone, such
 /// nodes make the system singular to working precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmallCuts {
-    /// Fraction of a cell's volume below which a node is a small cut \[-\]; 0 switches off. The default is 1e-4, which serves in
+    /// Fraction of the volume that full soil leaves at a node below which it is a small cut \[-\]; 0 switches off. The default is 1e-4, which serves in
     /// the plane; in space take 1e-3, as case files do (theory, eq. 26).
     pub below: f64,
     /// What happens to a small cut.

@@ -6,15 +6,23 @@ use igimp_geometry::region::{Crossing, Region};
 
 use super::{BodyPart, Case, Material, PoreSource, Profile, front};
 
-/// Unit weight of the water of a stated level \[N/m³\].
+/// Unit weight of water where nothing else is said \[N/m³\].
 const WATER: f64 = 9.81e3;
 
 /// The bodies that are there at the start, as they are drawn, with the unit weights of their materials.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Ground<const D: usize> {
     layers: Vec<Layer<D>>,
-    /// The water at the start, and its unit weight \[N/m³\].
-    water: Option<(PoreSource, f64)>,
+    /// The water at the start.
+    water: Option<PoreSource>,
+    /// Unit weight of water \[N/m³\].
+    water_unit_weight: f64,
+}
+
+impl<const D: usize> Default for Ground<D> {
+    fn default() -> Self {
+        Self::of_layers(std::iter::empty())
+    }
 }
 
 /// A region of soil with a unit weight.
@@ -37,8 +45,8 @@ impl<const D: usize> Case<D> {
         let ground = Ground::new(bodies.map(|body| (body, &self.materials[body.material])));
         let first = self.water.first();
         Ground {
-            water: first.map(|condition| (condition.source.clone(), self.water_unit_weight)),
-            ..ground
+            water: first.map(|condition| condition.source.clone()),
+            ..ground.with_water_of(self.water_unit_weight)
         }
     }
 }
@@ -60,6 +68,16 @@ impl<const D: usize> Ground<D> {
         Self {
             layers: layers.collect(),
             water: None,
+            water_unit_weight: WATER,
+        }
+    }
+
+    /// The same with water of a unit weight \[N/m³\], in place of 9.81 kN/m³.
+    #[must_use]
+    pub fn with_water_of(self, unit_weight: f64) -> Self {
+        Self {
+            water_unit_weight: unit_weight,
+            ..self
         }
     }
 
@@ -135,28 +153,25 @@ impl<const D: usize> Ground<D> {
         let weight = self.weight_above(place);
         let [x, level] = front(place);
         let surface = self.surface(place).unwrap_or(level);
-        let below = |table: f64, unit_weight: f64| {
-            let pressure = unit_weight * (table.min(surface) - level).max(0.0);
+        let below = |table: f64| {
+            let pressure = self.water_unit_weight * (table.min(surface) - level).max(0.0);
             self.added_above(place, table) - pressure
         };
         let by_water = match (water_level, &self.water) {
-            (Some(level), _) => below(level, WATER),
+            (Some(level), _) => below(level),
             (
                 None,
-                Some((
+                Some(
                     table
                     @ (PoreSource::Table(_) | PoreSource::Surface(_) | PoreSource::Drained(_)),
-                    unit_weight,
-                )),
-            ) => table
-                .table(place)
-                .map_or(0.0, |level| below(level, *unit_weight)),
-            (None, Some((PoreSource::Points(raster), _))) => {
+                ),
+            ) => table.table(place).map_or(0.0, below),
+            (None, Some(PoreSource::Points(raster))) => {
                 let on_ground = raster.at([x, surface]).max(0.0);
                 on_ground - raster.at([x, level]).max(0.0)
             }
-            (None, Some((PoreSource::Ratio(ratio), _))) => -ratio * weight,
-            (None, Some((PoreSource::Dry | PoreSource::Seepage(_), _)) | None) => 0.0,
+            (None, Some(PoreSource::Ratio(ratio))) => -ratio * weight,
+            (None, Some(PoreSource::Dry | PoreSource::Seepage(_)) | None) => 0.0,
         };
         (weight + by_water).max(0.0)
     }
@@ -287,11 +302,13 @@ mod tests {
         assert!((stress(100.0) - (30e3 - 2.0 * 9.81e3)).abs() < 1e-9);
         assert!((stress(0.0) - 30e3).abs() < 1e-9);
         let wet = |source| Ground {
-            water: Some((source, 10e3)),
-            ..ground.clone()
+            water: Some(source),
+            ..ground.clone().with_water_of(10e3)
         };
         let table = wet(PoreSource::Table(vec![[0.0, 6.0], [6.0, 3.0]]));
         let stress = table.effective_stress(&[3.0, 4.0], None);
+        assert!((stress - (30e3 - 0.5 * 10e3)).abs() < 1e-9);
+        let stress = table.effective_stress(&[3.0, 4.0], Some(4.5));
         assert!((stress - (30e3 - 0.5 * 10e3)).abs() < 1e-9);
         let share = wet(PoreSource::Ratio(0.4));
         assert!((share.effective_stress(&[3.0, 4.0], None) - 18e3).abs() < 1e-9);

@@ -166,7 +166,7 @@ pub struct Dynamic {
     pub scheme: TimeScheme,
     /// Share of the mass that is lumped at the nodes \[-\].
     pub lumped_share: f64,
-    /// Share of a cell's volume below which the motion of a node is extrapolated \[-\].
+    /// Share of the volume that full soil leaves at a node below which its motion is extrapolated \[-\].
     pub tied_below: f64,
     /// Longest step \[s\]; none: error and way alone choose.
     pub longest_step: Option<f64>,

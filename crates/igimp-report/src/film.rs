@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use crate::error::ReportError;
 use crate::patches::{Carriers, Pieces};
-use crate::pictures::{Colours, edges, titled, water};
+use crate::pictures::{Colours, axes_of, edges, titled, water};
 
 /// Free room around the bodies, as a share of the larger side of what they have been in \[-\].
 const ROOM: f64 = 0.03;
@@ -254,7 +254,11 @@ impl Look {
             ""
         };
         Self {
-            label: format!("{total}{}{}", fields::label(field, scale), colours.told()),
+            label: format!(
+                "{total}{}{}",
+                fields::label_in(axes_of(case), field, scale),
+                colours.told()
+            ),
             colours: Colours {
                 range: colours
                     .range

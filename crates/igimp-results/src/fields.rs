@@ -8,8 +8,8 @@ use igimp_material::{
     ConstitutiveModel, InternalVariable, Principal, ShearStrength, Tensor, principal_values,
 };
 use igimp_model::Field;
-pub use igimp_schema::field::Dimension;
 use igimp_schema::field::Sign;
+pub use igimp_schema::field::{Axes, Dimension};
 
 /// One value per particle, in SI units; stresses compression positive.
 ///
@@ -229,16 +229,16 @@ impl Scale {
 /// The label of an axis or a colour bar, such as
 /// "vertical stress −σ_{yy} \[kPa\], compression positive".
 pub fn label(field: Field, scale: Scale) -> String {
-    label_in(2, field, scale)
+    label_in(Axes::Plane, field, scale)
 }
 
-/// The same in so many dimensions.
-pub fn label_in(dimensions: usize, field: Field, scale: Scale) -> String {
+/// The same where the axes are called so.
+pub fn label_in(axes: Axes, field: Field, scale: Scale) -> String {
     let sign = match field.sign() {
         Sign::Compression => ", compression positive",
         Sign::Own | Sign::Shear => "",
     };
-    format!("{} [{}]{sign}", field.title_in(dimensions), scale.unit)
+    format!("{} [{}]{sign}", field.title_in(axes), scale.unit)
 }
 
 /// A text of figures without its marks for indices and powers, for prose.

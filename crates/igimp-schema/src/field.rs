@@ -56,17 +56,28 @@ struct Declaration {
     name: &'static str,
     dimension: Dimension,
     sign: Sign,
-    /// In plane strain and in space; none: there is none in plane strain.
-    titles: (Option<&'static str>, &'static str),
+    /// In plane strain, of bodies of revolution and in space; none: there is none in plane strain.
+    titles: (Option<[&'static str; 2]>, &'static str),
+}
+
+/// What the axes of an analysis are called in print.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// Plane strain: x level, y upright, z out of the plane.
+    Plane,
+    /// Bodies of revolution: x the radius, y upright, z around the axis.
+    Revolution,
+    /// Space: z upright.
+    Space,
 }
 
 /// Declares the fields: `Variant "name" dimension sign "title" "what the reference says";`, with `in_space "title"`
-/// for another title in space, and `only_in_space` before the title of one that plane strain does not have.
+/// for another title in space, `around "title"` for one of bodies of revolution, and `only_in_space` before the title of one that plane strain does not have.
 macro_rules! fields {
     ($(
         $(#[$doc:meta])*
         $variant:ident $name:literal $dimension:ident $sign:ident
-        $($title:literal)? $(in_space $space:literal)? $(only_in_space $only:literal)?
+        $($title:literal)? $(in_space $space:literal)? $(around $around:literal)? $(only_in_space $only:literal)?
         => $reference:literal;
     )*) => {
         /// A field on particles, as it is printed: stress compression positive.
@@ -79,7 +90,7 @@ macro_rules! fields {
             name: $name,
             dimension: Dimension::$dimension,
             sign: Sign::$sign,
-            titles: fields!(@titles $($title)? $(in_space $space)? $(only_in_space $only)?),
+            titles: fields!(@titles $($title)? $(in_space $space)? $(around $around)? $(only_in_space $only)?),
         },)*];
 
         impl Field {
@@ -91,8 +102,12 @@ macro_rules! fields {
         }
 
     };
-    (@titles $title:literal) => { (Some($title), $title) };
-    (@titles $title:literal in_space $space:literal) => { (Some($title), $space) };
+    (@titles $title:literal) => { (Some([$title; 2]), $title) };
+    (@titles $title:literal around $around:literal) => { (Some([$title, $around]), $title) };
+    (@titles $title:literal in_space $space:literal) => { (Some([$title; 2]), $space) };
+    (@titles $title:literal in_space $space:literal around $around:literal) => {
+        (Some([$title, $around]), $space)
+    };
     (@titles only_in_space $only:literal) => { (None, $only) };
 }
 
@@ -102,7 +117,8 @@ fields! {
         => "length of the displacement [m]";
     /// Displacement in x \[m\].
     DisplacementX "displacement_x" Displacement Own
-        "horizontal displacement u_{x}" in_space "displacement u_{x}" => "displacement in x [m]";
+        "horizontal displacement u_{x}" in_space "displacement u_{x}" around "radial displacement u_{x}"
+        => "displacement in x [m]";
     /// Displacement in y \[m\].
     DisplacementY "displacement_y" Displacement Own
         "vertical displacement u_{y}" in_space "displacement u_{y}" => "displacement in y [m]";
@@ -116,7 +132,7 @@ fields! {
     /// Position z \[m\]; in space.
     Z "z" Position Own only_in_space "position z" => "position z, in space [m]";
     /// −σ_xx of total stress \[Pa\].
-    SigmaXx "sigma_xx" Stress Compression "horizontal stress −σ_{xx}"
+    SigmaXx "sigma_xx" Stress Compression "horizontal stress −σ_{xx}" around "radial stress −σ_{xx}"
         => "total stress xx, compression positive [Pa]";
     /// −σ_yy of total stress \[Pa\].
     SigmaYy "sigma_yy" Stress Compression
@@ -124,7 +140,7 @@ fields! {
         => "total stress yy, compression positive [Pa]";
     /// −σ_zz of total stress \[Pa\].
     SigmaZz "sigma_zz" Stress Compression
-        "out-of-plane stress −σ_{zz}" in_space "vertical stress −σ_{zz}"
+        "out-of-plane stress −σ_{zz}" in_space "vertical stress −σ_{zz}" around "hoop stress −σ_{zz}"
         => "total stress zz, compression positive [Pa]";
     /// −τ_xy \[Pa\].
     TauXy "tau_xy" Stress Shear "shear stress −τ_{xy}"
@@ -138,7 +154,7 @@ fields! {
     /// Mean pressure p = −tr σ/3 of total stress \[Pa\].
     P "p" Stress Compression "mean pressure p" => "mean pressure of total stress [Pa]";
     /// −σ′_xx of effective stress: the stress that the law speaks of \[Pa\].
-    SigmaEffXx "sigma_eff_xx" Stress Compression "effective horizontal stress −σ′_{xx}"
+    SigmaEffXx "sigma_eff_xx" Stress Compression "effective horizontal stress −σ′_{xx}" around "effective radial stress −σ′_{xx}"
         => "effective stress xx, compression positive [Pa]; without water the same as sigma_xx";
     /// −σ′_yy of effective stress \[Pa\].
     SigmaEffYy "sigma_eff_yy" Stress Compression
@@ -147,6 +163,7 @@ fields! {
     /// −σ′_zz of effective stress \[Pa\].
     SigmaEffZz "sigma_eff_zz" Stress Compression
         "effective out-of-plane stress −σ′_{zz}" in_space "effective vertical stress −σ′_{zz}"
+        around "effective hoop stress −σ′_{zz}"
         => "effective stress zz, compression positive [Pa]";
     /// Mean effective pressure p′ = −tr σ′/3 \[Pa\].
     PEff "p_eff" Stress Compression "mean effective pressure p′"
@@ -177,7 +194,8 @@ fields! {
     Speed "speed" Velocity Own "speed |v|" => "length of the velocity, in motion [m/s]";
     /// Velocity in x \[m/s\]; in motion.
     VelocityX "velocity_x" Velocity Own
-        "horizontal velocity v_{x}" in_space "velocity v_{x}" => "velocity in x, in motion [m/s]";
+        "horizontal velocity v_{x}" in_space "velocity v_{x}" around "radial velocity v_{x}"
+        => "velocity in x, in motion [m/s]";
     /// Velocity in y \[m/s\]; in motion.
     VelocityY "velocity_y" Velocity Own
         "vertical velocity v_{y}" in_space "velocity v_{y}" => "velocity in y, in motion [m/s]";
@@ -189,7 +207,7 @@ fields! {
         => "length of the acceleration, in motion [m/s2]";
     /// Acceleration in x \[m/s²\]; in motion.
     AccelerationX "acceleration_x" Acceleration Own
-        "horizontal acceleration a_{x}" in_space "acceleration a_{x}"
+        "horizontal acceleration a_{x}" in_space "acceleration a_{x}" around "radial acceleration a_{x}"
         => "acceleration in x, in motion [m/s2]";
     /// Acceleration in y \[m/s²\]; in motion.
     AccelerationY "acceleration_y" Acceleration Own
@@ -262,16 +280,19 @@ impl Field {
         format!("{}_[{}]{sign}", self.name(), self.dimension().unit())
     }
 
-    /// What it is in so many dimensions, in words and signs with the index marks of figures: the third axis is upright in
-    /// space, and out of the plane else.
-    pub fn title_in(self, dimensions: usize) -> &'static str {
-        let (plane, space) = self.declaration().titles;
-        plane.filter(|_| dimensions == 2).unwrap_or(space)
+    /// What it is where the axes are called so, in words and signs with the index marks of figures.
+    pub fn title_in(self, axes: Axes) -> &'static str {
+        let (in_plane, space) = self.declaration().titles;
+        match (axes, in_plane) {
+            (Axes::Plane, Some([plane, _])) => plane,
+            (Axes::Revolution, Some([_, around])) => around,
+            _ => space,
+        }
     }
 
     /// What it is in plane strain.
     pub fn title(self) -> &'static str {
-        self.title_in(2)
+        self.title_in(Axes::Plane)
     }
 }
 

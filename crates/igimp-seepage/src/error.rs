@@ -50,7 +50,7 @@ pub enum SeepageError {
     /// A flow in time that finds no balance.
     #[error(
         "the flow in time does not go on after {time} s: no step was found that balances or is accurate, however short; \
-         let the permeability fall over more height, or take smaller cells"
+         let a head that changes at once do so over some time, let the permeability fall over more height, or take smaller cells"
     )]
     Stuck {
         /// Time of the last balance \[s\].

@@ -1,12 +1,11 @@
 //! What a flow answers: heads, pressures, velocities, discharges and the free surface.
 
 use igimp_shape::Grid;
-use igimp_shape::matrices::apply;
 
 use crate::basis::{Basis, CORNERS, nodes_of};
-use crate::conditions::Extent;
 use crate::curve::Relative;
 use crate::ground::ends_of;
+use crate::sections::sections;
 use crate::system::{Flows, System, largest};
 
 /// Water through a condition or a section \[m³/s\], in the plane by the metre run \[m²/s\].
@@ -81,7 +80,7 @@ impl<const D: usize> Seepage<D> {
             filled: through.filled,
             velocities: through.velocities,
             discharges: discharges(system, flows),
-            sections: through.sections,
+            sections: sections(system, heads, &relative),
             inflow,
             outflow,
             outflow_at_lower_floor: dry.map(|own| sum(&own.outwards)),
@@ -160,49 +159,24 @@ pub(crate) fn interpolated<const D: usize>(grid: &Grid<D>, heads: &[f64], x: &[f
 struct Through<const D: usize> {
     filled: Vec<f64>,
     velocities: Vec<[f64; D]>,
-    sections: Vec<Discharge>,
 }
 
 impl<const D: usize> Through<D> {
     fn of(system: &System<'_, D>, heads: &[f64], relative: &Relative) -> Self {
         let grid = system.grid;
-        let asked = &system.conditions.sections;
-        let section = |(name, _): &(String, Extent<D>)| Discharge {
-            name: name.clone(),
-            inflow: 0.0,
-            outflow: 0.0,
-        };
         let mut found = Self {
             filled: vec![0.0; grid.cell_count()],
             velocities: vec![[0.0; D]; grid.cell_count()],
-            sections: asked.iter().map(section).collect(),
         };
-        let mut upper = [f64::NEG_INFINITY; D];
-        for cell in &system.cells {
-            for (own, end) in upper.iter_mut().zip(ends_of(grid, cell.place)[1]) {
-                *own = own.max(end);
-            }
-        }
         for cell in 0..system.cells.len() {
             let place = system.cells[cell].place;
-            let ends = ends_of(grid, place);
             let own = system.heads(cell, heads);
             let (mut sum, mut volume) = ([0.0; D], 0.0);
             for point in system.points(cell, &own, relative) {
-                let basis = Basis::at(ends, &point.x);
-                let psi = basis.head(&own) - point.x[D - 1];
-                let [share, _] = system.share(relative, point.soil, psi);
-                let slope = apply(system.tensor(cell, point.soil), &basis.slope(&own));
-                let velocity = slope.map(|slope| -share * slope);
+                let velocity = system.velocity(cell, &point, &own, relative);
                 volume += point.volume;
                 for axis in 0..D {
                     sum[axis] += point.volume * velocity[axis];
-                }
-                for (section, (_, extent)) in std::iter::zip(&mut found.sections, asked) {
-                    if let Some(axis) = crosses(extent, (ends, upper), &point.x) {
-                        let thick = ends[1][axis] - ends[0][axis];
-                        section.inflow += point.volume * velocity[axis] / thick;
-                    }
                 }
             }
             found.filled[grid.cell_index(place)] = system.cells[cell].filled;
@@ -224,21 +198,6 @@ fn discharges<const D: usize>(system: &System<'_, D>, flows: &Flows) -> Vec<Disc
         outflow: flows.outwards[k],
     };
     names.enumerate().map(of).collect()
-}
-
-/// The axis of a section that a point of a cell counts for; `upper` is where cells with soil end. A section on a line counts the cell behind
-/// it, and at the end that before it.
-fn crosses<const D: usize>(
-    extent: &Extent<D>,
-    (ends, upper): ([[f64; D]; 2], [f64; D]),
-    x: &[f64; D],
-) -> Option<usize> {
-    let axis = (0..D).find(|&axis| extent.upper[axis] <= extent.lower[axis])?;
-    let at = extent.lower[axis];
-    let others = (0..D).filter(|other| *other != axis);
-    let is_along = { others }.all(|d| extent.lower[d] <= x[d] && x[d] <= extent.upper[d]);
-    let is_last = at >= upper[axis] && at <= ends[1][axis];
-    (ends[0][axis] <= at && (at < ends[1][axis] || is_last) && is_along).then_some(axis)
 }
 
 /// Gives nodes beyond the ground the mean of their neighbours, outwards from it.

@@ -10,7 +10,7 @@ use crate::basis::{FOUR, Point, gauss};
 use crate::conditions::{Conditions, InGround};
 
 /// Sub-boxes of a cut cell along each axis, in the plane and in space.
-const SUB: [usize; 2] = [4, 2];
+pub(crate) const SUB: [usize; 2] = [4, 2];
 /// Thickness of the slab that stands for a side, as a share of the box \[-\].
 const SLAB: f64 = 1e-6;
 /// Faces smaller than this share of a side are round-off \[-\].

@@ -15,6 +15,7 @@ mod ground;
 mod layers;
 mod lines;
 mod search;
+mod sections;
 mod solve;
 mod storage;
 mod system;

@@ -195,8 +195,9 @@ impl<'a, const D: usize> Search<'a, D> {
             let pairs = std::iter::zip(&kept, step);
             let mut heads: Vec<f64> = pairs.map(|(head, own)| head - share * own).collect();
             if let Some(storing) = storing.filter(|_| !relative.confined) {
-                let width = relative.width;
-                storing.storage.stop_at_surface(&kept, &mut heads, width);
+                let soils = &self.system.conditions.soils;
+                let is_sharp = soils.iter().any(|soil| soil.curve == Curve::Ramp);
+                (storing.storage).stop_at_surface(&kept, &mut heads, (relative, is_sharp));
             }
             heads
         };

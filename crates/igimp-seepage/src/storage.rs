@@ -24,6 +24,9 @@ const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 /// Pressure head at which a node is taken to be at the free surface, over the height in which permeability falls \[-\].
 const NEAR: f64 = 1e-6;
 
+/// Distance from such a node at which another counts as away from it, over that \[-\].
+const AWAY: f64 = 2.0;
+
 /// What goes into or out of storage \[m^D/s\].
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Moved {
@@ -107,15 +110,51 @@ impl Storage {
     }
 
     /// Stops a correction at nodes that the free surface would pass, where water drains most by head: on either side of it
-    /// hardly any does, and corrections would go to and fro.
-    pub(crate) fn stop_at_surface(&self, before: &[f64], after: &mut [f64], width: f64) {
-        let near = NEAR * width;
+    /// hardly any does, and corrections would go to and fro. Under a sharp surface also where the last water drains.
+    pub(crate) fn stop_at_surface(
+        &self,
+        before: &[f64],
+        after: &mut [f64],
+        (relative, is_sharp): (&Relative, bool),
+    ) {
+        let near = NEAR * relative.width;
+        // A node that stands where it was stopped goes on: round-off does not hold it there.
+        let off = AWAY * near;
+        let passes = |from: f64, to: f64| (from > off && to < -near) || (from < -off && to > near);
         for (k, head) in after.iter_mut().enumerate() {
             let [from, to] = [before[k], *head].map(|head| self.pressure_head(k, head));
-            if (from > near && to < -near) || (from < -near && to > near) {
+            let empty = -0.5 * relative.width;
+            if is_sharp && from < empty && passes(from - empty, to - empty) {
+                *head = self.levels[k] + empty;
+            } else if passes(from, to) {
                 *head = self.levels[k] - near;
+            } else if is_sharp && passes(from - empty, to - empty) {
+                *head = self.levels[k] + empty;
             }
         }
+    }
+
+    /// The slope of the water of an unknown where the last of it drains under a sharp surface, towards the side that an
+    /// imbalance drives it to; none elsewhere.
+    fn slope_at_end<const D: usize>(
+        &self,
+        system: &System<'_, D>,
+        (unknown, head): (usize, f64),
+        relative: &Relative,
+        gathers: bool,
+    ) -> Option<f64> {
+        let psi = self.pressure_head(unknown, head);
+        let near = AWAY * NEAR * relative.width;
+        if relative.confined || (psi + 0.5 * relative.width).abs() > near {
+            return None;
+        }
+        let beside = psi + if gathers { 2.0 * near } else { -2.0 * near };
+        let first = self.shares.partition_point(|own| own.0 < unknown);
+        let own = self.shares[first..].iter();
+        let of_soil = |&(_, soil, volume): &(usize, usize, f64)| {
+            volume * relative.content(&system.conditions.soils[soil].pores(), beside)[1]
+        };
+        Some(own.take_while(|own| own.0 == unknown).map(of_soil).sum())
     }
 
     /// Volume of soil by unknown, each soil times a share \[m^D\].
@@ -153,6 +192,10 @@ impl Storing<'_> {
             pattern, values, ..
         } = matrix;
         for (unknown, slope) in slopes.iter().enumerate() {
+            let at = (unknown, heads[unknown]);
+            let gathers = residual[unknown] < 0.0;
+            let at_end = (self.storage).slope_at_end(system, at, relative, gathers);
+            let slope = at_end.unwrap_or(*slope);
             let rows = pattern.coupled_to(unknown);
             let place = rows.partition_point(|own| (*own as usize) < unknown);
             values[pattern.first_value[unknown] + place] += slope / self.duration;

@@ -46,6 +46,16 @@ struct Pair {
     axis: usize,
 }
 
+/// Water that enters a cell from outside the ground.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Source<const D: usize> {
+    pub(crate) x: [f64; D],
+    /// Outward normal of the face that it passes; zero within the ground.
+    pub(crate) normal: [f64; D],
+    /// \[m^D/s\].
+    pub(crate) inflow: f64,
+}
+
 /// A flow to be solved.
 #[derive(Debug)]
 pub(crate) struct System<'a, const D: usize> {
@@ -200,10 +210,23 @@ impl<'a, const D: usize> System<'a, D> {
         relative: &Relative,
     ) -> Vec<Point<D>> {
         let own = &self.cells[cell];
-        let Some(soil) = own.whole else {
-            return own.points.clone();
-        };
-        let [lower, upper] = ends_of(self.grid, own.place);
+        match own.whole {
+            Some(soil) => {
+                let ends = ends_of(self.grid, own.place);
+                self.points_of_part((ends, soil), ends, heads, relative)
+            }
+            None => own.points.clone(),
+        }
+    }
+
+    /// The same of a part of a cell that a soil fills.
+    pub(crate) fn points_of_part(
+        &self,
+        ([lower, upper], soil): ([[f64; D]; 2], usize),
+        part: [[f64; D]; 2],
+        heads: &[f64; CORNERS],
+        relative: &Relative,
+    ) -> Vec<Point<D>> {
         let heads = &heads[..1 << D];
         let lowest = heads.iter().copied().fold(f64::INFINITY, f64::min);
         let highest = heads.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -211,11 +234,26 @@ impl<'a, const D: usize> System<'a, D> {
         let is_full = relative.confined || lowest - upper[D - 1] > beyond;
         let is_dry = self.curve(soil) == Curve::Ramp && highest - lower[D - 1] < -beyond;
         let along: &[(f64, f64)] = if is_full || is_dry { &TWO } else { &FOUR };
-        let mut points = gauss([lower, upper], along, soil);
+        let mut points = gauss(part, along, soil);
         for point in &mut points {
             point.volume *= self.conditions.thickness(point.x[0]);
         }
         points
+    }
+
+    /// Darcy velocity at a point of a cell \[m/s\].
+    pub(crate) fn velocity(
+        &self,
+        cell: usize,
+        point: &Point<D>,
+        heads: &[f64; CORNERS],
+        relative: &Relative,
+    ) -> [f64; D] {
+        let basis = Basis::at(ends_of(self.grid, self.cells[cell].place), &point.x);
+        let psi = basis.head(heads) - point.x[D - 1];
+        let [share, _] = self.share(relative, point.soil, psi);
+        let slope = apply(self.tensor(cell, point.soil), &basis.slope(heads));
+        slope.map(|slope| -share * slope)
     }
 
     /// What share of its permeability soil has at a point, and the slope of that.
@@ -285,16 +323,7 @@ impl<'a, const D: usize> System<'a, D> {
                 }
             }
             let Some(region) = point.region else { continue };
-            let size = self.grid.cell_size(self.cells[cell].place);
-            let least = size.into_iter().fold(f64::INFINITY, f64::min);
-            let soil = &self.conditions.soils[point.soil];
-            let rate = REGION * soil.along.max(soil.across) / (least * least) * point.volume;
-            let (outflow, stiffness) = match self.conditions.regions[region].what {
-                InGround::Head(wanted) => (rate * (head - wanted), rate),
-                InGround::Drain if head > point.x[D - 1] => (rate * (head - point.x[D - 1]), rate),
-                InGround::Inflow(all) => (-all * point.volume / self.volumes[region], 0.0),
-                InGround::Drain | InGround::Soil(_) => (0.0, 0.0),
-            };
+            let (outflow, stiffness) = self.of_region(cell, (&point, region), head);
             flows.add(self.conditions.faces.len() + 2 + region, -outflow);
             for i in 0..corners {
                 local.residual[i] += outflow * basis.value[i];
@@ -303,6 +332,59 @@ impl<'a, const D: usize> System<'a, D> {
                 }
             }
         }
+    }
+
+    /// What a region takes from the ground at a point with this head \[m^D/s\], and its slope (eq. 84).
+    fn of_region(&self, cell: usize, (point, region): (&Point<D>, usize), head: f64) -> (f64, f64) {
+        let size = self.grid.cell_size(self.cells[cell].place);
+        let least = size.into_iter().fold(f64::INFINITY, f64::min);
+        let soil = &self.conditions.soils[point.soil];
+        let rate = REGION * soil.along.max(soil.across) / (least * least) * point.volume;
+        match self.conditions.regions[region].what {
+            InGround::Head(wanted) => (rate * (head - wanted), rate),
+            InGround::Drain if head > point.x[D - 1] => (rate * (head - point.x[D - 1]), rate),
+            InGround::Inflow(all) => (-all * point.volume / self.volumes[region], 0.0),
+            InGround::Drain | InGround::Soil(_) => (0.0, 0.0),
+        }
+    }
+
+    /// What leaves a cell at its corners \[m^D/s\], and all that enters it from outside the ground.
+    pub(crate) fn exchange(
+        &self,
+        cell: usize,
+        heads: &[f64; CORNERS],
+        relative: &Relative,
+    ) -> ([f64; CORNERS], Vec<Source<D>>) {
+        let mut flows = Flows::of(self.owners());
+        let mut local = Local::of(&self.corners[cell][..1 << D]);
+        self.volume(cell, heads, relative, (&mut local, &mut flows));
+        let mut sources = Vec::new();
+        let ends = ends_of(self.grid, self.cells[cell].place);
+        for point in self.points(cell, heads, relative) {
+            let Some(region) = point.region else { continue };
+            let head = Basis::at(ends, &point.x).head(heads);
+            sources.push(Source {
+                x: point.x,
+                normal: [0.0; D],
+                inflow: -self.of_region(cell, (&point, region), head).0,
+            });
+        }
+        let first = self.held.partition_point(|held| held.cell < cell);
+        let own = self.held[first..].iter().enumerate();
+        for (number, held) in own.take_while(|(_, held)| held.cell == cell) {
+            let driven = self.driven.get(first + number).copied();
+            let before = local.residual;
+            self.face((held, driven), heads, relative, (&mut local, &mut flows));
+            let pairs = std::iter::zip(&before, &local.residual);
+            sources.push(Source {
+                x: held.facet.x,
+                normal: held.facet.normal,
+                inflow: pairs.map(|(before, after)| before - after).sum(),
+            });
+        }
+        let mut leaves = [0.0; CORNERS];
+        leaves.copy_from_slice(&local.residual[..CORNERS]);
+        (leaves, sources)
     }
 
     /// Flow through a facet (eqs. 82 and 83).

@@ -25,6 +25,8 @@ const FIRST: f64 = 1e-3;
 const SUDDEN: f64 = 1e-5;
 /// The same for a step that finds no balance \[-\].
 const SHORTEST: f64 = 1e-9;
+/// Share of a stretch of time down to which its last step is halved where a node of it would owe water \[-\].
+const OWING: f64 = 1e-3;
 /// Least and largest change from step to step \[-\].
 const CHANGES: [f64; 2] = [0.1, 4.0];
 /// Steps aim at this share of what the error would allow \[-\].
@@ -163,6 +165,8 @@ struct Step {
     stages: Vec<(f64, Balanced)>,
     /// Error of the step of first order over the span of the heads \[-\].
     error: f64,
+    /// Whether its last stage began with less water than none at a node.
+    owes: bool,
 }
 
 impl<const D: usize> March<'_, '_, D> {
@@ -203,7 +207,10 @@ impl<const D: usize> March<'_, '_, D> {
                 Err(_) => 1.0,
             };
             let [least, most] = CHANGES;
+            // The heads of nodes that owe water are those of a pull that is none, and a state that is asked for is not one of them.
+            let owes = is_last && own > OWING * length && matches!(&step, Ok(step) if step.owes);
             let next = match &step {
+                Ok(_) if owes => 0.5 * own,
                 Ok(_) => {
                     let least_next = (SUDDEN * length).min(most * own);
                     (own * change.clamp(least, most)).max(least_next)
@@ -211,7 +218,7 @@ impl<const D: usize> March<'_, '_, D> {
                 Err(_) => own * change,
             };
             match step {
-                Ok(step) if step.error <= ACCURACY || own <= SUDDEN * length => {
+                Ok(step) if !owes && (step.error <= ACCURACY || own <= SUDDEN * length) => {
                     *duration = if is_last { next.max(*duration) } else { next };
                     let time = if is_last { stop } else { self.time + own };
                     let last = self.accept(step, time);
@@ -276,6 +283,7 @@ impl<const D: usize> March<'_, '_, D> {
         Ok(Step {
             heads: self.search.heads.clone(),
             water: after,
+            owes: lacks_water && stages.len() == 2,
             stages,
             error: (error / volume).sqrt(),
         })

@@ -21,6 +21,7 @@ use igimp_model::{Drainage, Material};
 use igimp_report::ReportError;
 use igimp_results::tables::table::Table;
 use igimp_solver::element::{ElementError, ElementPath, ElementRun, ElementTest};
+use igimp_text::short;
 use thiserror::Error;
 
 pub use compared::{Compared, Off};
@@ -73,7 +74,10 @@ pub struct Tested {
     /// What was said as the file of its material was read, ready to print; it stands on the page. Empty at first.
     pub warnings: String,
     request: Request,
+    /// As it was driven.
     material: Material,
+    /// Whether its strength is that under the stress that the test begins with.
+    is_by_stress: bool,
     values: KeyValues,
     title: String,
 }
@@ -123,11 +127,15 @@ pub fn chosen<'a>(
     })
 }
 
-/// Drives a material; where its strength varies, the greatest counts.
+/// Drives a material. An undrained strength that is a share of the vertical effective stress goes by the axial stress that the
+/// test begins with; where strength varies else, the greatest counts.
 ///
 /// # Errors
 /// [`TestError`]. A test that ends early is a result, and the text says where.
 pub fn test(material: &Material, request: &Request) -> Result<Tested, TestError> {
+    let by_stress = material.under(request.stress[0]);
+    let is_by_stress = by_stress.is_some();
+    let material = by_stress.as_ref().unwrap_or(material);
     let law = material.law()?;
     let driven = driven(&*law, request)?;
     let Driven {
@@ -153,6 +161,7 @@ pub fn test(material: &Material, request: &Request) -> Result<Tested, TestError>
         request: request.clone(),
         title: format!("{}: {}, {what}", material.name, material.strength.name()),
         material: material.clone(),
+        is_by_stress,
     };
     tested.text = said::said(&tested);
     Ok(tested)
@@ -267,11 +276,15 @@ impl Tested {
     }
 
     /// What holds of the material in its case and not in the test.
-    fn notes(&self) -> Vec<&'static str> {
-        let varies = self.material.varies().then_some(said::VARIES);
+    fn notes(&self) -> Vec<String> {
+        let cu = short(self.material.cohesive() / 1e3);
+        let by_stress = format!("{} {cu} kPa", said::BY_STRESS);
+        let by_stress = self.is_by_stress.then_some(by_stress);
+        let varies = (self.material.varies()).then(|| said::VARIES.to_owned());
         let is_undrained = matches!(self.material.drainage, Drainage::Undrained { .. });
-        let undrained = is_undrained.then_some(said::UNDRAINED);
-        varies.into_iter().chain(undrained).collect()
+        let undrained = is_undrained.then(|| said::UNDRAINED.to_owned());
+        let notes = by_stress.into_iter().chain(varies);
+        notes.chain(undrained).collect()
     }
 }
 
@@ -280,6 +293,31 @@ mod tests {
     use super::*;
     use igimp_input::MaterialsFile;
     use igimp_solver::element::Control::{AsXx, Strain, Stress};
+
+    /// GOAL: clay whose strength is a share of the vertical stress fails by the stress that its test begins with, in a file of materials
+    /// alone. ORACLE: q = 2 S σ_v OCR^m in plane strain and compression with Tresca, and no less than 2 s_u,min.
+    #[test]
+    fn a_share_of_the_stress_goes_by_that_of_the_test() {
+        let file = "igimp = 1\n[materials.clay]\nmodel = \"tresca\"\nunit_weight = \"18 kN/m3\"\nyoung = \"30 MPa\"\n\
+            poisson = 0.49\ncu = { ratio = 0.22, ocr = 2.0, exponent = 0.8, at_least = \"5 kPa\" }\n";
+        let file = MaterialsFile::parse("clay.toml", file, &[]).unwrap();
+        for stress in [10e3, 50e3, 400e3] {
+            let request = Request {
+                drive: Drive::Standard(StandardTest::TriaxialUndrained, 0.05),
+                stress: [stress; 2],
+                steps: 50,
+                kinematics: Kinematics::Small,
+                duration: 0.0,
+                data: None,
+            };
+            let tested = test(&file.materials[0], &request).unwrap();
+            let sigma = &tested.run.states.last().unwrap().sigma;
+            let q = (sigma[1][1] - sigma[0][0]).abs();
+            let exact = 2.0 * (0.22 * stress * 2.0_f64.powf(0.8)).max(5e3);
+            assert!((q / exact - 1.0).abs() < 1e-6, "{q} of {exact}");
+            assert!(tested.text.contains("cu by the vertical stress"));
+        }
+    }
 
     const SOILS: &str = "igimp = 1\n[materials.clay]\nmodel = \"modified-cam-clay\"\nunit_weight = \"16 kN/m3\"\n\
         lambda = 0.1\nkappa = 0.02\ncritical_ratio = 1.0\npoisson = 0.2\nocr = 2.0\n[materials.sand]\nmodel = \"mohr-coulomb\"\n\

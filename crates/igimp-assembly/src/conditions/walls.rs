@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use igimp_shape::Grid;
+
 /// How walls of the grid carry soil in a step that takes time (theory, eqs. 69 to 71).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Walls<const D: usize> {
@@ -84,6 +86,15 @@ pub struct AbsorbingWall<const D: usize> {
     pub upper: bool,
     /// Stiffness of the springs over the modulus of the soil \[1/length\].
     pub spring: [f64; D],
+}
+
+impl<const D: usize> AbsorbingWall<D> {
+    /// Whether a node of the grid lies on it.
+    pub(crate) fn holds(&self, grid: &Grid<D>, node: usize) -> bool {
+        let last = grid.axes[self.normal].cell_count();
+        let place = if self.upper { last } else { 0 };
+        grid.node_place(node)[self.normal] == place
+    }
 }
 
 /// A node of a wall as a step begins.

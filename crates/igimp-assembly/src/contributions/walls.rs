@@ -122,9 +122,8 @@ impl<const D: usize> WallForces<D> {
         for wall in &walls.absorbing {
             let axis = &grid.axes[wall.normal];
             let last = axis.cell_count() - 1;
-            let (place, cell) = if wall.upper { (last + 1, last) } else { (0, 0) };
-            let at_wall = |node: usize| grid.node_place(node)[wall.normal] == place;
-            for (&node, share) in shares.iter().filter(|(node, _)| at_wall(**node)) {
+            let cell = if wall.upper { last } else { 0 };
+            for (&node, share) in shares.iter().filter(|(node, _)| wall.holds(grid, **node)) {
                 let own = nodes.entry(node).or_insert_with(|| NodeAtWall {
                     node,
                     dashpot: [0.0; D],

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 
 use igimp_shape::Grid;
 
-use crate::conditions::constraints::Constraints;
+use crate::conditions::StepConditions;
+use crate::conditions::walls::AbsorbingWall;
 use crate::step::continuation::{REACH, carried_beyond, cells_around};
 use crate::step::node_shares::NodeShare;
 use crate::step::supports::Supports;
@@ -14,7 +15,7 @@ use crate::step::ties::{Carrier, Ties};
 /// What extrapolation leaves to a node that it rests on, of the volume below which a node is a small cut \[-\].
 const KEPT: f64 = 0.5;
 
-/// Which nodes are small cuts, their volume being less than `below` of their cells'. Touched, not of positive volume: a point on a
+/// Which nodes are small cuts, their volume being less than `below` of what full soil leaves there. Touched, not of positive volume: a point on a
 /// face sees the cell beyond by its gradient only.
 pub(crate) fn small_cuts<const D: usize>(
     grid: &Grid<D>,
@@ -24,7 +25,7 @@ pub(crate) fn small_cuts<const D: usize>(
     (0..shares.len())
         .map(|node| {
             let share = &shares[node];
-            share.is_touched && share.volume < below * cell_volume(grid, node)
+            share.is_touched && share.volume < below * full_volume(grid, node)
         })
         .collect()
 }
@@ -33,12 +34,12 @@ pub(crate) fn small_cuts<const D: usize>(
 /// ones to that with most soil. What a cut is held by holds all nodes that it is tied to, and weights below zero leave these half of
 /// what makes a cut at least. Cuts without such a cell find none.
 pub(crate) fn extrapolations<const D: usize>(
-    grid: &Grid<D>,
+    conditions: &StepConditions<D>,
     shares: &[NodeShare],
-    constraints: &Constraints<D>,
     cuts: &[bool],
     below: f64,
 ) -> Ties {
+    let (grid, constraints) = (&conditions.grid, &conditions.constraints);
     let mut ties = Ties::new();
     let mut left: Vec<f64> = shares.iter().map(|share| share.volume).collect();
     for cut in (0..cuts.len()).filter(|&node| cuts[node]) {
@@ -52,7 +53,8 @@ pub(crate) fn extrapolations<const D: usize>(
             let is_firm = carriers.iter().all(|own| {
                 let then = left[own.node] + own.weight * shares[cut].volume;
                 !cuts[own.node]
-                    && then > KEPT * below * cell_volume(grid, own.node)
+                    && stays_on_walls(conditions, cut, own.node)
+                    && then > KEPT * below * full_volume(grid, own.node)
                     && (0..D).all(|axis| {
                         held(axis).is_none() || held(axis) == constraints.of(own.node, axis)
                     })
@@ -80,15 +82,29 @@ pub(crate) fn extrapolations<const D: usize>(
     ties
 }
 
+/// Whether a node lies on all walls with dashpots that another lies on: a wall holds its nodes as supports do, and what moved off
+/// it would leave it without dashpots.
+fn stays_on_walls<const D: usize>(
+    conditions: &StepConditions<D>,
+    cut: usize,
+    carrier: usize,
+) -> bool {
+    let Some(walls) = &conditions.walls else {
+        return true;
+    };
+    let is_on = |node, wall: &AbsorbingWall<D>| wall.holds(&conditions.grid, node);
+    { walls.absorbing.iter() }.all(|wall| !is_on(cut, wall) || is_on(carrier, wall))
+}
+
 /// The master of every node that is a small cut: the nearest node that shares a particle with it, carries enough soil and has the
-/// same constraints; of equally near ones that with most soil.
+/// same constraints and walls; of equally near ones that with most soil.
 pub(crate) fn masters_of_cuts<const D: usize>(
-    grid: &Grid<D>,
+    conditions: &StepConditions<D>,
     supports: &Supports<D>,
     shares: &[NodeShare],
-    constraints: &Constraints<D>,
     cuts: &[bool],
 ) -> BTreeMap<usize, usize> {
+    let (grid, constraints) = (&conditions.grid, &conditions.constraints);
     let fixed = |node: usize| (0..D).all(|axis| constraints.of(node, axis).is_some());
     let distance = |a: usize, b: usize| {
         let (a, b) = (grid.node_position(a), grid.node_position(b));
@@ -104,7 +120,7 @@ pub(crate) fn masters_of_cuts<const D: usize>(
             for candidate in nodes.clone() {
                 let alike =
                     (0..D).all(|axis| constraints.of(cut, axis) == constraints.of(candidate, axis));
-                if cuts[candidate] || !alike {
+                if cuts[candidate] || !alike || !stays_on_walls(conditions, cut, candidate) {
                     continue;
                 }
                 let key = |master: usize| (distance(cut, master), -shares[master].volume);
@@ -118,16 +134,16 @@ pub(crate) fn masters_of_cuts<const D: usize>(
     masters
 }
 
-/// The mean volume of a cell around a node: the product of half the lengths to its neighbours,
-/// doubled at walls \[length^D\].
-pub(crate) fn cell_volume<const D: usize>(grid: &Grid<D>, node: usize) -> f64 {
+/// The volume that full soil leaves at a node: the product of half the lengths to its neighbours. On a side of the grid that is
+/// half a cell, at an edge a quarter, at a corner in space an eighth \[length^D\].
+pub(crate) fn full_volume<const D: usize>(grid: &Grid<D>, node: usize) -> f64 {
     let place = grid.node_place(node);
     (0..D)
         .map(|axis| {
             let nodes = grid.axes[axis].nodes();
             let lower = place[axis].saturating_sub(1);
             let upper = (place[axis] + 1).min(nodes.len() - 1);
-            (nodes[upper] - nodes[lower]) / (upper - lower) as f64
+            0.5 * (nodes[upper] - nodes[lower])
         })
         .product()
 }

@@ -12,7 +12,7 @@ use crate::step::cell_soil::{CellSoil, Moments};
 use crate::step::domain::bounds;
 use crate::step::hoops::Hoop;
 use crate::step::node_shares::{NodeShare, node_shares};
-use crate::step::small_cuts::{cell_volume, extrapolations, masters_of_cuts, small_cuts};
+use crate::step::small_cuts::{extrapolations, full_volume, masters_of_cuts, small_cuts};
 use crate::step::strips::Strips;
 use crate::step::supports::Supports;
 use crate::step::ties::{Carrier, Ties, carried};
@@ -184,10 +184,10 @@ impl<const D: usize> Stencils<D> {
         self.shares[node].mass
     }
 
-    /// Volume that a grid node represents over the mean volume of the cells around it \[-\]: 1 within a
-    /// full body, and next to nothing at a small cut.
+    /// Volume that a grid node represents over what full soil leaves there \[-\]: 1 within a full body, at
+    /// sides of the grid too, and next to nothing at a small cut.
     pub fn node_fill(&self, grid: &Grid<D>, node: usize) -> f64 {
-        self.shares[node].volume / cell_volume(grid, node)
+        self.shares[node].volume / full_volume(grid, node)
     }
 
     /// By law, moments of mass that shared gradients do not see (theory, eq. 8f).
@@ -236,19 +236,18 @@ fn ties<const D: usize>(
     shares: &[NodeShare],
 ) -> Ties {
     let SmallCuts { below, remedy, .. } = method.small_cuts;
-    let (grid, constraints) = (&conditions.grid, &conditions.constraints);
     if remedy == Remedy::Drop {
         return Ties::new();
     }
-    let cuts = small_cuts(grid, shares, below);
+    let cuts = small_cuts(&conditions.grid, shares, below);
     if !cuts.contains(&true) {
         return Ties::new();
     }
     let mut ties = match remedy {
-        Remedy::Extrapolate => extrapolations(grid, shares, constraints, &cuts, below),
+        Remedy::Extrapolate => extrapolations(conditions, shares, &cuts, below),
         Remedy::Tie | Remedy::Drop => Ties::new(),
     };
-    let masters = masters_of_cuts(grid, supports, shares, constraints, &cuts);
+    let masters = masters_of_cuts(conditions, supports, shares, &cuts);
     for (cut, node) in masters {
         let weight = 1.0;
         ties.entry(cut)

@@ -6,7 +6,7 @@ use igimp_shape::Grid;
 
 use crate::conditions::constraints::Constraints;
 use crate::error::AssemblyError;
-use crate::step::small_cuts::cell_volume;
+use crate::step::small_cuts::full_volume;
 use crate::step::stencils::Stencils;
 
 /// Marks a degree of freedom without an unknown.
@@ -33,7 +33,7 @@ pub struct Unknowns<const D: usize> {
 }
 
 impl<const D: usize> Unknowns<D> {
-    /// Numbers the unknowns. Nodes whose volume is below `drop_below` of their cells' volume are
+    /// Numbers the unknowns. Nodes whose volume is below `drop_below` of what full soil leaves there are
     /// dropped: their displacement is zero. (Tied nodes carry no volume any more.) Behind the nodes of the
     /// grid stand those of rigid bodies, each with its free components, and those of scalars: the nodes of the grid that
     /// `has_scalar` names, if it names any.
@@ -61,7 +61,7 @@ impl<const D: usize> Unknowns<D> {
             first.push(len);
             blocks_before.push(blocks);
             let volume = stencils.node_volume(node);
-            let has_soil = volume > 0.0 && volume >= drop_below * cell_volume(grid, node);
+            let has_soil = volume > 0.0 && volume >= drop_below * full_volume(grid, node);
             active[node] = has_soil || stencils.is_carrier(node);
             if !active[node] {
                 continue;

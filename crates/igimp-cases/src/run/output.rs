@@ -392,7 +392,8 @@ impl<const D: usize> Output<D> {
                 .map(|(section, table)| {
                     let references = section.references_at(case, number);
                     let stage = &summary.name;
-                    pictures::section_pictures(root, title, section, stage, &references, table)
+                    let of = (title.as_str(), pictures::axes_of(case));
+                    pictures::section_pictures(root, of, section, stage, &references, table)
                 })
                 .collect::<Result<Vec<_>, _>>()?;
             self.figures.extend(drawn.concat());

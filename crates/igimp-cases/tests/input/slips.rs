@@ -210,4 +210,37 @@ fn keys_without_effect_are_told_of() {
     assert!(warned(&[&alone]).contains(exponent));
     let both = strength.replace("SHARE", "exponent = 0.9, ocr = 2.0");
     assert!(!warned(&[&both]).contains(exponent));
+    // A level of the water that stood in the ground saturates it, and a share of the weight saturates nothing.
+    let level = strength.replace("SHARE", "water_level = \"6 m\"");
+    let level = level.replace(
+        "poisson = 0.4,",
+        "poisson = 0.4, saturated_unit_weight = \"21 kN/m3\",",
+    );
+    assert!(!warned(&[&level]).contains(saturated));
+    let wet = |set: &str| warned(&["materials.clay.saturated_unit_weight=21 kN/m3", set]);
+    let by_share = wet("water=[{ name = \"w\", r_u = 0.2 }]");
+    assert!(
+        by_share.contains(saturated) && by_share.contains("has a table"),
+        "{by_share}"
+    );
+    assert!(!wet("water=[{ name = \"w\", level = \"3 m\" }]").contains(saturated));
+}
+
+/// GOAL: curves that would share the file of the table of factors of safety in time are refused, and a force at a point of a body of
+/// revolution is answered as such. ORACLE: the words of the messages.
+#[test]
+fn names_of_runs_and_points_on_circles_are_refused() {
+    let curve = "curves=[{ name = \"safety-in-time\", x = { of = \"gravity_factor\" }, y = { of = \"largest_displacement\" } }]";
+    let said = overridden(SLOPE, &[curve]).unwrap_err().to_string();
+    assert!(
+        said.contains("a curve cannot be called `safety-in-time`"),
+        "{said}"
+    );
+    let point = "loads=[{ name = \"q\", type = \"point\", at = [\"1 m\", \"2 m\"], force = [\"0 kN\", \"-10 kN\"] }]";
+    let said = overridden(SLOPE, &[point, "case.analysis=axisymmetric"]);
+    let said = said.unwrap_err().to_string();
+    assert!(
+        said.contains("along a whole circle") && !said.contains("one metre thick"),
+        "{said}"
+    );
 }

@@ -185,3 +185,22 @@ fn a_search_of_absent_soil_is_refused() {
     let both = later.replace("[\"soil\"]", "[\"soil\", \"other\"]");
     assert!(CaseFile::parse("level.toml", &both, &[]).is_ok());
 }
+
+/// GOAL: the curve of displacement against the factor of a search has one origin, whatever settled before it.
+/// CASE: the slope after its weight, whose settlement stays in the displacements that go on. ORACLE: nothing has moved as the search
+/// begins; the settlement, a hundred times what the first trial adds, is the control.
+#[test]
+fn a_curve_of_a_search_begins_with_nothing() {
+    let search = "[[stages]]\nname = \"dry\"\ntype = \"strength-reduction\"\nsearch = \"trials\"\nfactors = [1.05, 1.1]\n\
+                  [[curves]]\nname = \"cf\"\nstage = \"dry\"\nx = { of = \"reduction_factor\" }\ny = { of = \"largest_displacement\" }\n\
+                  [output]\nfigures = []\nreport = false\nparaview = { every = \"never\" }\n";
+    let text = [SLOPE, search].concat();
+    let file = CaseFile::parse("slope.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let run = in_memory(file.case()).unwrap();
+    let settled = run.body.particles.displacement.iter().flatten();
+    let settled = settled.fold(0.0, |most: f64, own| most.max(own.abs()));
+    let rows = &run.curves[0].rows;
+    println!("{rows:?}, settled {settled}");
+    assert!(rows.len() > 1 && rows[0][1].abs() < 1e-15);
+    assert!(rows[1][1] > 0.0 && settled > 1e-3);
+}

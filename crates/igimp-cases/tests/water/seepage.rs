@@ -455,13 +455,23 @@ fn what_makes_no_flow_is_refused() {
             "seepage = { sections = [{ name = \"a\", from = [\"0 m\", \"0 m\"], to = [\"2 m\", \"2 m\"] }],",
             "lies across no axis: it measures 2 by 2 m",
         ),
+        (
+            "from = [\"0 m\", \"0 m\"], to = [\"0 m\", \"10 m\"]",
+            "from = [\"-2 m\", \"0 m\"], to = [\"-1 m\", \"10 m\"]",
+            "the face `left` meets no body",
+        ),
+        (
+            "seepage = {",
+            "seepage = { regions = [{ name = \"well\", from = [\"28 m\", \"8 m\"], to = [\"29 m\", \"9 m\"], drain = true }],",
+            "the region `well` meets no body",
+        ),
     ] {
         let found = refused(from, to);
         assert!(found.contains(message), "{message}: {found}");
     }
     let nowhere = edited(&[
-        ("[\"0 m\", \"10 m\"], head", "[\"-1 m\", \"10 m\"], head"),
-        ("from = [\"0 m\", \"0 m\"]", "from = [\"-2 m\", \"0 m\"]"),
+        ("[\"0 m\", \"10 m\"], head", "[\"6 m\", \"3 m\"], head"),
+        ("from = [\"0 m\", \"0 m\"]", "from = [\"5 m\", \"2 m\"]"),
     ]);
     let file =
         CaseFile::parse("seepage.toml", &nowhere, &[]).unwrap_or_else(|error| panic!("{error}"));
@@ -475,6 +485,30 @@ fn what_makes_no_flow_is_refused() {
         cause.starts_with("`left` holds no face of the ground"),
         "{cause}"
     );
+}
+
+/// GOAL: keys of the fall of permeability that nothing asks for are told of, and are quiet where something does. ORACLE: the words of
+/// the messages.
+#[test]
+fn falls_without_effect_are_told_of() {
+    let said = |edits: &[(&str, &str)]| parsed(&edited(edits)).warnings();
+    let fall = ("seepage = {", "seepage = { fall = \"3 m\",");
+    let gardner = ("vertical = \"5e-6 m/s\"", "gardner = \"1 m\"");
+    let confined = ("seepage = {", "seepage = { confined = true,");
+    let has_none = "`fall` has no effect: every soil has a curve of its own";
+    assert!(said(&[fall, gardner]).contains(has_none));
+    assert!(!said(&[fall]).contains("no effect"));
+    assert!(!said(&[gardner]).contains("no effect"));
+    assert!(said(&[fall, confined]).contains("`fall` has no effect: all pores are full"));
+    assert!(said(&[gardner, confined]).contains("the curve of `sand` has no effect"));
+    let angle = "`angle` has no effect";
+    let turned = ("vertical = \"5e-6 m/s\"", "angle = \"10 deg\"");
+    assert!(said(&[turned]).contains(angle));
+    let bedded = (
+        "vertical = \"5e-6 m/s\"",
+        "vertical = \"5e-6 m/s\", angle = \"10 deg\"",
+    );
+    assert!(!said(&[bedded]).contains(angle));
 }
 
 const LATER: &str = r#"

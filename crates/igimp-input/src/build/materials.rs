@@ -82,6 +82,11 @@ pub(super) fn materials<const D: usize>(
         Some(layer(body, weight.constant, weight.profile.clone()))
     });
     let ground = Ground::of_layers(with_weights);
+    let of_water = Root::<D>::case(tree).map(|own| *own.water_unit_weight);
+    let ground = match of_water {
+        Ok(unit_weight) => ground.with_water_of(unit_weight),
+        Err(Wrong) => ground,
+    };
     std::iter::zip(&stated, &weights)
         .enumerate()
         .map(|(index, (own, weight))| {

@@ -3,7 +3,7 @@
 
 use igimp_material::Ratios;
 
-use crate::{Ground, Material, Raster, front};
+use crate::{Ground, Material, Raster, Strength, front};
 
 /// The least strength of a profile over its greatest \[-\]: soil without any would be no soil.
 pub const LEAST_STRENGTH: f64 = 1e-6;
@@ -42,7 +42,11 @@ impl StressShare {
     /// The strength at a place \[Pa\].
     fn at<const D: usize>(&self, place: &[f64; D], ground: &Ground<D>) -> f64 {
         let ocr = (self.ocr_profile.as_ref()).map_or(self.ocr, |own| own.at(place, ground));
-        let stress = ground.effective_stress(place, self.water_level);
+        self.of(ground.effective_stress(place, self.water_level), ocr)
+    }
+
+    /// The strength under a vertical effective stress \[Pa\] (theory, eq. 36b).
+    fn of(&self, stress: f64, ocr: f64) -> f64 {
         (self.ratio * stress * ocr.powf(self.exponent)).max(self.at_least)
     }
 }
@@ -184,6 +188,22 @@ impl Material {
     /// Undrained strength or cohesion \[Pa\]; zero for a material that has neither. The greatest where it varies.
     pub fn cohesive(&self) -> f64 {
         self.strength.cohesive().unwrap_or(0.0)
+    }
+
+    /// The material as soil under a vertical effective stress \[Pa\] has it, where its undrained strength is a share of that;
+    /// with the greatest ratio of overconsolidation. None else.
+    pub fn under(&self, stress: f64) -> Option<Self> {
+        let Some(Profile::StressShare(share)) = &self.profiles.strength else {
+            return None;
+        };
+        let mut own = self.clone();
+        own.profiles.strength = None;
+        if let Strength::VonMises { undrained_strength } | Strength::Tresca { undrained_strength } =
+            &mut own.strength
+        {
+            *undrained_strength = share.of(stress.max(0.0), share.ocr);
+        }
+        Some(own)
     }
 
     /// Whether anything varies that stress depends on.

@@ -9,7 +9,7 @@ use igimp_results::fields::{self, Scale};
 use igimp_results::summary::FigureNote;
 use igimp_text::short;
 
-use super::{file_name, sentence, titled, water, write};
+use super::{axes_of, file_name, sentence, titled, water, write};
 use crate::error::ReportError;
 use crate::patches::{Carriers, Pieces};
 
@@ -120,7 +120,11 @@ pub fn field_picture(
         title: titled(&case.title, &shown.title),
         domains,
         values: whose.iter().map(|&k| values[k] / scale.divide_by).collect(),
-        label: format!("{total}{}{}", fields::label(field, scale), colours.told()),
+        label: format!(
+            "{total}{}{}",
+            fields::label_in(axes_of(case), field, scale),
+            colours.told()
+        ),
         range: colours.range,
         map: colours.map,
         outlines: edges(case, canvas.pieces, particles)
@@ -142,7 +146,10 @@ pub fn field_picture(
     };
     let caption = format!(
         "{} {}. Lines: the edges of the bodies; dashed: before they moved{}.{members}{same}",
-        sentence(&format!("{total}{}", fields::plain(field.title()))),
+        sentence(&format!(
+            "{total}{}",
+            fields::plain(field.title_in(axes_of(case)))
+        )),
         shown.when,
         water::told(&over.outlines),
     );

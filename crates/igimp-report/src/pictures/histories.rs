@@ -8,12 +8,12 @@ use igimp_figures::{
 use igimp_model::{
     Average, Case, Field, Monitor, ReferenceValues, Section, SectionReference, StageKind,
 };
-use igimp_results::fields::{self, Dimension, Scale};
+use igimp_results::fields::{self, Axes, Dimension, Scale};
 use igimp_results::summary::FigureNote;
 use igimp_results::tables::table::Table;
 use igimp_text::short;
 
-use super::{file_name, points, style, titled, write};
+use super::{axes_of, file_name, points, style, titled, write};
 use crate::error::ReportError;
 
 /// Most changes of stage that are marked in a history.
@@ -45,14 +45,14 @@ pub fn monitor_pictures<const D: usize>(
         "; upright lines: a new stage begins"
     };
     let mut notes = Vec::new();
-    for group in groups(&monitor.record, table) {
+    for group in groups(&monitor.record, table, axes_of(case)) {
         let breaks = breaks(case, table, group.dimension);
         let broken = if breaks.is_empty() {
             ""
         } else {
             "; lines are broken where a quantity begins anew"
         };
-        let (label, series) = group.series(table, &along, &breaks, false);
+        let (label, series) = group.series(table, (&along, &breaks), false);
         let plot = CurvePlot {
             title: titled(&case.title, &format!("monitor {}", monitor.name)),
             x_label: x_label.to_owned(),
@@ -141,7 +141,7 @@ fn stage_marks(table: &Table, times: Option<&[f64]>) -> Vec<ReferenceLine> {
 /// [`ResultsError::File`](igimp_results::ResultsError::File) and [`ReportError::Figure`].
 pub fn section_pictures<const D: usize>(
     folder: &Path,
-    case_title: &str,
+    (case_title, axes): (&str, Axes),
     section: &Section<D>,
     stage: &str,
     references: &[&SectionReference],
@@ -149,8 +149,8 @@ pub fn section_pictures<const D: usize>(
 ) -> Result<Vec<FigureNote>, ReportError> {
     let course = Course::of(section, table);
     let mut notes = Vec::new();
-    for group in groups(&section.record, table) {
-        let (label, mut series) = group.series(table, &course.along, &[], course.is_upright);
+    for group in groups(&section.record, table, axes) {
+        let (label, mut series) = group.series(table, (&course.along, &[]), course.is_upright);
         let scale = group.scale(table);
         let mut bands = Vec::new();
         let mut sources = String::new();
@@ -163,7 +163,7 @@ pub fn section_pictures<const D: usize>(
             series.push(Series::new(name, points, style).in_colour(Colour::BLACK));
         }
         let (x_label, y_label) = if course.is_upright {
-            (label, "height y [m]".to_owned())
+            (label, format!("height {} [m]", ["y", "z"][D - 2]))
         } else {
             (format!("distance along {} [m]", section.name), label)
         };
@@ -211,12 +211,14 @@ impl Course {
         let column = headers
             .position(|header| header.starts_with("distance"))
             .unwrap_or(0);
-        let [dx, dy] = [0, 1].map(|axis| section.to[axis] - section.from[axis]);
+        let along: [f64; D] = std::array::from_fn(|axis| section.to[axis] - section.from[axis]);
+        let rise = along[D - 1];
+        let is_level = |own: &f64| own.abs() <= 1e-6 * rise.abs();
         let mut course = Self {
             along: Vec::new(),
-            is_upright: dx.abs() <= 1e-6 * dy.abs() && dy != 0.0,
-            foot: section.from[1],
-            sense: dy.signum(),
+            is_upright: rise.abs() > 0.0 && along[..D - 1].iter().all(is_level),
+            foot: section.from[D - 1],
+            sense: rise.signum(),
         };
         let distance = points(table, column, column);
         course.along = distance
@@ -282,12 +284,13 @@ fn reference(
 
 /// Recorded fields of one kind, with their columns.
 struct Group {
+    axes: Axes,
     dimension: Dimension,
     columns: Vec<(Field, usize)>,
 }
 
 /// The recorded fields that the table holds, by kind, in the order of the record.
-fn groups(record: &[Field], table: &Table) -> Vec<Group> {
+fn groups(record: &[Field], table: &Table, axes: Axes) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for &field in record {
         let wanted = field.header();
@@ -298,6 +301,7 @@ fn groups(record: &[Field], table: &Table) -> Vec<Group> {
         match groups.iter_mut().find(|group| group.dimension == dimension) {
             Some(group) => group.columns.push((field, column)),
             None => groups.push(Group {
+                axes,
                 dimension,
                 columns: vec![(field, column)],
             }),
@@ -322,8 +326,7 @@ impl Group {
     fn series(
         &self,
         table: &Table,
-        along: &[f64],
-        breaks: &[usize],
+        (along, breaks): (&[f64], &[usize]),
         upright: bool,
     ) -> (String, Vec<Series>) {
         let values = |column: usize| table.rows.iter().filter_map(move |row| row.get(column));
@@ -337,7 +340,7 @@ impl Group {
                 points.insert((row + 1).min(points.len()), [f64::NAN; 2]);
             }
             let style = style(points.len());
-            Series::new(field.title(), points, style)
+            Series::new(field.title_in(self.axes), points, style)
         };
         match self.columns.as_slice() {
             [only] => {
@@ -345,7 +348,7 @@ impl Group {
                     label: String::new(),
                     ..make(only)
                 };
-                (fields::label(only.0, scale), vec![series])
+                (fields::label_in(self.axes, only.0, scale), vec![series])
             }
             several => {
                 let label = format!("{} [{}]{}", self.noun(), scale.unit, self.sign());
@@ -383,7 +386,7 @@ impl Group {
         let titles: Vec<String> = self
             .columns
             .iter()
-            .map(|&(field, _)| fields::plain(field.title()))
+            .map(|&(field, _)| fields::plain(field.title_in(self.axes)))
             .collect();
         super::sentence(&titles.join(", "))
     }

@@ -52,12 +52,23 @@ pub use space::InSpace;
 
 use crate::error::ReportError;
 use igimp_figures::{Drawing, LineStyle, SeriesStyle};
+use igimp_model::Case;
 use igimp_results::ResultsError;
+use igimp_results::fields::Axes;
 use igimp_results::summary::FigureNote;
 use igimp_results::tables::table::Table;
 
 /// Folder of the pictures within a results folder.
 pub const FOLDER: &str = "figures";
+
+/// What the axes of a case are called.
+pub fn axes_of<const D: usize>(case: &Case<D>) -> Axes {
+    match D {
+        2 if case.method.section.is_axisymmetric() => Axes::Revolution,
+        2 => Axes::Plane,
+        _ => Axes::Space,
+    }
+}
 
 /// A name for files: lower-case letters, digits, `_` and single hyphens.
 pub fn file_name(text: &str) -> String {

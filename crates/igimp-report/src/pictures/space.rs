@@ -4,7 +4,7 @@ use std::path::Path;
 
 use igimp_figures::{Face, FieldPlot, SpacePlot, View};
 use igimp_model::{Cut, Field, PoreSource};
-use igimp_results::fields::{self, Scale};
+use igimp_results::fields::{self, Axes, Scale};
 use igimp_results::summary::FigureNote;
 
 use super::field::Colours;
@@ -169,12 +169,12 @@ impl<'a> InSpace<'a> {
         let colours = Colours::of(field, &scale.apply(&all));
         let is_total = self.pore_water && field.is_total();
         let total = if is_total { "total " } else { "" };
-        let title = fields::plain(field.title_in(3));
+        let title = fields::plain(field.title_in(Axes::Space));
         Coloured {
             values: scale.apply(&values),
             label: format!(
                 "{total}{}{}",
-                fields::label_in(3, field, scale),
+                fields::label_in(Axes::Space, field, scale),
                 colours.told()
             ),
             what: sentence(&format!("{total}{title}")),

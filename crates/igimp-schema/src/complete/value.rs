@@ -3,7 +3,7 @@
 use super::Completer;
 use crate::names::check_name;
 use crate::quantity::{Dimension, Quantity, QuantityError};
-use crate::spec::{Kind, Range};
+use crate::spec::{Bodies, Kind, Range};
 use crate::text::{clip, row};
 use crate::tree::{Node, Value};
 
@@ -181,9 +181,25 @@ fn refuse(
     error: &QuantityError,
     dimension: Option<Dimension>,
 ) -> Option<Node> {
+    // Keys of forces per metre run that an analysis of revolution knows are those of forces at a point.
+    let is_at_circle = completer.bodies == Bodies::Revolution
+        && matches!(
+            error,
+            QuantityError::WrongKind {
+                expected: Dimension::ForcePerLength,
+                found: Dimension::Force,
+                ..
+            }
+        );
+    let help = if is_at_circle {
+        "a force at a point would be one along a whole circle: state a pressure over an area"
+            .to_owned()
+    } else {
+        error.help(dimension)
+    };
     completer
         .problems
         .error(node.place, error.to_string())
-        .help(error.help(dimension));
+        .help(help);
     None
 }

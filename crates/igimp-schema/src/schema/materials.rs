@@ -399,7 +399,7 @@ table! {
     exponent: number(NotNegative), optional "0.8", "exponent of `ocr`, with `ratio`";
     at_least: quantity(Stress, NotNegative), optional "\"0 kPa\"", "no less strength than this, with `ratio`";
     water_level: length, optional "the first condition of the water, or none",
-        "level y of water at rest when the ground consolidated, with `ratio`; 9.81 kN/m3";
+        "level y of water at rest when the ground consolidated, with `ratio`; of the `water_unit_weight` of the case";
 }
 
 rows! {

@@ -127,7 +127,7 @@ table! {
     lumped_share: number(Fraction), default "0.01",
         "share of the mass that is lumped at the nodes: 0 consistent, 1 lumped";
     tied_below: number(NotNegative), default "0.2",
-        "share of a cell's volume below which the motion of a node is extrapolated from full cells";
+        "share of the volume that full soil leaves at a node below which its motion is extrapolated from full cells";
     longest_step: quantity(Time, Positive), optional "the error of the scheme and the way of the soil alone choose",
         "longest step of time";
     reduction: apart(table(REDUCTION: Reduction)), optional "strength stays",

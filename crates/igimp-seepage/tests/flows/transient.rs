@@ -469,3 +469,58 @@ fn a_face_above_a_falling_head_lets_water_out() {
     assert!((last.outflow / exact - 1.0).abs() < 0.01);
     assert!((last.outflow / steady.outflow - 1.0).abs() < 1e-3);
 }
+
+/// A block 20 m long behind a pond of 8 m that falls to 4 m at once, sealed elsewhere, on cells of a metre.
+fn block_of(curve: Curve, times: &[f64]) -> Result<(Seepage<2>, Transient<2>), SeepageError> {
+    let grid = grid([0.0, 0.0], 1.0, [20, 11]);
+    let soil = Soil {
+        drainable: 0.1,
+        specific_storage: 9810.0 / 240e6,
+        curve,
+        ..Soil::isotropic(1e-5)
+    };
+    let mut conditions = Conditions::of(vec![soil]);
+    conditions.faces = vec![
+        faces("open", [0.0, 0.0], [0.0, 10.0], OnFaces::Open),
+        faces("pond", [0.0, 0.0], [0.0, 10.0], OnFaces::Head(8.0)),
+    ];
+    let course = Course {
+        histories: vec![None, Some(constant(4.0))],
+        times: times.to_vec(),
+    };
+    let polygon = rectangle([0.0, 0.0], [20.0, 10.0]);
+    follow(&grid, &[polygon], &conditions, &course)
+}
+
+/// GOAL: a sudden drawdown is followed whatever the times that are asked for, with a sharp surface and with curves: the steps
+/// follow from the times, and what is found at one does not. CASE: four first times, from a tenth to a half of the last.
+/// ORACLE: each other, within 0.1 % of the fall; the level comes down to the pond's and not below.
+#[test]
+fn a_drawdown_is_followed_whatever_times_are_asked_for() {
+    let day = 86_400.0;
+    let van_genuchten = |alpha, n| Curve::VanGenuchten { alpha, n };
+    for curve in [
+        Curve::Ramp,
+        Curve::Gardner { alpha: 2.0 },
+        van_genuchten(1.0, 3.0),
+        van_genuchten(2.0, 2.0),
+    ] {
+        let levels = [
+            &[20.0][..],
+            &[0.1, 20.0],
+            &[1.0, 20.0],
+            &[5.0, 20.0],
+            &[10.0, 20.0],
+        ];
+        let levels = levels.map(|times| {
+            let times: Vec<f64> = times.iter().map(|own| own * day).collect();
+            let (_, found) = block_of(curve, &times).unwrap();
+            found.states.last().unwrap().head(&[20.0, 0.0])
+        });
+        println!("{curve:?}: {levels:.4?}");
+        for level in levels {
+            assert!((level - levels[0]).abs() < 1e-3 * 4.0, "{levels:?}");
+            assert!(level > 4.0 && level < 4.2, "{levels:?}");
+        }
+    }
+}

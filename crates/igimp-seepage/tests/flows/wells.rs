@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::common::{faces, flow, grid, rectangle};
 use igimp_geometry::region::Region;
-use igimp_seepage::{Conditions, Course, History, OnFaces, SeepageBody, Soil, march};
+use igimp_seepage::{Conditions, Course, Extent, History, OnFaces, SeepageBody, Soil, march};
 
 /// Ground around a well, between two radii \[m\], with heads at both.
 fn around(radii: [f64; 2], height: f64, heads: [f64; 2]) -> (Vec<[f64; 2]>, Conditions<2>) {
@@ -154,4 +154,49 @@ fn a_drain_in_time() {
         println!("t {time}: {degree:.4} of {exact:.4}");
         assert!((degree - exact).abs() < 5e-3, "{degree}");
     }
+}
+
+/// GOAL: a disc about the axis passes its area's share of an upright flow, and a sleeve about it nothing.
+/// ORACLE: k i π R², by hand.
+#[test]
+fn discs_pass_their_area() {
+    let grid = grid([0.0, 0.0], 0.5, [8, 8]);
+    let mut conditions = Conditions {
+        axisymmetric: true,
+        confined: true,
+        ..Conditions::of(vec![Soil::isotropic(1e-3)])
+    };
+    conditions.faces = vec![
+        faces("below", [0.0, 0.0], [3.8, 0.0], OnFaces::Head(7.0)),
+        faces("above", [0.0, 4.0], [3.8, 4.0], OnFaces::Head(5.0)),
+    ];
+    let discs = [
+        (0.3, 1.0),
+        (1.0, 1.0),
+        (1.7, 2.3),
+        (3.6, 3.0),
+        (3.8, 0.0),
+        (3.8, 4.0),
+    ];
+    conditions.sections = (discs.iter())
+        .map(|&(radius, level)| {
+            let extent = Extent {
+                lower: [0.0, level],
+                upper: [radius, level],
+            };
+            (format!("{radius}"), extent)
+        })
+        .collect();
+    let sleeve = Extent {
+        lower: [2.2, 0.0],
+        upper: [2.2, 4.0],
+    };
+    conditions.sections.push(("sleeve".to_owned(), sleeve));
+    let found = flow(&grid, &[rectangle([0.0, 0.0], [3.8, 4.0])], &conditions).unwrap();
+    for ((radius, level), own) in std::iter::zip(discs, &found.sections) {
+        let exact = 1e-3 * 0.5 * PI * radius * radius;
+        println!("{radius} {level}: {} of {exact}", own.inflow);
+        assert!((own.inflow / exact - 1.0).abs() < 5e-4, "{radius} {level}");
+    }
+    assert!(found.sections.last().unwrap().inflow.abs() < 1e-12);
 }

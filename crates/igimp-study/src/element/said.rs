@@ -10,7 +10,9 @@ use super::values::KeyValues;
 use super::{Request, Tested};
 
 /// Of a material that varies in its case.
-pub(super) const VARIES: &str = "strength or stiffness vary in the case: the greatest count";
+pub(super) const VARIES: &str = "strength or stiffness vary: the greatest in the soil count, in a file of materials alone those at the top of a gradient";
+/// Of a strength that is a share of the vertical effective stress.
+pub(super) const BY_STRESS: &str = "cu by the vertical stress that the test begins with:";
 /// Of a material that is undrained in its case.
 pub(super) const UNDRAINED: &str = "stresses are effective ones; an undrained test keeps the volume, whatever the water's stiffness";
 

@@ -98,10 +98,14 @@ impl<'a> Problem<'a> {
     /// Computed less measured, over the scale of the quantity (theory, eq. 116).
     pub(super) fn residuals(&self, at: &[f64]) -> Result<Vec<f64>, Lost> {
         let material = self.material(at).map_err(Lost::Input)?;
-        let law = material.law().map_err(|error| Lost::Test(error.into()))?;
+        let law_of = |material: &Material| material.law().map_err(|error| Lost::Test(error.into()));
+        let law = law_of(&material)?;
         let mut residuals = Vec::with_capacity(self.values);
         for (place, (request, scales)) in self.tests.iter().zip(&self.scales).enumerate() {
-            let own = driven(&*law, request).map_err(Lost::Test)?;
+            let by_stress = material.under(request.stress[0]);
+            let by_stress = by_stress.as_ref().map(law_of).transpose()?;
+            let law = by_stress.as_ref().unwrap_or(&law);
+            let own = driven(&**law, request).map_err(Lost::Test)?;
             let before = residuals.len();
             let Some(compared) = own.compared else {
                 continue;

@@ -87,7 +87,8 @@ fn by_trials<const D: usize>(
     let mut trials = Trials::new(session, (kept, state), number, stage, reduction, left)?;
     // Where gravity is raised anew the state found is none that a trial begins with.
     if trials.made.is_empty() && reduction.path == ReductionPath::Reduce {
-        begin(session, state, number)?;
+        // Displacements of trials count from the start of the search, and so does the first row.
+        begin(session, &trials.base, number)?;
     }
     let ended = trials.search(session, summary);
     summary.safety = Some(trials.finish(session));

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use igimp_model::{Case, Ground, InTime, PoreSource, SeepageCase};
-use igimp_seepage::{Conditions, Course, Scale, Seepage, SeepageBody, WaterBalance, march, solve};
+use igimp_seepage::{
+    Conditions, Course, Scale, Seepage, SeepageBody, SeepageError, WaterBalance, march, solve,
+};
 
 use crate::error::CaseError;
 
@@ -103,9 +105,17 @@ impl<const D: usize> Flows<D> {
         let (conditions, free) = given(case, own);
         let grid = case.grid.grid()?;
         let found = march(&grid, &bodies, (&start, &conditions), &free, &course);
-        let found = found.map_err(|source| CaseError::Seepage {
-            water: case.water[*last].name.clone(),
-            source,
+        let found = found.map_err(|source| {
+            // The moment that it was on its way to.
+            let next = match source {
+                SeepageError::Stuck { time } => moments.iter().find(|(.., own)| own.time > time),
+                _ => None,
+            };
+            let water = next.map_or(*last, |(index, ..)| *index);
+            CaseError::Seepage {
+                water: case.water[water].name.clone(),
+                source,
+            }
         })?;
         let states: Vec<Arc<Seepage<D>>> = found.states.into_iter().map(Arc::new).collect();
         for (index, _, own) in moments {

@@ -14,6 +14,7 @@ use igimp_model::{
 };
 use igimp_report::patches::Pieces;
 use igimp_report::pictures::{self, Canvas, Shown};
+use igimp_results::fields::Axes;
 use igimp_results::summary::{FigureNote, Summary};
 
 use super::findings;
@@ -289,7 +290,14 @@ pub(crate) fn draw(folder: &Path, case: &Case<2>) -> Vec<FigureNote> {
     }
     for section in &case.sections {
         let table = findings::section_table(section);
-        let drawn = pictures::section_pictures(folder, title, section, "surcharge", &[], &table);
+        let drawn = pictures::section_pictures(
+            folder,
+            (title, Axes::Plane),
+            section,
+            "surcharge",
+            &[],
+            &table,
+        );
         notes.extend(drawn.unwrap());
     }
     let (particles, laws) = particles(case);

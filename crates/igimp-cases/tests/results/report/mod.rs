@@ -15,6 +15,7 @@ use igimp_report::report::write_report;
 use igimp_report::setup;
 use igimp_report::viewer::Surroundings;
 use igimp_results::ResultsError;
+use igimp_results::fields::Axes;
 use igimp_results::summary::{FigureNote, SafetySummary, SetupTable, StageOutcome, Summary};
 use igimp_results::tables::table::Table;
 
@@ -326,7 +327,7 @@ fn empty_tables_make_empty_pictures() {
     let mut table = findings::section_table(section);
     table.rows.clear();
     assert_eq!(
-        pictures::section_pictures(&folder, "", section, "s", &[], &table)
+        pictures::section_pictures(&folder, ("", Axes::Plane), section, "s", &[], &table)
             .unwrap()
             .len(),
         2

@@ -1,15 +1,29 @@
 //! Keys of materials that a case states and nothing of it asks for.
 
-use igimp_model::{Case, StageKind};
+use igimp_model::{Case, Material, PoreSource, Profile, StageKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::text::clip;
 use igimp_schema::tree::Node;
 
-/// Warns of `k0` without a stage that begins at rest, and of `saturated_unit_weight` without water.
+/// Warns of `k0` without a stage that begins at rest, and of `saturated_unit_weight` without a table of water that would saturate
+/// soil: one of a condition, or the level that a strength by stress states.
 pub(crate) fn check_unused<const D: usize>(tree: &Node, case: &Case<D>, problems: &mut Problems) {
     let is_k0 = |kind: &StageKind| matches!(kind, StageKind::K0);
     let begins_at_rest = case.stages.iter().any(|stage| is_k0(&stage.kind));
+    let saturates = |source: &PoreSource| {
+        !matches!(
+            source,
+            PoreSource::Dry | PoreSource::Ratio(_) | PoreSource::Points(_)
+        )
+    };
+    let mut sources = (case.water.iter())
+        .flat_map(|own| std::iter::once(&own.source).chain(own.bodies.iter().map(|(_, own)| own)));
+    let has_level = |own: &Material| match &own.profiles.strength {
+        Some(Profile::StressShare(share)) => share.water_level.is_some(),
+        _ => false,
+    };
+    let saturates_none = !sources.any(saturates) && !case.materials.iter().any(has_level);
     let Ok(materials) = Root::<D>::materials(tree) else {
         return;
     };
@@ -24,10 +38,13 @@ pub(crate) fn check_unused<const D: usize>(tree: &Node, case: &Case<D>, problems
                 .warning(own.place, message)
                 .help("type = \"k0\" in place of a first stage of gravity, or remove it");
         }
-        if let (true, Ok(Some(own))) = (case.water.is_empty(), &common.saturated_unit_weight) {
-            let message = format!(
-                "`saturated_unit_weight` of `{name}` has no effect: there is no water in this case"
-            );
+        if let (true, Ok(Some(own))) = (saturates_none, &common.saturated_unit_weight) {
+            let why = if case.water.is_empty() {
+                "there is no water in this case"
+            } else {
+                "no water of this case has a table below which soil is saturated"
+            };
+            let message = format!("`saturated_unit_weight` of `{name}` has no effect: {why}");
             problems
                 .warning(own.place, message)
                 .help("add [[water]] with a level, or remove it");

@@ -69,9 +69,18 @@ pub(super) fn permeability<const D: usize>(
         problems,
     );
     let Property { constant, profile } = along.ok_or(Wrong)?;
+    let across = own.vertical.as_ref().map_or(constant, |own| **own);
+    if own.angle.abs() > 0.0 && (across - constant).abs() <= 1e-12 * constant {
+        problems
+            .warning(
+                own.angle.place,
+                "`angle` has no effect: this soil is as permeable across its bedding as along it",
+            )
+            .help("add vertical = \"1e-6 m/s\", or remove it");
+    }
     let soil = Soil {
         along: constant,
-        across: own.vertical.as_ref().map_or(constant, |own| **own),
+        across,
         angle: *own.angle,
         curve,
         drainable: own.drainable.as_ref().map_or(0.0, |own| **own),

@@ -16,6 +16,9 @@ use crate::build::AllNames;
 /// Most bytes of a reference file.
 const LARGEST: u64 = 1 << 20;
 
+/// The name of a table that runs write among curves.
+const OF_RUNS: &str = "safety-in-time";
+
 /// A curve; files of references are beside the case file.
 pub(crate) fn curve<const D: usize>(
     own: &keys::Curve,
@@ -24,6 +27,14 @@ pub(crate) fn curve<const D: usize>(
     file: &Path,
     problems: &mut Problems,
 ) -> Option<Curve> {
+    if own.name.eq_ignore_ascii_case(OF_RUNS) {
+        problems
+            .error(
+                own.name.place,
+                format!("a curve cannot be called `{OF_RUNS}`: so is the table of factors of safety in time"),
+            )
+            .help("give it another name");
+    }
     let mut axis = |own: &Found<keys::CurveAxis>| axis(own.as_ref().ok()?, names, loads, problems);
     let (x, y) = (axis(&own.x), axis(&own.y));
     let who = format!("curve `{}` records", clip(&own.name, 40));

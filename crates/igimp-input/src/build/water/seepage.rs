@@ -9,7 +9,7 @@ use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::Wrong;
 use igimp_schema::tree::read::{At, Either};
-use igimp_seepage::{Conditions, Extent, History, InGround, Named, OnFaces, Soil};
+use igimp_seepage::{Conditions, Curve, Extent, History, InGround, Named, OnFaces, Soil};
 
 use super::{Around, Form, source_of};
 use crate::build::bodies::reach::meets_box;
@@ -41,11 +41,20 @@ pub(super) fn source<const D: usize>(
     let free_water = free_water(around, index, own, who, problems);
     let mut soils = Vec::new();
     let (faces, histories) = (own.faces.iter().flatten())
-        .filter_map(|own| face::<D>(own, problems).ok())
+        .filter_map(|own| {
+            let (named, history) = face::<D>(own, problems).ok()?;
+            meets_ground(around, (own.place, "face"), &named, problems).ok()?;
+            Some((named, history))
+        })
         .unzip();
     let in_time = in_time(around, index, own, (who, histories), problems);
+    without_effect(around, own, problems);
     let regions = (own.regions.iter().flatten())
-        .filter_map(|own| region::<D>(own, &mut soils, problems).ok())
+        .filter_map(|own| {
+            let named = region::<D>(own, &mut soils, problems).ok()?;
+            meets_ground(around, (own.place, "region"), &named, problems).ok()?;
+            Some(named)
+        })
         .collect();
     let sections = (own.sections.iter().flatten())
         .filter_map(|own| section(around, own, problems).ok())
@@ -70,6 +79,46 @@ pub(super) fn source<const D: usize>(
         free_water,
         in_time: in_time.ok()?,
     })))
+}
+
+/// Warns of keys of the fall of permeability that nothing asks for: in full pores it does not fall, and a measured curve says how it does.
+fn without_effect<const D: usize>(around: &Around<'_, D>, own: &Seepage, problems: &mut Problems) {
+    let materials = around.materials.iter().flatten();
+    let soils = { materials }.filter_map(|own| own.permeability.as_ref().map(|soil| (own, soil)));
+    let curved: Vec<&str> = (soils.clone().filter(|(_, soil)| soil.curve != Curve::Ramp))
+        .map(|(own, _)| own.name.as_str())
+        .collect();
+    let has_ramp = soils.clone().any(|(_, soil)| soil.curve == Curve::Ramp)
+        || own
+            .regions
+            .iter()
+            .flatten()
+            .any(|own| own.permeability.is_some());
+    let is_known = around.materials.iter().all(Option::is_some);
+    if let Some(fall) = &own.fall {
+        let why = if *own.confined {
+            Some("all pores are full (`confined`)")
+        } else {
+            (is_known && !has_ramp && !curved.is_empty())
+                .then_some("every soil has a curve of its own, `gardner` or `van_genuchten`")
+        };
+        if let Some(why) = why {
+            problems
+                .warning(fall.place, format!("`fall` has no effect: {why}"))
+                .help("remove it");
+        }
+    }
+    if let (true, Some(first)) = (*own.confined, curved.first()) {
+        problems
+            .warning(
+                own.confined.place,
+                format!(
+                    "the curve of `{}` has no effect: all pores are full (`confined`)",
+                    clip(first, 40)
+                ),
+            )
+            .help("remove `confined` for a free surface, or the curve");
+    }
 }
 
 /// The moment that is stated; none of a steady flow.
@@ -337,6 +386,32 @@ fn region<const D: usize>(
     })
 }
 
+/// Refuses a face or a region whose box meets no body.
+fn meets_ground<const D: usize, T>(
+    around: &Around<'_, D>,
+    (place, kind): (Place, &str),
+    own: &Named<3, T>,
+    problems: &mut Problems,
+) -> Result<(), Wrong> {
+    let name = clip(&own.name, 40);
+    if meets(around, &own.within) {
+        return Ok(());
+    }
+    problems
+        .error(place, format!("the {kind} `{name}` meets no body"))
+        .help("let its box reach into the ground, or over a face of it");
+    Err(Wrong)
+}
+
+/// Whether a box meets soil, hardly beside it too.
+fn meets<const D: usize>(around: &Around<'_, D>, within: &Extent<3>) -> bool {
+    let sizes = (0..D).map(|axis| within.upper[axis] - within.lower[axis]);
+    let beside = BESIDE * sizes.fold(0.0, f64::max);
+    let lower = std::array::from_fn(|axis| within.lower[axis] - beside);
+    let upper = std::array::from_fn(|axis| within.upper[axis] + beside);
+    meets_box::<D>(around.bodies, around.sequence, [lower, upper])
+}
+
 fn section<const D: usize>(
     around: &Around<'_, D>,
     own: &At<SeepageSection>,
@@ -355,11 +430,7 @@ fn section<const D: usize>(
             .help("let its corners have one coordinate in common: from = [\"20 m\", \"0 m\"], to = [\"20 m\", \"8 m\"]");
         return Err(Wrong);
     }
-    let sizes = (0..D).map(|axis| within.upper[axis] - within.lower[axis]);
-    let beside = BESIDE * sizes.fold(0.0, f64::max);
-    let lower = std::array::from_fn(|axis| within.lower[axis] - beside);
-    let upper = std::array::from_fn(|axis| within.upper[axis] + beside);
-    if !meets_box::<D>(around.bodies, around.sequence, [lower, upper]) {
+    if !meets(around, &within) {
         problems
             .error(
                 own.place,

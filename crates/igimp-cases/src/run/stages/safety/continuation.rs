@@ -48,10 +48,11 @@ pub(super) fn search<const D: usize>(
     summary: &mut StageSummary,
 ) -> Result<StageEnd, CaseError> {
     let stage = &session.model.case.stages[number];
-    if reduction.path == ReductionPath::Reduce {
-        begin(session, state, number)?;
-    }
     let base = undeformed_or_found(session.model, state, reduction)?;
+    if reduction.path == ReductionPath::Reduce {
+        // Displacements count from the start of the search, in the first row too.
+        begin(session, &base, number)?;
+    }
     let scale = displacement_scale(session.model, &base);
     let mut from = match reduction.path {
         ReductionPath::Reduce => 1.0,
