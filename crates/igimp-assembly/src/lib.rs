@@ -49,7 +49,9 @@ pub use igimp_rigid::{
 };
 pub use igimp_surface::{CarryingTriangle, Surface, SurfaceError, SurfaceTriangle};
 pub use laws::SharedLaw;
-pub use method::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, Section, SmallCuts};
+pub use method::{
+    CutVolume, DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, Section, SmallCuts,
+};
 pub use step::stencils::Stencils;
 pub use step::ties::Carrier;
 pub use step::unknowns::Unknowns;

@@ -92,17 +92,29 @@ pub enum DomainUpdate {
 
 /// What is done about nodes that a body only touches at a corner (theory, "small cuts").
 ///
-/// A node is a small cut when Σ S V is below a fraction of what full soil leaves there. Left alone, such
+/// A node is a small cut when Σ S V is below a fraction of its cell's volume, or of what full soil leaves there. Left alone, such
 /// nodes make the system singular to working precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmallCuts {
-    /// Fraction of the volume that full soil leaves at a node below which it is a small cut \[-\]; 0 switches off. The default is 1e-4, which serves in
+    /// Fraction of a volume below which a node is a small cut \[-\]; 0 switches off. The default is 1e-4, which serves in
     /// the plane; in space take 1e-3, as case files do (theory, eq. 26).
     pub below: f64,
+    /// The volume that it is a fraction of.
+    pub of: CutVolume,
     /// What happens to a small cut.
     pub remedy: Remedy,
     /// Ghost penalty γ on faces of boundary cells \[-\]; 0 switches it off.
     pub ghost_penalty: f64,
+}
+
+/// The volume that the volume of a node is held against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CutVolume {
+    /// The mean of the cells around it (the default): on a side of the grid full soil leaves half of that, at a corner in space an
+    /// eighth.
+    Cell,
+    /// What full soil leaves there. Large fractions ask for it, as those of motion are.
+    FullSoil,
 }
 
 /// What happens to a node that is a small cut.
@@ -123,6 +135,7 @@ impl Default for SmallCuts {
     fn default() -> Self {
         Self {
             below: 1e-4,
+            of: CutVolume::Cell,
             remedy: Remedy::Tie,
             ghost_penalty: 0.0,
         }

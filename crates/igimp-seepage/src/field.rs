@@ -1,11 +1,12 @@
 //! What a flow answers: heads, pressures, velocities, discharges and the free surface.
 
+mod sections;
+
 use igimp_shape::Grid;
 
 use crate::basis::{Basis, CORNERS, nodes_of};
 use crate::curve::Relative;
 use crate::ground::ends_of;
-use crate::sections::sections;
 use crate::system::{Flows, System, largest};
 
 /// Water through a condition or a section \[m³/s\], in the plane by the metre run \[m²/s\].
@@ -80,7 +81,7 @@ impl<const D: usize> Seepage<D> {
             filled: through.filled,
             velocities: through.velocities,
             discharges: discharges(system, flows),
-            sections: sections(system, heads, &relative),
+            sections: sections::sections(system, heads, &relative),
             inflow,
             outflow,
             outflow_at_lower_floor: dry.map(|own| sum(&own.outwards)),

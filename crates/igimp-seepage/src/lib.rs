@@ -15,7 +15,6 @@ mod ground;
 mod layers;
 mod lines;
 mod search;
-mod sections;
 mod solve;
 mod storage;
 mod system;

@@ -3,7 +3,7 @@
 
 pub(crate) mod sliding_block;
 
-use igimp_assembly::{Remedy, SmallCuts};
+use igimp_assembly::{CutVolume, Remedy, SmallCuts};
 use igimp_cases::CaseError;
 use igimp_model::Case;
 use igimp_model::check::Band;
@@ -33,6 +33,7 @@ const SOFT_SLOPE: Oracle = Oracle {
 const fn cut(below: f64, remedy: Remedy, ghost_penalty: f64) -> SmallCuts {
     SmallCuts {
         below,
+        of: CutVolume::Cell,
         remedy,
         ghost_penalty,
     }

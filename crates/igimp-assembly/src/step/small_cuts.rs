@@ -7,6 +7,7 @@ use igimp_shape::Grid;
 
 use crate::conditions::StepConditions;
 use crate::conditions::walls::AbsorbingWall;
+use crate::method::{CutVolume, SmallCuts};
 use crate::step::continuation::{REACH, carried_beyond, cells_around};
 use crate::step::node_shares::NodeShare;
 use crate::step::supports::Supports;
@@ -15,17 +16,17 @@ use crate::step::ties::{Carrier, Ties};
 /// What extrapolation leaves to a node that it rests on, of the volume below which a node is a small cut \[-\].
 const KEPT: f64 = 0.5;
 
-/// Which nodes are small cuts, their volume being less than `below` of what full soil leaves there. Touched, not of positive volume: a point on a
+/// Which nodes are small cuts, their volume being less than a fraction of their cells' or of what full soil leaves there. Touched, not of positive volume: a point on a
 /// face sees the cell beyond by its gradient only.
 pub(crate) fn small_cuts<const D: usize>(
     grid: &Grid<D>,
     shares: &[NodeShare],
-    below: f64,
+    cuts: &SmallCuts,
 ) -> Vec<bool> {
     (0..shares.len())
         .map(|node| {
             let share = &shares[node];
-            share.is_touched && share.volume < below * full_volume(grid, node)
+            share.is_touched && share.volume < least_volume(grid, cuts, node)
         })
         .collect()
 }
@@ -36,8 +37,7 @@ pub(crate) fn small_cuts<const D: usize>(
 pub(crate) fn extrapolations<const D: usize>(
     conditions: &StepConditions<D>,
     shares: &[NodeShare],
-    cuts: &[bool],
-    below: f64,
+    (cuts, method): (&[bool], &SmallCuts),
 ) -> Ties {
     let (grid, constraints) = (&conditions.grid, &conditions.constraints);
     let mut ties = Ties::new();
@@ -54,7 +54,7 @@ pub(crate) fn extrapolations<const D: usize>(
                 let then = left[own.node] + own.weight * shares[cut].volume;
                 !cuts[own.node]
                     && stays_on_walls(conditions, cut, own.node)
-                    && then > KEPT * below * full_volume(grid, own.node)
+                    && then > KEPT * least_volume(grid, method, own.node)
                     && (0..D).all(|axis| {
                         held(axis).is_none() || held(axis) == constraints.of(own.node, axis)
                     })
@@ -134,16 +134,25 @@ pub(crate) fn masters_of_cuts<const D: usize>(
     masters
 }
 
-/// The volume that full soil leaves at a node: the product of half the lengths to its neighbours. On a side of the grid that is
-/// half a cell, at an edge a quarter, at a corner in space an eighth \[length^D\].
-pub(crate) fn full_volume<const D: usize>(grid: &Grid<D>, node: usize) -> f64 {
+/// The volume below which a node is a small cut \[length^D\].
+pub(crate) fn least_volume<const D: usize>(grid: &Grid<D>, cuts: &SmallCuts, node: usize) -> f64 {
+    cuts.below * volume_at(grid, cuts.of, node)
+}
+
+/// The mean volume of a cell around a node: the product of half the lengths to its neighbours, doubled at walls. Or what full
+/// soil leaves there: at walls it is not doubled \[length^D\].
+pub(crate) fn volume_at<const D: usize>(grid: &Grid<D>, of: CutVolume, node: usize) -> f64 {
     let place = grid.node_place(node);
     (0..D)
         .map(|axis| {
             let nodes = grid.axes[axis].nodes();
             let lower = place[axis].saturating_sub(1);
             let upper = (place[axis] + 1).min(nodes.len() - 1);
-            0.5 * (nodes[upper] - nodes[lower])
+            let sides = match of {
+                CutVolume::Cell => (upper - lower) as f64,
+                CutVolume::FullSoil => 2.0,
+            };
+            (nodes[upper] - nodes[lower]) / sides
         })
         .product()
 }

@@ -7,12 +7,12 @@ use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::conditions::loads::LoadPoint;
 use crate::error::AssemblyError;
-use crate::method::{Geometry, Method, Remedy, SmallCuts};
+use crate::method::{CutVolume, Geometry, Method, Remedy};
 use crate::step::cell_soil::{CellSoil, Moments};
 use crate::step::domain::bounds;
 use crate::step::hoops::Hoop;
 use crate::step::node_shares::{NodeShare, node_shares};
-use crate::step::small_cuts::{extrapolations, full_volume, masters_of_cuts, small_cuts};
+use crate::step::small_cuts::{extrapolations, masters_of_cuts, small_cuts, volume_at};
 use crate::step::strips::Strips;
 use crate::step::supports::Supports;
 use crate::step::ties::{Carrier, Ties, carried};
@@ -184,10 +184,10 @@ impl<const D: usize> Stencils<D> {
         self.shares[node].mass
     }
 
-    /// Volume that a grid node represents over what full soil leaves there \[-\]: 1 within a full body, at
-    /// sides of the grid too, and next to nothing at a small cut.
+    /// Volume that a grid node represents over the mean volume of the cells around it \[-\]: 1 within a
+    /// full body, and next to nothing at a small cut.
     pub fn node_fill(&self, grid: &Grid<D>, node: usize) -> f64 {
-        self.shares[node].volume / full_volume(grid, node)
+        self.shares[node].volume / volume_at(grid, CutVolume::Cell, node)
     }
 
     /// By law, moments of mass that shared gradients do not see (theory, eq. 8f).
@@ -235,16 +235,16 @@ fn ties<const D: usize>(
     supports: &Supports<D>,
     shares: &[NodeShare],
 ) -> Ties {
-    let SmallCuts { below, remedy, .. } = method.small_cuts;
-    if remedy == Remedy::Drop {
+    let own = &method.small_cuts;
+    if own.remedy == Remedy::Drop {
         return Ties::new();
     }
-    let cuts = small_cuts(&conditions.grid, shares, below);
+    let cuts = small_cuts(&conditions.grid, shares, own);
     if !cuts.contains(&true) {
         return Ties::new();
     }
-    let mut ties = match remedy {
-        Remedy::Extrapolate => extrapolations(conditions, shares, &cuts, below),
+    let mut ties = match own.remedy {
+        Remedy::Extrapolate => extrapolations(conditions, shares, (&cuts, own)),
         Remedy::Tie | Remedy::Drop => Ties::new(),
     };
     let masters = masters_of_cuts(conditions, supports, shares, &cuts);

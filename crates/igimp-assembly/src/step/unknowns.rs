@@ -6,7 +6,8 @@ use igimp_shape::Grid;
 
 use crate::conditions::constraints::Constraints;
 use crate::error::AssemblyError;
-use crate::step::small_cuts::full_volume;
+use crate::method::SmallCuts;
+use crate::step::small_cuts::least_volume;
 use crate::step::stencils::Stencils;
 
 /// Marks a degree of freedom without an unknown.
@@ -33,7 +34,7 @@ pub struct Unknowns<const D: usize> {
 }
 
 impl<const D: usize> Unknowns<D> {
-    /// Numbers the unknowns. Nodes whose volume is below `drop_below` of what full soil leaves there are
+    /// Numbers the unknowns. Nodes whose volume is below that of small cuts are
     /// dropped: their displacement is zero. (Tied nodes carry no volume any more.) Behind the nodes of the
     /// grid stand those of rigid bodies, each with its free components, and those of scalars: the nodes of the grid that
     /// `has_scalar` names, if it names any.
@@ -44,7 +45,7 @@ impl<const D: usize> Unknowns<D> {
         grid: &Grid<D>,
         stencils: &Stencils<D>,
         constraints: &Constraints<D>,
-        drop_below: f64,
+        cuts: &SmallCuts,
         of_bodies: &[[bool; D]],
         has_scalar: &[bool],
     ) -> Result<Self, AssemblyError> {
@@ -61,7 +62,7 @@ impl<const D: usize> Unknowns<D> {
             first.push(len);
             blocks_before.push(blocks);
             let volume = stencils.node_volume(node);
-            let has_soil = volume > 0.0 && volume >= drop_below * full_volume(grid, node);
+            let has_soil = volume > 0.0 && volume >= least_volume(grid, cuts, node);
             active[node] = has_soil || stencils.is_carrier(node);
             if !active[node] {
                 continue;

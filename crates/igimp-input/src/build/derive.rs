@@ -8,7 +8,7 @@ use igimp_schema::tree::{Node, Value};
 
 use super::outputs::quantities::unit_of;
 
-/// Share of the volume that full soil leaves at a node below which it is a small cut, in the plane and in space \[-\].
+/// Share of a cell's volume below which a node is a small cut, in the plane and in space \[-\].
 const BELOW: [f64; 2] = [1e-4, 1e-3];
 
 /// The same beside rigid bodies in the plane, which leave slivers of soil in the cells that they cut

@@ -7,7 +7,7 @@ pub(crate) mod lines;
 use std::sync::Arc;
 
 use igimp_assembly::{
-    DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, Section, SmallCuts,
+    CutVolume, DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, Section, SmallCuts,
 };
 use igimp_model::{AxisSpec, BodyPart, GridSpec, MixedCells};
 use igimp_schema::diagnostic::Problems;
@@ -424,6 +424,7 @@ pub(super) fn method(own: &keys::Method) -> Option<Method> {
         },
         small_cuts: SmallCuts {
             below: **cuts.below.as_ref()?,
+            of: CutVolume::Cell,
             remedy: match **cuts.remedy.as_ref()? {
                 keys::Remedy::Drop => Remedy::Drop,
                 keys::Remedy::Tie => Remedy::Tie,

@@ -128,9 +128,9 @@ choices! {
 table! {
     SMALL_CUTS: SmallCuts, "Treatment of nodes that carry next to no soil.";
     below: number(NotNegative), derived "1e-4, and 0.05 with rigid bodies",
-        "share of the volume that full soil leaves at a node below which it is a small cut; 0 switches off", in_plane,
+        "share of a cell's volume below which a node is a small cut; 0 switches off", in_plane,
         number(NotNegative), derived "1e-3",
-            "share of the volume that full soil leaves at a node below which it is a small cut; 0 switches off", in_space;
+            "share of a cell's volume below which a node is a small cut; 0 switches off", in_space;
     remedy: choice(Remedy), derived "\"tie\", and \"extrapolate\" with rigid bodies",
         "what happens to such a node", in_plane,
         choice(Remedy), derived "\"tie\"", "what happens to such a node", in_space;

@@ -118,8 +118,8 @@ impl<'a, const D: usize> System<'a, D> {
         if has_scalar.is_empty() {
             has_scalar = pressure_nodes(particles, stencils, conditions);
         }
-        let (constraints, below, free) = (&conditions.constraints, cuts.below, loads.is_free());
-        let unknowns = Unknowns::number(grid, stencils, constraints, below, &free, &has_scalar)?;
+        let (constraints, free) = (&conditions.constraints, loads.is_free());
+        let unknowns = Unknowns::number(grid, stencils, constraints, &cuts, &free, &has_scalar)?;
         let nodes = loads.f_ext.len() + unknowns.scalar_count();
         loads.f_ext.resize(nodes, [0.0; D]);
         let beside = BesideParticles::find(

@@ -4,7 +4,7 @@
 //! are chosen by the error of the time integration and by the way of the soil, and land on equal parts of the duration, as
 //! many as the stage has steps. No factor of safety follows from motion.
 
-use igimp_assembly::{Method, Remedy, SmallCuts};
+use igimp_assembly::{CutVolume, Method, Remedy, SmallCuts};
 use igimp_model::{Calm, Case, Dynamic, GroundMotion, Stage, StageKind};
 use igimp_results::ending::EndReason;
 use igimp_results::summary::{NewmarkSummary, StageSummary};
@@ -178,6 +178,7 @@ fn method<const D: usize>(model: &Model<'_, D>, dynamic: &Dynamic, stage: &Stage
         geometry: stage.geometry,
         small_cuts: SmallCuts {
             below: dynamic.tied_below,
+            of: CutVolume::FullSoil,
             remedy: Remedy::Extrapolate,
             ..method.small_cuts
         },

@@ -4,9 +4,10 @@ use crate::basis::{CORNERS, Point};
 use crate::boundary::reach;
 use crate::conditions::Extent;
 use crate::curve::Relative;
-use crate::field::Discharge;
 use crate::ground::{SUB, ends_of};
 use crate::system::{Source, System};
+
+use super::Discharge;
 
 /// Faces whose normal has this component along an axis lie across it \[-\].
 const ACROSS: f64 = 0.99;
