@@ -22,6 +22,14 @@ use crate::vectors::{dot, minus, norm};
 /// The largest number of knots of a surface.
 const MOST_KNOTS: u32 = 1_000_000;
 
+/// What is round has at least so many knots around it, and a multiple of them: it is the same seen along all axes.
+const QUARTERS: usize = 4;
+const LEAST_AROUND: usize = 8;
+
+/// The share by which a length may fall short of so many spacings and a half and count as that: a place 1 km from the origin is known to
+/// 1e-13 m \[-\].
+const HALVES_GO_UP: f64 = 1e-9;
+
 /// What makes no surface.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SurfaceError {
@@ -341,10 +349,15 @@ impl<const D: usize> Surface<D> {
     }
 }
 
+/// How many spacings a length is divided into, one at least: halves go up, with the round-off of places far from the origin.
+fn parts_of(length: f64, spacing: f64) -> usize {
+    (length / spacing * (1.0 + HALVES_GO_UP)).round().max(1.0) as usize
+}
+
 /// Knots along a side, as shares of its length: equally far apart, save for the first and the last space,
 /// which are twice as wide.
 fn shares_along(length: f64, spacing: f64) -> Vec<f64> {
-    let parts = (length / spacing).round().max(1.0) as usize;
+    let parts = parts_of(length, spacing);
     let inner = (0..=parts).filter(|&part| parts < 4 || (part != 1 && part + 1 != parts));
     inner.map(|part| part as f64 / parts as f64).collect()
 }

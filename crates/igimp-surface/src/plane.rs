@@ -1,7 +1,10 @@
 //! Surfaces in the plane: polygons and circles.
 
 use crate::vectors::{dot, norm};
-use crate::{Facet, MOST_KNOTS, Surface, SurfaceError, extent_of, positive, shares_along};
+use crate::{
+    Facet, LEAST_AROUND, MOST_KNOTS, QUARTERS, Surface, SurfaceError, extent_of, parts_of,
+    positive, shares_along,
+};
 
 impl Surface<2> {
     /// A polygon with corners in order, either way round \[length\], its corners rounded by a radius
@@ -79,7 +82,8 @@ impl Surface<2> {
         Ok(surface)
     }
 
-    /// A circle about the origin of the body's frame, with knots about `spacing` apart \[length\].
+    /// A circle about the origin of the body's frame, with knots about `spacing` apart \[length\]: as many in each quarter, so that it is
+    /// its own image along both axes.
     ///
     /// # Errors
     /// [`SurfaceError::NotPositive`], [`SurfaceError::TooLong`].
@@ -88,7 +92,8 @@ impl Surface<2> {
         positive("the distance of knots", spacing)?;
         let around = std::f64::consts::TAU;
         countable(around * radius, spacing)?;
-        let parts = (around * radius / spacing).round().max(8.0) as usize;
+        let quarters = parts_of(around * radius / QUARTERS as f64, spacing);
+        let parts = (QUARTERS * quarters).max(LEAST_AROUND);
         let at = |part: f64| {
             let (sin, cos) = (around * part / parts as f64).sin_cos();
             [cos, sin]
@@ -121,5 +126,43 @@ fn countable(length: f64, spacing: f64) -> Result<(), SurfaceError> {
         Ok(())
     } else {
         Err(SurfaceError::TooLong { length, spacing })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Surface, parts_of};
+
+    // GOAL: a circle is its own mirror image, so that what presses it from below does not push it sideways.
+    // CASE: circles of 8 to 200 knots.
+    // ORACLE: the image of every knot in both axes is a knot.
+    #[test]
+    fn a_circle_is_its_own_image() {
+        for k in 1..120 {
+            let surface = Surface::circle(0.5, 0.5 / (0.3 * f64::from(k))).unwrap();
+            let knots = surface.knots();
+            for ([x, y], _) in &knots {
+                for image in [[-x, *y], [*x, -y]] {
+                    let is_there = |own: &([f64; 2], usize)| {
+                        (own.0[0] - image[0]).hypot(own.0[1] - image[1]) < 1e-12
+                    };
+                    assert!(knots.iter().any(is_there), "{k}: {image:?}");
+                }
+            }
+        }
+    }
+
+    // GOAL: a body has the same knots wherever the origin is.
+    // CASE: sides of n and a half spacings, drawn at places up to 10 km away.
+    // ORACLE: the number at the origin, with halves up.
+    #[test]
+    fn knots_do_not_depend_on_the_origin() {
+        for n in 1..40_u32 {
+            for at in [0.0, 0.1, 33.3, 1e2 + 0.7, -7e3 - 0.1, 1e4 / 3.0] {
+                let length = 0.3 * (f64::from(n) + 0.5);
+                let drawn = (at + length) - at;
+                assert_eq!(parts_of(drawn, 0.3), n as usize + 1, "{n} {at}");
+            }
+        }
     }
 }

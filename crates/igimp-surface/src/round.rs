@@ -4,11 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::draft::{Draft, countable};
 use crate::vectors::{dot, norm};
-use crate::{Surface, SurfaceError, positive, shares_along};
-
-/// A ring has at least so many knots, and a multiple of them: it is the same seen along all axes.
-const QUARTERS: usize = 4;
-const LEAST_AROUND: usize = 8;
+use crate::{LEAST_AROUND, QUARTERS, Surface, SurfaceError, parts_of, positive, shares_along};
 
 /// A ring with a smaller radius than this share of the spacing of knots is a point \[-\].
 const POINT: f64 = 1e-6;
@@ -147,7 +143,7 @@ impl Surface<3> {
         positive("the radius", radius)?;
         positive("the distance of knots", spacing)?;
         countable(2.0 * TAU * radius * radius, spacing)?;
-        let parts = (0.5 * TAU * radius / spacing).round().max(6.0) as usize;
+        let parts = parts_of(0.5 * TAU * radius, spacing).max(6);
         let mut draft = Draft::default();
         let mut before: Option<(Ring, [f64; 2])> = None;
         for part in 0..=parts {
@@ -171,7 +167,7 @@ fn shares_between(length: f64, spacing: f64, on_axis: [bool; 2]) -> Vec<f64> {
     if on_axis[0] == on_axis[1] {
         return shares_along(length, spacing);
     }
-    let parts = (length / spacing).round().max(1.0) as usize;
+    let parts = parts_of(length, spacing);
     let inner = (0..=parts).filter(|&part| parts < 2 || part + 1 != parts);
     let shares = inner.map(|part| part as f64 / parts as f64);
     if on_axis[0] {
@@ -208,8 +204,8 @@ impl Ring {
                 points: vec![draft.knot(place(at), place(outer), side)],
             };
         }
-        let quarters = (TAU * radius / spacing / QUARTERS as f64).round();
-        let count = (QUARTERS * quarters as usize).max(LEAST_AROUND);
+        let quarters = parts_of(TAU * radius / QUARTERS as f64, spacing);
+        let count = (QUARTERS * quarters).max(LEAST_AROUND);
         let part = TAU / count as f64;
         // The polygon has the area of the circle (theory, eq. 45c).
         let wider = (part / part.sin()).sqrt();

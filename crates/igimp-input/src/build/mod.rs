@@ -215,6 +215,36 @@ fn gravity(tree: &Node) -> Option<f64> {
     Some(*gravity)
 }
 
+/// Remarks on gravity that no stage raises: whoever states none is told too, as it is there by default.
+fn acts(tree: &Node, problems: &mut Problems) {
+    let stages = things(Root::<2>::stages(tree));
+    let raises = |form: &StageForm| {
+        matches!(
+            form,
+            StageForm::Gravity(_)
+                | StageForm::K0(_)
+                | StageForm::Dynamic(_)
+                | StageForm::StrengthReduction(_)
+                | StageForm::RunOut(_)
+        )
+    };
+    let all = tree.get("stages").map_or(0, |own| own.items().len());
+    if let Some(first) = stages.first().and_then(Option::as_ref)
+        && stages.len() == all
+        && gravity(tree).is_some_and(|own| own > 0.0)
+        && stages
+            .iter()
+            .all(|own| own.as_ref().is_some_and(|own| !raises(&own.form)))
+    {
+        problems
+            .warning(
+                first.form.place,
+                "gravity never acts: no stage is of type gravity, k0 or dynamic",
+            )
+            .help("begin with a stage of type gravity, or set gravity = \"0 m/s2\" in [case] if nothing is to weigh");
+    }
+}
+
 /// Checks the version of the format, and that gravity is there where it is raised.
 fn header(tree: &Node, problems: &mut Problems) {
     if let Ok(version) = Root::<2>::igimp(tree)
@@ -246,4 +276,5 @@ fn header(tree: &Node, problems: &mut Problems) {
             }
         }
     }
+    acts(tree, problems);
 }

@@ -164,11 +164,24 @@ fn first_controls<const D: usize>(
             from.srf[material] = factor;
         }
     }
-    if session.model.case.stages[number].start_from.is_none() {
-        // What begins with motion falls from the first moment on.
+    if begins_to_weigh(&session.model.case.stages, number) {
+        // What has had no weight before falls from the first moment on.
         from.gravity = 1.0;
     }
     Some(from)
+}
+
+/// Whether gravity has not acted in any stage that a stage goes on from.
+fn begins_to_weigh(stages: &[Stage], number: usize) -> bool {
+    let before = |&own: &usize| stages[own].start_from;
+    let earlier = std::iter::successors(before(&number), before);
+    let mut kinds = earlier.map(|own| &stages[own].kind);
+    !kinds.any(|kind| {
+        matches!(
+            kind,
+            StageKind::Gravity { .. } | StageKind::K0 | StageKind::Dynamic(_)
+        )
+    })
 }
 
 /// The method of a stage of motion, with small cuts tied as the stage says.
