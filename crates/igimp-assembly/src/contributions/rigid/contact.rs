@@ -140,23 +140,12 @@ impl<'a, const D: usize> Contact<'a, D> {
                 slip: [functional(&sums.slip[0]), functional(&sums.slip[1])],
                 before,
             };
-            let is_along = surface.radius().is_none() && sums.facing() >= ALONG_THE_GRID;
-            let is_soft = conditions.time.is_some() || method.flows() || !is_along;
-            let penalty = if is_soft {
-                body.penalty.softly()
-            } else {
-                body.penalty
-            };
+            let penalty = penalty_of(body, &sums, (conditions, method));
             let whole = tents[knot] * (sums.area / sums.length);
             row.carry_force(interface, &penalty, whole);
             if interface.tension == Tension::None && !rolls {
-                // Where time passes motion alone makes pressure: domains that overlap a side would throw soil off it.
-                let least = if conditions.time.is_some() {
-                    row.gap
-                } else {
-                    f64::NEG_INFINITY
-                };
-                row.take_soil_that_came(sums.mean_gap().max(least), interface, &penalty);
+                let takes_time = conditions.time.is_some();
+                row.take_soil_that_came((sums.mean_gap(), takes_time), interface, &penalty);
             }
             if is_laid {
                 row.seat(&penalty);
@@ -275,6 +264,20 @@ impl<'a, const D: usize> Contact<'a, D> {
             bodies: moved,
             push_out,
         })
+    }
+}
+
+/// How stiff a knot closes: at once in statics at straight sides along the grid, softly elsewhere (theory, eq. 46).
+fn penalty_of<const D: usize>(
+    body: &RigidBody<D>,
+    sums: &Sums<D>,
+    (conditions, method): (&StepConditions<D>, &Method),
+) -> Penalty {
+    let is_along = body.surface.radius().is_none() && sums.facing() >= ALONG_THE_GRID;
+    if conditions.time.is_some() || method.flows() || !is_along {
+        body.penalty.softly()
+    } else {
+        body.penalty
     }
 }
 

@@ -96,16 +96,23 @@ impl<const D: usize> Row<D> {
     }
 
     /// Takes over the gap that is `measured` of soil that came in the place of other \[length\], by the share of a cell that slid by in the last
-    /// step (theory, eq. 50a). What slipped then is on its limit still.
+    /// step (theory, eq. 50a); in steps that take time the gap only grows by it. What slipped then is on its limit still.
     pub(crate) fn take_soil_that_came(
         &mut self,
-        measured: f64,
+        (measured, takes_time): (f64, bool),
         interface: &Interface,
         penalty: &Penalty,
     ) {
         if self.before.area == 0.0 || !self.before.is_closed {
             return;
         }
+        // Domains that overlap a side would throw soil off it.
+        let least = if takes_time {
+            self.gap
+        } else {
+            f64::NEG_INFINITY
+        };
+        let measured = measured.max(least);
         let share = (self.before.way / self.cell).min(1.0);
         self.gap += share * (measured - self.gap);
         if let (Shear::Limited { friction, .. }, true) = (&interface.shear, self.before.slips) {
