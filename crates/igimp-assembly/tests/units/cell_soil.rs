@@ -1,4 +1,6 @@
-//! The soil of cells.use std::sync::Arc;
+//! The soil of cells.
+
+use std::sync::Arc;
 
 use igimp_material::{Elasticity, HenckyElastic, MohrCoulomb, Strength, VonMises};
 
