@@ -213,7 +213,7 @@ fn material(tested: &Tested) -> Section {
 fn path(tested: &Tested) -> Section {
     let mut sentences = path_words::sentences(&tested.request);
     let notes = tested.notes().into_iter();
-    sentences.extend(notes.filter(|own| *own == said::UNDRAINED).map(sentence));
+    sentences.extend((notes.filter(|own| *own != said::VARIES)).map(|own| sentence(&own)));
     Section {
         title: "Path".to_owned(),
         sentences,
