@@ -120,6 +120,18 @@ pub enum AssemblyError {
         /// A principal elastic Hencky strain \[-\].
         strain: f64,
     },
+    /// A step in statics carries a rigid body further than equilibrium can be said to go on.
+    #[error(
+        "the rigid body \"{body}\" would go by {way:.3} m and turn by {rotation:.3} rad in one step"
+    )]
+    Thrown {
+        /// Name of the body.
+        body: String,
+        /// The way of its reference point where that is free \[length\].
+        way: f64,
+        /// Its rotation where that is free \[rad\].
+        rotation: f64,
+    },
     /// A constraint names a node that the grid does not have.
     #[error("a constraint names node {node}, but the grid has {nodes} nodes (numbered from 0)")]
     UnknownNode {
@@ -177,12 +189,13 @@ pub enum AssemblyError {
 }
 
 impl AssemblyError {
-    /// Whether a trial displacement went further than any material follows: a shorter one may do.
+    /// Whether a trial displacement went further than any material or any body follows: a shorter one may do.
     pub fn is_too_far(&self) -> bool {
         matches!(
             self,
             Self::Inverted { .. }
                 | Self::Overstrained { .. }
+                | Self::Thrown { .. }
                 | Self::Material {
                     source: MaterialError::NotConverged { .. } | MaterialError::SnapBack { .. },
                     ..

@@ -40,7 +40,7 @@ pub use contributions::walls::TieForce;
 pub use energy::StepEnergy;
 pub use equations::kinematics::ParticleTrial;
 pub use equations::residual::OutOfBalance;
-pub use equations::system::{Structures, System};
+pub use equations::system::{Reach, Structures, System};
 pub use equations::trial::Trial;
 pub use error::AssemblyError;
 pub use igimp_rigid::{

@@ -1,9 +1,7 @@
 //! The arm of the centre of mass of a rigid body about its reference point, over a step (theory, eqs. 67b and 67c).
 
-use crate::{RigidBody, rotations};
-
-/// From this angle on closed forms keep their digits; below it series do \[rad\].
-const SMALL: f64 = 1e-2;
+use crate::turn::{cross, curvature, mean_beyond};
+use crate::{RigidBody, rotations, turn};
 
 /// From the reference point of a body to its centre of mass, as a step begins and as the body turns in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,34 +47,13 @@ impl<const D: usize> Arm<D> {
         if !self.turns {
             return self.start;
         }
-        let angle = self.angle(rotation);
-        let squared = angle.iter().map(|own| own * own).sum::<f64>();
-        let whole = squared.sqrt();
-        // (1 − cos φ) / φ² and (φ − sin φ) / φ³.
-        let (once, twice) = if whole < SMALL {
-            (
-                0.5 - squared / 24.0 + squared * squared / 720.0,
-                1.0 / 6.0 - squared / 120.0 + squared * squared / 5040.0,
-            )
-        } else {
-            let half = (0.5 * whole).sin();
-            (
-                2.0 * half * half / squared,
-                (whole - whole.sin()) / (squared * whole),
-            )
-        };
-        let first = cross(&angle, &self.start);
-        let second = cross(&angle, &first);
-        std::array::from_fn(|a| self.start[a] + once * first[a] + twice * second[a])
+        let beyond = mean_beyond(&self.angle(rotation), &self.start);
+        std::array::from_fn(|a| self.start[a] + beyond[a])
     }
 
     /// The rotation \[rad\] of one in lengths.
     fn angle(&self, rotation: &[f64; D]) -> [f64; 3] {
-        let mut angle = [0.0; 3];
-        for (angle, own) in angle.iter_mut().zip(rotation).take(rotations(D)) {
-            *angle = own / self.size;
-        }
-        angle
+        turn::angle(rotation, self.size)
     }
 
     /// The way of the centre of mass by a rotation in lengths, in the direction of an `arm` and no more: by component of the
@@ -119,33 +96,8 @@ impl<const D: usize> Arm<D> {
     /// How the moment of a force by an `arm` changes as the body turns, over its squared size \[force/length\]: symmetric, as the
     /// second derivative of the work of the force.
     pub fn turning(&self, arm: &[f64; D], force: &[f64; D]) -> [[f64; D]; D] {
-        let along: f64 = std::iter::zip(arm, force).map(|(a, f)| a * f).sum();
-        let mut block = [[0.0; D]; D];
-        for (i, row) in block.iter_mut().enumerate().take(rotations(D)) {
-            for (j, entry) in row.iter_mut().enumerate().take(rotations(D)) {
-                let across = if D == 3 {
-                    0.5 * (arm[i] * force[j] + arm[j] * force[i])
-                } else {
-                    0.0
-                };
-                *entry = (across - if i == j { along } else { 0.0 }) / self.size.powi(2);
-            }
-        }
-        block
+        curvature(&arm.map(|own| force.map(|f| own * f)), self.size)
     }
-}
-
-/// The vector product of a rotation, whose first component counts in the plane, and a vector.
-pub(crate) fn cross<const D: usize>(rotation: &[f64; 3], v: &[f64; D]) -> [f64; D] {
-    std::array::from_fn(|a| match D {
-        2 if a == 0 => -rotation[0] * v[1],
-        2 => rotation[0] * v[0],
-        3 => {
-            let (b, c) = ((a + 1) % 3, (a + 2) % 3);
-            rotation[b] * v[c] - rotation[c] * v[b]
-        }
-        _ => 0.0,
-    })
 }
 
 #[cfg(test)]

@@ -84,6 +84,22 @@ impl<'a, const D: usize> Extent<'a, D> {
                 && from[axis].min(to[axis]) <= self.upper[axis] + within
         })
     }
+
+    /// Where a straight `way` from a point in the frame of the body may be nearer to it than a distance: from one share of it to another
+    /// \[-\].
+    fn within(&self, from: &[f64; D], way: &[f64; D], distance: f64) -> [f64; 2] {
+        let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
+        for axis in (0..D).filter(|&axis| way[axis].abs() > f64::MIN_POSITIVE) {
+            let at = |place: f64| (place - from[axis]) / way[axis];
+            let (a, b) = (
+                at(self.lower[axis] - distance),
+                at(self.upper[axis] + distance),
+            );
+            enters = enters.max(a.min(b));
+            leaves = leaves.min(a.max(b));
+        }
+        [enters, leaves]
+    }
 }
 
 /// Particles that stand too close to a body, with the way off it \[length\].
@@ -192,10 +208,14 @@ fn deepest<const D: usize>(
         return f64::NEG_INFINITY;
     }
     let way = minus(&to, from);
-    let places = (norm(&way) / half).ceil().max(1.0) as usize;
-    (1..=places)
+    let places = (norm(&way) / half).ceil().max(1.0);
+    let [enters, leaves] = extent.within(from, &way, UNSEEN_HEIGHT * half);
+    // As many as the body has room for, however long the way is.
+    let first = (enters * places).floor().max(1.0);
+    let count = ((leaves * places).ceil().min(places) - first + 1.0).max(0.0) as usize;
+    (0..count)
         .map(|k| {
-            let share = k as f64 / places as f64;
+            let share = (first + k as f64) / places;
             let at = std::array::from_fn(|axis| from[axis] + share * way[axis]);
             -extent.body.surface.distance(&at).0
         })
@@ -272,5 +292,24 @@ mod tests {
         // In sight of the body contact acts, and what has crept too close is moved off.
         let off = comes(0.19, 0.05).unwrap();
         assert!((off[0].1[1] - 0.075).abs() < 1e-12, "{off:?}");
+    }
+
+    // GOAL: a way of any length is looked at where the body is, and nowhere else.
+    // CASE: a particle that a body passes over, ways of 4 to 1e15 body's lengths; one that it passes by.
+    // ORACLE: the particle goes through the middle of the body, half of its width deep; beside the body there is no depth.
+    #[test]
+    fn long_ways_are_looked_at_where_the_body_is() {
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        let surface = Surface::polygon(&corners, 0.0, 0.5).unwrap();
+        let body = RigidBody::new(surface, vec![Interface::smooth(); 4], [0.0; 2]);
+        let bodies = [body];
+        let extents = Extent::all(&bodies);
+        for reach in [4.0, 1e3, 1e9, 1e15] {
+            let through = deepest(&extents[0], &[-reach, 0.0], &[reach, 0.0], 0.1);
+            // Places of ways as long as 1e15 are known to 0.1.
+            assert!((through - 1.0).abs() < 0.15, "{reach}: {through}");
+            let beside = deepest(&extents[0], &[-reach, 3.0], &[reach, 3.0], 0.1);
+            assert!(beside < 0.0, "{reach}: {beside}");
+        }
     }
 }

@@ -3,8 +3,8 @@
 use igimp_shape::matrices::{apply, congruence, multiply};
 
 use crate::RigidBody;
-use crate::arm::cross;
 use crate::pose::turn_by;
+use crate::turn::cross;
 
 /// Moments of inertia that differ by less count as equal, over the largest of them \[-\].
 const EQUAL: f64 = 1e-12;

@@ -11,6 +11,7 @@ mod inertia;
 mod interface;
 mod pose;
 mod state;
+mod turn;
 
 use std::sync::Arc;
 
@@ -26,6 +27,7 @@ pub use inertia::RigidInertia;
 pub use interface::{Interface, Penalty, Shear, Tension};
 pub use pose::Pose;
 pub use state::{ContactNode, ContactState};
+pub use turn::Turn;
 
 /// Nodes that stand for the motion of a body behind the nodes of the grid: one for its displacement, one
 /// for its rotation.

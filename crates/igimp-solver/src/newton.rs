@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use igimp_assembly::{
     AcceptedContact, AssemblyError, Geometry, LoadPoint, Method, OutOfBalance, Particles,
-    PoresAfter, Reinforcement, Stencils, StepConditions, System, Trial, WaterMoved,
+    PoresAfter, Reach, Reinforcement, Stencils, StepConditions, System, Trial, WaterMoved,
 };
 use igimp_linear::{LinearEffort, SolverKind};
 use igimp_material::{Regime, TangentKind};
@@ -321,11 +321,12 @@ impl<const D: usize> Found<'_, D> {
     /// What the step says of itself before it is accepted.
     ///
     /// # Errors
-    /// [`StepFailure::TooLong`], and those of its energy and its work.
+    /// [`StepFailure::TooLong`], [`StepFailure::Thrown`], and those of its energy and its work.
     fn report(&self, attempt: &Attempt<'_, D>) -> Result<StepReport, StepFailure> {
         let Self {
             system, trial, u, ..
         } = self;
+        system.holds_bodies_within(Reach::OF_STEP, u)?;
         let work = (attempt.measures_work)
             .then(|| system.work(trial, u))
             .transpose()?;

@@ -101,6 +101,18 @@ pub enum StepFailure {
         /// Whether soil is near enough to touch it.
         touches: bool,
     },
+    /// A step in statics would carry a rigid body further than one that equilibrium goes on in.
+    #[error(
+        "the rigid body \"{body}\" would go by {way:.3} m and turn by {rotation:.3} rad in one step"
+    )]
+    Thrown {
+        /// Name of the body.
+        body: String,
+        /// Its way \[length\].
+        way: f64,
+        /// Its rotation \[rad\].
+        rotation: f64,
+    },
     /// The free field beside a wall finds no equilibrium.
     #[error("the column of soil in free field beside a wall does not move on")]
     FreeField(#[source] Box<StepFailure>),
@@ -116,10 +128,27 @@ pub enum StepFailure {
     },
     /// The equations could not be formed.
     #[error("the equations could not be formed")]
-    Assembly(#[from] AssemblyError),
+    Assembly(#[source] AssemblyError),
     /// The linear system could not be solved.
     #[error("the linear system could not be solved")]
     Linear(#[from] LinearSolverError),
+}
+
+impl From<AssemblyError> for StepFailure {
+    fn from(error: AssemblyError) -> Self {
+        match error {
+            AssemblyError::Thrown {
+                body,
+                way,
+                rotation,
+            } => Self::Thrown {
+                body,
+                way,
+                rotation,
+            },
+            other => Self::Assembly(other),
+        }
+    }
 }
 
 impl StepFailure {
@@ -131,6 +160,7 @@ impl StepFailure {
             Self::MaxIterations { .. }
             | Self::Diverged
             | Self::Stagnated
+            | Self::Thrown { .. }
             | Self::NotHeld { .. } => true,
             Self::LeavesGrid { .. }
             | Self::LoadPointLeavesGrid { .. }

@@ -22,6 +22,7 @@ fn row(gap: f64, area: f64, before: ContactNode) -> Row<2> {
         adhesion: 1.5,
         opening: vec![(0, [0.0, 1.0])],
         slip: [vec![(0, [1.0, 0.0])], Vec::new()],
+        arms: None,
         before,
     }
 }

@@ -8,6 +8,7 @@ mod earthquake;
 mod limits;
 mod pseudo_static;
 mod rigid;
+mod turning;
 
 use igimp_results::summary::EnergySummary;
 

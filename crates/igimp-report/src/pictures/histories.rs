@@ -438,8 +438,8 @@ mod tests {
         assert!(breaks(&case, &table, Dimension::Stress).is_empty());
         case.stages[2].start_from = Some(1);
         assert_eq!(breaks(&case, &table, Dimension::Stress), [1]);
-        let group = &groups(&[Field::Displacement], &table)[0];
-        let (_, series) = group.series(&table, &[1.0, 2.0, 3.0, 4.0], &[1], false);
+        let group = &groups(&[Field::Displacement], &table, Axes::Plane)[0];
+        let (_, series) = group.series(&table, (&[1.0, 2.0, 3.0, 4.0], &[1]), false);
         let points = &series[0].points;
         assert_eq!(points.len(), 5);
         assert!(points[2][0].is_nan() && points[1][0] < 3.0 && points[3][0] > 2.0);

@@ -182,7 +182,8 @@ fn a_free_plate_hands_its_load_to_the_floor() {
     for axis in 0..2 {
         assert!((sum[axis] + force[axis]).abs() < 1e-7, "{sum:?}");
     }
-    // Arms and normals are those of the step's start: the moment is right to the turn of a step.
+    // Normals are those of the step's start, arms those of its end: the moment is right to what slips in a step.
+    println!("moment {about}");
     assert!((about + moment).abs() < 0.02 * moment.abs(), "{about}");
     assert!(body.rigid[0].pose.angle[0] < -1e-3);
     assert!(after[0] > before[0]);
@@ -275,6 +276,42 @@ fn a_plate_that_nothing_holds_is_named() {
             touches,
         };
         assert_eq!(failure, expected);
+    }
+}
+
+/// A step in statics turns a free body by no more than 0.1, and says so of one that would.
+/// ORACLE: soil is elastic: rotations of 0.05 and 0.2 rad by the moment of a small one.
+#[test]
+fn a_plate_that_a_step_turns_far_is_refused() {
+    let turned = |moment: f64| {
+        let (mut body, conditions) = under_a_plate(&Interface::smooth().bonded());
+        "plate".clone_into(&mut body.rigid[0].name);
+        advance(&mut body, &conditions, RigidMotion::displaced([0.0, -1e-6]));
+        let mut motion = RigidMotion::held();
+        motion.rotation[0] = Drive::Loaded(moment);
+        let conditions = conditions.with_motions(vec![motion]).unwrap();
+        let done = step(
+            &mut body,
+            &Method::igimp_bbar(),
+            &conditions,
+            (0.0, 1.0),
+            &NewtonSettings::default(),
+            &mut workspace(),
+        );
+        done.map(|_| body.rigid[0].pose.angle[0])
+            .map_err(|error| *error.failure)
+    };
+    let stiffness = 1.0 / turned(1.0).unwrap();
+    let small = turned(0.05 * stiffness).unwrap();
+    assert!((small / 0.05 - 1.0).abs() < 0.2, "{small}");
+    match turned(0.2 * stiffness) {
+        Err(StepFailure::Thrown { body, rotation, .. }) => {
+            assert!(
+                body == "plate" && (rotation / 0.2 - 1.0).abs() < 0.4,
+                "{rotation}"
+            );
+        }
+        other => panic!("{other:?}"),
     }
 }
 

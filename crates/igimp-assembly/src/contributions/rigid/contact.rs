@@ -3,8 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use super::mortar_integrals::{Gathering, Sums, rolling_radius};
+use super::mortar_integrals::{Gathering, rolling_radius};
 use super::row::{ADHESIVE_GAP, Functional, Row};
+use super::sums::Sums;
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::conditions::rigid_motion::RigidMotion;
@@ -96,6 +97,8 @@ impl<'a, const D: usize> Contact<'a, D> {
         let is_pushed = conditions.is_laid || motion.is_some_and(RigidMotion::is_pushed);
         let is_loaded = conditions.time.is_none() && is_pushed;
         let rolls = rolling_radius(body, conditions).is_some();
+        // A round body shows the same surface however it turns.
+        let turns = method.geometry == Geometry::Moving && surface.radius().is_none();
         let of_step = (conditions, method.section);
         let knots = Gathering::new(body, node, particles, stencils, of_step, unknowns, &images);
         let knots = knots.sums();
@@ -138,6 +141,7 @@ impl<'a, const D: usize> Contact<'a, D> {
                 adhesion: mean(sums.adhesion),
                 opening: functional(&sums.opening),
                 slip: [functional(&sums.slip[0]), functional(&sums.slip[1])],
+                arms: turns.then(|| sums.arms_of(node + 1, surface.size())),
                 before,
             };
             let penalty = penalty_of(body, &sums, (conditions, method));
@@ -328,8 +332,8 @@ impl<const D: usize> NodalForces<D> for Contact<'_, D> {
             let interface = &body.interfaces[body.surface.side_of(row.knot)];
             let traction = row.traction(interface, penalty, u);
             match &mut blocks {
-                Some(blocks) => row.add(&traction, f, Some(&mut **blocks)),
-                None => row.add(&traction, f, None),
+                Some(blocks) => row.add(&traction, u, f, Some(&mut **blocks)),
+                None => row.add(&traction, u, f, None),
             }
         }
     }

@@ -7,6 +7,7 @@ mod contact;
 mod mortar_integrals;
 mod rollers;
 mod row;
+mod sums;
 mod weight;
 
 pub use contact::AcceptedContact;

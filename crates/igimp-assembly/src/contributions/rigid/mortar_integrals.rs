@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use igimp_shape::Grid;
 
+use super::sums::Sums;
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::error::padded;
@@ -13,50 +14,10 @@ use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
 use igimp_rigid::{Face, Image, Images, Piece, RigidBody, pieces};
 use igimp_surface::Space;
-use igimp_surface::vectors::cross;
+use igimp_surface::vectors::{cross, minus};
 
 /// A node with a smaller share of a point has none: round-off on a line of the grid \[-\].
 const LEAST_SHARE: f64 = 1e-9;
-
-/// What is summed at a knot.
-#[derive(Default)]
-pub(crate) struct Sums<const D: usize> {
-    pub(crate) area: f64,
-    /// The same over the thickness of the section.
-    pub(crate) length: f64,
-    /// Gap times area, of all faces, and of those that see the side with their area.
-    gap: f64,
-    seen_gap: f64,
-    seen_area: f64,
-    /// The greatest component of the normal times area.
-    facing: f64,
-    pub(crate) young: f64,
-    pub(crate) adhesion: f64,
-    pub(crate) cell: f64,
-    pub(crate) opening: BTreeMap<usize, [f64; D]>,
-    pub(crate) slip: [BTreeMap<usize, [f64; D]>; 2],
-}
-
-impl<const D: usize> Sums<D> {
-    /// The mean gap of all soil around the knot \[length\].
-    pub(crate) fn mean_gap(&self) -> f64 {
-        self.gap / self.area
-    }
-
-    /// How much of an axis of the grid the normal has around the knot \[-\].
-    pub(crate) fn facing(&self) -> f64 {
-        self.facing / self.area
-    }
-
-    /// The mean gap of soil that sees the side, of all where none does \[length\].
-    pub(crate) fn gap_in_front(&self) -> f64 {
-        if self.seen_area > 0.0 {
-            self.seen_gap / self.seen_area
-        } else {
-            self.mean_gap()
-        }
-    }
-}
 
 /// The sums of a body while they are made.
 pub(crate) struct Gathering<'a, const D: usize> {
@@ -156,12 +117,13 @@ impl<'a, const D: usize> Gathering<'a, D> {
     fn add_points(&mut self, soil: &Soil<'_, D>, places: &[[f64; D]]) {
         let grid = &self.conditions.grid;
         for point in soil.face.points(self.body, places, grid) {
-            let Some(mut own) = soil_at(grid, self.stencils, self.unknowns, &point.x) else {
+            let (x, across) = folded(grid, &point.x);
+            let Some(mut own) = soil_at(grid, self.stencils, self.unknowns, &x) else {
                 continue;
             };
             own.gap = self.gap(soil.face, &point.x);
             for (knot, tent) in point.knots {
-                self.add(soil, self.images.at(knot), point.area * tent, &own);
+                self.add_at(soil, (knot, across), point.area * tent, &own);
             }
         }
     }
@@ -176,10 +138,13 @@ impl<'a, const D: usize> Gathering<'a, D> {
         places: &[[f64; D]],
     ) {
         let (body, face) = (self.body, soil.face);
-        for piece in pieces(face, half, body, space, places, &self.conditions.grid) {
+        let grid = &self.conditions.grid;
+        for piece in pieces(face, half, body, space, places, grid) {
+            let beyond = piece.points.first().map(|(x, ..)| folded(grid, x).1);
+            let across = beyond.unwrap_or([false; D]);
             for (corner, (weight, own)) in self.means(&piece, face).into_iter().enumerate() {
                 for &(knot, share) in &space.shares[piece.corners[corner]] {
-                    self.add(soil, self.images.at(knot), share * weight, &own);
+                    self.add_at(soil, (knot, across), share * weight, &own);
                 }
             }
         }
@@ -203,7 +168,8 @@ impl<'a, const D: usize> Gathering<'a, D> {
         };
         let mut sums: Vec<(f64, SoilPoint<D>)> = (0..3).map(|_| (0.0, none())).collect();
         for (x, area, shares) in &piece.points {
-            let Some(own) = soil_at(grid, self.stencils, self.unknowns, x) else {
+            let within = folded(grid, x).0;
+            let Some(own) = soil_at(grid, self.stencils, self.unknowns, &within) else {
                 continue;
             };
             let gap = self.gap(face, x);
@@ -234,6 +200,22 @@ impl<'a, const D: usize> Gathering<'a, D> {
             }
         }
         sums
+    }
+
+    /// Adds to a knot the soil at a place that stands for an area: itself, or its mirror image `across` sides of the grid (theory, eq. 45h).
+    fn add_at(
+        &mut self,
+        soil: &Soil<'_, D>,
+        (knot, across): (usize, [bool; D]),
+        weight: f64,
+        point: &SoilPoint<D>,
+    ) {
+        if across == [false; D] {
+            self.add(soil, self.images.at(knot), weight, point);
+        } else if let Some(image) = self.images.of_soil_beyond(knot, across) {
+            let face = &soil.face.mirrored(self.body, across);
+            self.add(&Soil { face, ..*soil }, image, weight, point);
+        }
     }
 
     /// Adds to a knot the soil at a place that stands for an area.
@@ -271,6 +253,9 @@ impl<'a, const D: usize> Gathering<'a, D> {
         let of_body = |direction: &[f64; D]| rigid_shares(body, place, direction, node);
         let normal = &soil.face.normal;
         sums.facing += weight * normal.iter().fold(0.0_f64, |most, own| most.max(own.abs()));
+        let arm = minus(place, &body.pose.origin);
+        let [first, second] = &tangents;
+        sums.arms.add(weight, &arm, [normal, first, second]);
         add(&mut sums.opening, weight, normal, shares, of_body(normal));
         for (slip, tangent) in std::iter::zip(&mut sums.slip, &tangents).take(D - 1) {
             add(slip, weight, tangent, shares, of_body(tangent));
@@ -300,6 +285,21 @@ pub(crate) fn rolling_radius<const D: usize>(
     conditions: &StepConditions<D>,
 ) -> Option<f64> {
     conditions.time.and(body.surface.radius())
+}
+
+/// The place of a point within the grid, mirrored in the sides that it lies beyond; and across which axes.
+fn folded<const D: usize>(grid: &Grid<D>, x: &[f64; D]) -> ([f64; D], [bool; D]) {
+    let mut across = [false; D];
+    let place = std::array::from_fn(|axis| {
+        let side = x[axis].clamp(grid.axes[axis].start(), grid.axes[axis].end());
+        across[axis] = (x[axis] - side).abs() > 0.0;
+        if across[axis] {
+            2.0 * side - x[axis]
+        } else {
+            x[axis]
+        }
+    });
+    (place, across)
 }
 
 /// The soil's displacement at a point, as shares of nodes that carry soil.

@@ -1,8 +1,10 @@
 //! Contact at one knot of a surface: the mean gap and the mean slip around it as linear functions of
 //! the step's displacements, and what they cause.
 
+use std::borrow::Cow;
+
 use crate::contributions::nodal_forces::AddBlock;
-use igimp_rigid::{ContactNode, Interface, Penalty, Shear, Tension};
+use igimp_rigid::{ContactNode, Interface, Penalty, Shear, Tension, Turn};
 
 /// Traction grows at most so much from step to step where soil covers less and less of a knot \[-\]. A choice: without a bound
 /// the last bit of soil at a knot would carry all of its force; what is cut off is out of balance in one step, and found by it.
@@ -27,6 +29,18 @@ pub(super) const ADHESIVE_GAP: f64 = 0.1;
 /// A linear function of nodal displacements.
 pub(crate) type Functional<const D: usize> = Vec<(usize, [f64; D])>;
 
+/// Arms of a body that turns in a step, from its reference point to the soil around a knot (theory, eq. 48a).
+#[derive(Clone, Debug)]
+pub(crate) struct Arms<const D: usize> {
+    /// The node of its rotation.
+    pub(crate) node: usize,
+    /// What rotations are multiplied by to be lengths \[length\].
+    pub(crate) size: f64,
+    /// Means of the arm times the normal, and times the tangents; first the component of the arm.
+    pub(crate) opening: [[f64; D]; D],
+    pub(crate) slip: [[[f64; D]; D]; 2],
+}
+
 /// Contact at one knot of a surface.
 #[derive(Clone, Debug)]
 pub(crate) struct Row<const D: usize> {
@@ -43,10 +57,12 @@ pub(crate) struct Row<const D: usize> {
     pub(crate) young: f64,
     /// Adhesion of the soil that touches \[stress\].
     pub(crate) adhesion: f64,
-    /// Opening of the mean gap.
+    /// Opening of the mean gap, by what is linear in the rotation of the body.
     pub(crate) opening: Functional<D>,
-    /// Slip of the soil along the tangents.
+    /// Slip of the soil along the tangents, likewise.
     pub(crate) slip: [Functional<D>; 2],
+    /// What turns with the body; none where it does not turn, and where it is round.
+    pub(crate) arms: Option<Arms<D>>,
     /// As the last step left it.
     pub(crate) before: ContactNode,
 }
@@ -143,7 +159,7 @@ impl<const D: usize> Row<D> {
 
     /// The way by which soil slides along the knot by nodal step displacements `u` \[length\].
     pub(crate) fn way(&self, u: &[[f64; D]]) -> f64 {
-        let slip = [0, 1].map(|k| value(&self.slip[k], u));
+        let slip = self.slip_at(u);
         slip[0].hypot(slip[1])
     }
 
@@ -155,7 +171,25 @@ impl<const D: usize> Row<D> {
 
     /// The mean gap after nodal step displacements `u`.
     pub(crate) fn gap_at(&self, u: &[[f64; D]]) -> f64 {
-        self.gap + value(&self.opening, u)
+        let beyond = self
+            .turn(u)
+            .map_or(0.0, |(arms, turn)| turn.work_beyond(&arms.opening));
+        self.gap + value(&self.opening, u) - beyond
+    }
+
+    /// The slip of the soil along the tangents by nodal step displacements `u` \[length\].
+    fn slip_at(&self, u: &[[f64; D]]) -> [f64; 2] {
+        let turn = self.turn(u);
+        [0, 1].map(|k| {
+            let beyond = |(arms, turn): &(&Arms<D>, Turn<D>)| turn.work_beyond(&arms.slip[k]);
+            value(&self.slip[k], u) - turn.as_ref().map_or(0.0, beyond)
+        })
+    }
+
+    /// The turn of the body in a step by nodal step displacements `u`, with the arms that turn.
+    fn turn(&self, u: &[[f64; D]]) -> Option<(&Arms<D>, Turn<D>)> {
+        let arms = self.arms.as_ref()?;
+        Some((arms, Turn::by(&u[arms.node], arms.size)))
     }
 
     /// Whether adhesion acts across a mean gap \[length\] (theory, eq. 47a): a crack carries none.
@@ -192,7 +226,7 @@ impl<const D: usize> Row<D> {
             }
         }
         let held = penalty.tangential * stiffness;
-        let slip: [f64; 2] = [0, 1].map(|k| value(&self.slip[k], u));
+        let slip = self.slip_at(u);
         let trial = [0, 1].map(|k| self.before.shear[k] - held * slip[k]);
         match &interface.shear {
             Shear::Rough if self.before.is_closed => {
@@ -231,21 +265,46 @@ impl<const D: usize> Row<D> {
     }
 
     /// Adds the internal force at nodal step displacements `u`, −A (p ∂g/∂u + τ ∂s/∂u), and hands its
-    /// derivative on by blocks of nodes (row, column).
+    /// derivative on by blocks of nodes (row, column) (theory, eqs. 48 and 48a).
     pub(crate) fn add(
         &self,
         traction: &Traction,
+        u: &[[f64; D]],
         f: &mut [[f64; D]],
         blocks: Option<&mut AddBlock<'_, D>>,
     ) {
         let tangents = D - 1;
-        add(&self.opening, -self.area * traction.pressure, f);
+        let turn = self.turn(u);
+        let turned = |function, arms: fn(&Arms<D>) -> &[[f64; D]; D]| match &turn {
+            None => Cow::Borrowed(function),
+            Some((own, turn)) => Cow::Owned(turned(function, own.node, turn, arms(own))),
+        };
+        let opening = turned(&self.opening, |own| &own.opening);
+        let slip = [
+            turned(&self.slip[0], |own| &own.slip[0]),
+            turned(&self.slip[1], |own| &own.slip[1]),
+        ];
+        add(&opening, -self.area * traction.pressure, f);
         for k in 0..tangents {
-            add(&self.slip[k], -self.area * traction.shear[k], f);
+            add(&slip[k], -self.area * traction.shear[k], f);
         }
         let Some(blocks) = blocks else {
             return;
         };
+        if let Some((arms, turn)) = &turn {
+            let [of_opening, first, second] =
+                [&arms.opening, &arms.slip[0], &arms.slip[1]].map(|own| {
+                    turn.curvature(own)
+                        .map(|row| row.map(|own| self.area * own))
+                });
+            let entry = |a: usize, b: usize| {
+                traction.pressure * of_opening[a][b]
+                    + traction.shear[0] * first[a][b]
+                    + traction.shear[1] * second[a][b]
+            };
+            let block = std::array::from_fn(|a| std::array::from_fn(|b| entry(a, b)));
+            blocks(arms.node, arms.node, &block);
+        }
         let mut outer = |a: &Functional<D>, b: &Functional<D>, factor: f64| {
             if factor == 0.0 {
                 return;
@@ -256,16 +315,31 @@ impl<const D: usize> Row<D> {
                 }
             }
         };
-        outer(&self.opening, &self.opening, -self.area * traction.by_gap);
+        outer(&opening, &opening, -self.area * traction.by_gap);
         for k in 0..tangents {
             let by_gap = -self.area * traction.shear_by_gap[k];
-            outer(&self.slip[k], &self.opening, by_gap);
+            outer(&slip[k], &opening, by_gap);
             for l in 0..tangents {
                 let by_slip = -self.area * traction.shear_by_slip[k][l];
-                outer(&self.slip[k], &self.slip[l], by_slip);
+                outer(&slip[k], &slip[l], by_slip);
             }
         }
     }
+}
+
+/// A function whose share of the rotation of a body, at a node, is that once the body has turned.
+fn turned<const D: usize>(
+    function: &Functional<D>,
+    node: usize,
+    turn: &Turn<D>,
+    arms: &[[f64; D]; D],
+) -> Functional<D> {
+    let moment = turn.moment_beyond(arms);
+    let own = |&(at, share): &(usize, [f64; D])| {
+        let by = if at == node { moment } else { [0.0; D] };
+        (at, std::array::from_fn(|axis| share[axis] - by[axis]))
+    };
+    function.iter().map(own).collect()
 }
 
 /// The value of a linear function of nodal displacements.

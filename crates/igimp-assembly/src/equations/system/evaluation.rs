@@ -5,7 +5,7 @@ use std::sync::Arc;
 use igimp_linear::{Border, TangentMatrix};
 use igimp_material::{MaterialError, TangentKind};
 
-use super::System;
+use super::{Reach, System};
 use crate::equations::kinematics::ParticleTrial;
 use crate::equations::residual::OutOfBalance;
 use crate::equations::trial::Trial;
@@ -43,13 +43,14 @@ impl<const D: usize> System<'_, D> {
     ///
     /// # Errors
     /// [`AssemblyError::Inverted`] or [`AssemblyError::Material`] of a particle that fails: of
-    /// several always the same one. The trial is then of no use.
+    /// several always the same one; [`AssemblyError::Thrown`] of a rigid body. The trial is then of no use.
     pub fn evaluate_into(
         &self,
         u: &[[f64; D]],
         kind: TangentKind,
         trial: &mut Trial<D>,
     ) -> Result<(), AssemblyError> {
+        self.holds_bodies_within(Reach::OF_CORRECTION, u)?;
         self.pass(u, kind, trial, None)?;
         for force in self.beside.forces() {
             force.add(u, &mut trial.f_int, None);
@@ -79,6 +80,7 @@ impl<const D: usize> System<'_, D> {
             Arc::ptr_eq(&matrix.pattern, &self.pattern),
             "the matrix belongs to this step"
         );
+        self.holds_bodies_within(Reach::OF_CORRECTION, u)?;
         matrix.symmetric = self.symmetric;
         self.pass(u, kind, trial, Some(&mut matrix.values))?;
         let of_grid = self.unknowns.of_grid();

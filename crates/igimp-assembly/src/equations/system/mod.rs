@@ -4,6 +4,9 @@ mod answers;
 mod evaluation;
 mod loads;
 mod prescribed;
+mod thrown;
+
+pub use thrown::Reach;
 
 use std::borrow::Cow;
 use std::sync::Arc;

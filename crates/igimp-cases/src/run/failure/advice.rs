@@ -60,6 +60,13 @@ pub(crate) fn advice<const D: usize>(
             component,
             touches,
         } => not_held(stage, body, *component, *touches),
+        StepFailure::Thrown { body, .. } => vec![
+            format!(
+                "rotation = \"0 deg\" for the rigid body \"{body}\" in stage \"{}\", in place of moment or free: that holds it",
+                stage.name
+            ),
+            "a stage of type dynamic: a body that falls over or slides away has no equilibrium to go on in".to_owned(),
+        ],
         StepFailure::TooLong { .. } if stage.consolidation.is_some() => vec![
             format!("a longer duration in stage \"{}\"", stage.name),
             finer_cell(case),
