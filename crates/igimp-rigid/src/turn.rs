@@ -207,7 +207,8 @@ mod tests {
                 assert!((second - found[i][j]).abs() < 1e-5, "{i} {j}");
             }
         }
-        assert_eq!(Turn::by(&[0.0; 3], SIZE).moment_beyond(&sums()), [0.0; 3]);
+        let still = Turn::by(&[0.0; 3], SIZE).moment_beyond(&sums());
+        assert!(still.iter().all(|own| own.abs() < 1e-300), "{still:?}");
     }
 
     /// GOAL: in the plane too.

@@ -469,6 +469,11 @@ fn what_makes_no_flow_is_refused() {
         let found = refused(from, to);
         assert!(found.contains(message), "{message}: {found}");
     }
+}
+
+/// GOAL: what is found as the flow begins is refused too, with its cause.
+#[test]
+fn a_face_within_the_ground_is_refused() {
     let nowhere = edited(&[
         ("[\"0 m\", \"10 m\"], head", "[\"6 m\", \"3 m\"], head"),
         ("from = [\"0 m\", \"0 m\"]", "from = [\"5 m\", \"2 m\"]"),

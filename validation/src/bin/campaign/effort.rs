@@ -67,6 +67,7 @@ fn cause(failure: &StepFailure) -> &'static str {
         | StepFailure::LoadPointLeavesGrid { .. }
         | StepFailure::ReinforcementLeavesGrid { .. } => "leaves the grid",
         StepFailure::TooLong { .. } => "too long a step",
+        StepFailure::Thrown { .. } => "throws a body",
         StepFailure::TooDeep { .. } => "penetrates too deep",
         StepFailure::Penetration(_) => "soil caught by a body",
         StepFailure::NotHeld { .. } => "nothing holds a body",
