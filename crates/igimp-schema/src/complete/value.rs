@@ -181,7 +181,7 @@ fn refuse(
     error: &QuantityError,
     dimension: Option<Dimension>,
 ) -> Option<Node> {
-    // Keys of forces per metre run that an analysis of revolution knows are those of forces at a point.
+    // Keys of forces per metre run that an analysis of revolution reads are those of loads at a point and of reinforcement.
     let is_at_circle = completer.bodies == Bodies::Revolution
         && matches!(
             error,
@@ -192,7 +192,7 @@ fn refuse(
             }
         );
     let help = if is_at_circle {
-        "a force at a point would be one along a whole circle: state a pressure over an area"
+        "around an axis a force at a point or along a line would go along a whole circle: state a pressure over an area"
             .to_owned()
     } else {
         error.help(dimension)
