@@ -188,7 +188,7 @@ fn a_search_of_absent_soil_is_refused() {
 
 /// GOAL: the curve of displacement against the factor of a search has one origin, whatever settled before it.
 /// CASE: the slope after its weight, whose settlement stays in the displacements that go on. ORACLE: nothing has moved as the search
-/// begins; the settlement, a hundred times what the first trial adds, is the control.
+/// begins; the settlement, ten times what the first trial adds, is the control.
 #[test]
 fn a_curve_of_a_search_begins_with_nothing() {
     let search = "[[stages]]\nname = \"dry\"\ntype = \"strength-reduction\"\nsearch = \"trials\"\nfactors = [1.05, 1.1]\n\
