@@ -12,7 +12,6 @@ const GAUSS: f64 = 0.577_350_269_189_625_8;
 const ROUND_OFF: f64 = 1e-9;
 
 /// The face of a particle, parallel to a side of the body.
-#[derive(Clone, Debug)]
 pub struct Face<const D: usize> {
     /// Its middle \[length\].
     pub middle: [f64; D],
@@ -113,17 +112,6 @@ impl<const D: usize> Face<D> {
         };
         let tangents = space.tangents_at(knot, &facing);
         tangents.map(|own| image.mirrored(&pose.direction(&own)))
-    }
-
-    /// Its image across axes, as far as directions go.
-    #[must_use]
-    pub fn mirrored(&self, body: &RigidBody<D>, across: [bool; D]) -> Self {
-        let normal = Image { knot: 0, across }.mirrored(&self.normal);
-        Self {
-            normal,
-            facing: body.pose.direction_in_body(&normal),
-            ..self.clone()
-        }
     }
 
     /// A point of its plane in space.

@@ -12,16 +12,6 @@ const ONE_PLACE: f64 = 1e-6;
 /// sides: what it does around a knot beyond the plane, the soil that is not there does around the image of the knot.
 pub struct Images<const D: usize> {
     of: Vec<Image<D>>,
-    /// By knot and axis, how it lies to the sides of the grid.
-    lies: Vec<[Lies; D]>,
-}
-
-/// How a knot lies to the sides of the grid across an axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Lies {
-    Within,
-    On,
-    Beyond,
 }
 
 /// Where the soil around a knot is summed.
@@ -81,43 +71,9 @@ impl<const D: usize> Images<D> {
                 .find(is_there)
                 .map_or(own, |knot| Image { knot, across })
         };
-        let lies = |place: &[f64; D]| {
-            std::array::from_fn(|axis| {
-                let (start, end) = (grid.axes[axis].start(), grid.axes[axis].end());
-                let inwards = (place[axis] - start).min(end - place[axis]);
-                if inwards > ONE_PLACE * spacing {
-                    Lies::Within
-                } else if inwards < -ONE_PLACE * spacing {
-                    Lies::Beyond
-                } else {
-                    Lies::On
-                }
-            })
-        };
         Self {
             of: (0..places.len()).map(image).collect(),
-            lies: places.iter().map(lies).collect(),
         }
-    }
-
-    /// Where the mirror image of soil is summed that a knot has beyond sides of the grid, `across` these axes: at the image of the knot in
-    /// these sides. A slanting face reaches beyond a plane of symmetry, and what comes from the other side reaches as far. None where
-    /// there is no such knot.
-    pub fn of_soil_beyond(&self, knot: usize, across: [bool; D]) -> Option<Image<D>> {
-        let (own, lies) = (self.of[knot], self.lies[knot]);
-        let has_image = (0..D).all(|a| lies[a] != Lies::Beyond || own.across[a]);
-        let mirrored = Image {
-            knot: own.knot,
-            across: std::array::from_fn(|a| {
-                if across[a] {
-                    lies[a] == Lies::Within
-                } else {
-                    own.across[a]
-                }
-            }),
-        };
-        let is_there = mirrored == Image::own(own.knot) || self.of.contains(&mirrored);
-        (has_image && is_there).then_some(mirrored)
     }
 
     /// That of a knot.

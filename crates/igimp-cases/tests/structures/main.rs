@@ -6,7 +6,6 @@ mod edits;
 mod messages;
 
 mod closing;
-mod halves;
 mod reinforcement;
 mod rigid;
 mod rigid_results;

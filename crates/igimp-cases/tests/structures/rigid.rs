@@ -537,7 +537,7 @@ figures = []
             .collect();
         println!("{height}: {levers:?}");
         for lever in levers {
-            assert!((lever - 0.42).abs() < 0.01, "{height}: {lever}");
+            assert!((lever - 0.4).abs() < 0.005, "{height}: {lever}");
         }
     }
 }

@@ -97,8 +97,6 @@ impl<'a, const D: usize> Contact<'a, D> {
         let is_pushed = conditions.is_laid || motion.is_some_and(RigidMotion::is_pushed);
         let is_loaded = conditions.time.is_none() && is_pushed;
         let rolls = rolling_radius(body, conditions).is_some();
-        // A round body shows the same surface however it turns.
-        let turns = method.geometry == Geometry::Moving && surface.radius().is_none();
         let of_step = (conditions, method.section);
         let knots = Gathering::new(body, node, particles, stencils, of_step, unknowns, &images);
         let knots = knots.sums();
@@ -141,12 +139,11 @@ impl<'a, const D: usize> Contact<'a, D> {
                 adhesion: mean(sums.adhesion),
                 opening: functional(&sums.opening),
                 slip: [functional(&sums.slip[0]), functional(&sums.slip[1])],
-                arms: turns.then(|| sums.arms_of(node + 1, surface.size())),
+                arms: turns(body, method).then(|| sums.arms_of(node + 1, surface.size())),
                 before,
             };
             let penalty = penalty_of(body, &sums, (conditions, method));
-            let whole = tents[knot] * (sums.area / sums.length);
-            row.carry_force(interface, &penalty, whole);
+            row.carry_force(interface, &penalty, tents[knot] * (sums.area / sums.length));
             if interface.tension == Tension::None && !rolls {
                 let takes_time = conditions.time.is_some();
                 row.take_soil_that_came((sums.mean_gap(), takes_time), interface, &penalty);
@@ -283,6 +280,11 @@ fn penalty_of<const D: usize>(
     } else {
         body.penalty
     }
+}
+
+/// Whether arms turn with a body in a step: a round one shows the same surface however it turns.
+fn turns<const D: usize>(body: &RigidBody<D>, method: &Method) -> bool {
+    method.geometry == Geometry::Moving && body.surface.radius().is_none()
 }
 
 /// Sets the gap that a knot begins a step with. Soil that comes near is as far off as what of it stands in front (theory, eq. 45f), and

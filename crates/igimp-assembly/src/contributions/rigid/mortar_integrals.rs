@@ -117,13 +117,12 @@ impl<'a, const D: usize> Gathering<'a, D> {
     fn add_points(&mut self, soil: &Soil<'_, D>, places: &[[f64; D]]) {
         let grid = &self.conditions.grid;
         for point in soil.face.points(self.body, places, grid) {
-            let (x, across) = folded(grid, &point.x);
-            let Some(mut own) = soil_at(grid, self.stencils, self.unknowns, &x) else {
+            let Some(mut own) = soil_at(grid, self.stencils, self.unknowns, &point.x) else {
                 continue;
             };
             own.gap = self.gap(soil.face, &point.x);
             for (knot, tent) in point.knots {
-                self.add_at(soil, (knot, across), point.area * tent, &own);
+                self.add(soil, self.images.at(knot), point.area * tent, &own);
             }
         }
     }
@@ -140,11 +139,9 @@ impl<'a, const D: usize> Gathering<'a, D> {
         let (body, face) = (self.body, soil.face);
         let grid = &self.conditions.grid;
         for piece in pieces(face, half, body, space, places, grid) {
-            let beyond = piece.points.first().map(|(x, ..)| folded(grid, x).1);
-            let across = beyond.unwrap_or([false; D]);
             for (corner, (weight, own)) in self.means(&piece, face).into_iter().enumerate() {
                 for &(knot, share) in &space.shares[piece.corners[corner]] {
-                    self.add_at(soil, (knot, across), share * weight, &own);
+                    self.add(soil, self.images.at(knot), share * weight, &own);
                 }
             }
         }
@@ -168,8 +165,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
         };
         let mut sums: Vec<(f64, SoilPoint<D>)> = (0..3).map(|_| (0.0, none())).collect();
         for (x, area, shares) in &piece.points {
-            let within = folded(grid, x).0;
-            let Some(own) = soil_at(grid, self.stencils, self.unknowns, &within) else {
+            let Some(own) = soil_at(grid, self.stencils, self.unknowns, x) else {
                 continue;
             };
             let gap = self.gap(face, x);
@@ -200,22 +196,6 @@ impl<'a, const D: usize> Gathering<'a, D> {
             }
         }
         sums
-    }
-
-    /// Adds to a knot the soil at a place that stands for an area: itself, or its mirror image `across` sides of the grid (theory, eq. 45h).
-    fn add_at(
-        &mut self,
-        soil: &Soil<'_, D>,
-        (knot, across): (usize, [bool; D]),
-        weight: f64,
-        point: &SoilPoint<D>,
-    ) {
-        if across == [false; D] {
-            self.add(soil, self.images.at(knot), weight, point);
-        } else if let Some(image) = self.images.of_soil_beyond(knot, across) {
-            let face = &soil.face.mirrored(self.body, across);
-            self.add(&Soil { face, ..*soil }, image, weight, point);
-        }
     }
 
     /// Adds to a knot the soil at a place that stands for an area.
@@ -285,21 +265,6 @@ pub(crate) fn rolling_radius<const D: usize>(
     conditions: &StepConditions<D>,
 ) -> Option<f64> {
     conditions.time.and(body.surface.radius())
-}
-
-/// The place of a point within the grid, mirrored in the sides that it lies beyond; and across which axes.
-fn folded<const D: usize>(grid: &Grid<D>, x: &[f64; D]) -> ([f64; D], [bool; D]) {
-    let mut across = [false; D];
-    let place = std::array::from_fn(|axis| {
-        let side = x[axis].clamp(grid.axes[axis].start(), grid.axes[axis].end());
-        across[axis] = (x[axis] - side).abs() > 0.0;
-        if across[axis] {
-            2.0 * side - x[axis]
-        } else {
-            x[axis]
-        }
-    });
-    (place, across)
 }
 
 /// The soil's displacement at a point, as shares of nodes that carry soil.
