@@ -21,7 +21,7 @@ const FALLEN: f64 = 0.03;
 const FALLEN_AND_LOST: f64 = 0.01;
 
 /// A step that does less of the work of the path so far does not end a mechanism \[-\].
-const LEAST_STEP: f64 = 1e-3;
+const LEAST_STEP: f64 = 1e-2;
 
 /// The way of a factor in its stage: where it begins, and to which side it goes.
 #[derive(Clone, Copy, Debug)]

@@ -302,7 +302,9 @@ fn balance<const D: usize>(surface: &Surface<D>, cells: usize, depth: f64) {
         let (size, origin) = (surface.size(), body.pose.origin);
         let conditions = conditions(&grid, &law, motion);
         let stencils = Stencils::build(&soil, &method, &conditions).unwrap();
-        let u = moved(&grid, &mut random);
+        let mut u = moved(&grid, &mut random);
+        // Where the body turns in the step its arms are those of the end, those of the soil of the start (theory, eq. 48a).
+        u[grid.node_count() + 1] = [0.0; D];
         let force = |bodies: &[RigidBody<D>]| {
             System::with_structures(
                 &soil,
