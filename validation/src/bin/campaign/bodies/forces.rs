@@ -50,6 +50,8 @@ struct Around {
     /// Opening and slip by node.
     opening: BTreeMap<usize, [f64; 2]>,
     slip: BTreeMap<usize, [f64; 2]>,
+    /// Moments of directions by the ways of arms that turn in the step: of opening and of slip \[length²\].
+    turned: [f64; 2],
 }
 
 impl Around {
@@ -108,7 +110,13 @@ pub(crate) fn forces(begun: &Begun<'_>, after: &[RigidBody<2>], u: &[[f64; 2]]) 
     let grid_nodes = begun.conditions.grid.node_count();
     let mut out = vec![[0.0; 2]; grid_nodes + 2 * after.len()];
     for (slot, body) in begun.rigid.iter().enumerate() {
-        let around = around_knots(begun, slot, body);
+        let turn = grid_nodes + 2 * slot + 1;
+        // A round body shows the same surface however it turns.
+        let angle = match body.surface.radius() {
+            None => u[turn][0] / body.surface.size(),
+            Some(_) => 0.0,
+        };
+        let around = around_knots(begun, slot, body, angle);
         let left = &after[slot].contact.knots;
         let tents = tents(&sides(body), left.len());
         let knots = body.surface.knots();
@@ -121,12 +129,16 @@ pub(crate) fn forces(begun: &Begun<'_>, after: &[RigidBody<2>], u: &[[f64; 2]]) 
                 let motion = &begun.conditions.motions[slot];
                 shear_by_law(body, motion, (knot, side), &sums, tents[knot], u)
             };
-            for (factor, by_node) in [(own.pressure, &sums.opening), (shear, &sums.slip)] {
+            for (factor, by_node, turned) in [
+                (own.pressure, &sums.opening, sums.turned[0]),
+                (shear, &sums.slip, sums.turned[1]),
+            ] {
                 for (&node, share) in by_node {
                     for axis in 0..2 {
                         out[node][axis] += area * factor * share[axis] / sums.area;
                     }
                 }
+                out[turn][0] -= area * factor * turned / (sums.area * body.surface.size());
             }
         }
     }
@@ -349,7 +361,13 @@ fn faces(particles: &Particles<2>, body: &RigidBody<2>, sides: &[Side]) -> Vec<F
     faces
 }
 
-fn around_knots(begun: &Begun<'_>, slot: usize, body: &RigidBody<2>) -> BTreeMap<usize, Around> {
+/// What is around the knots of a body that turns by an angle in the step \[rad\].
+fn around_knots(
+    begun: &Begun<'_>,
+    slot: usize,
+    body: &RigidBody<2>,
+    angle: f64,
+) -> BTreeMap<usize, Around> {
     let Begun {
         particles,
         conditions,
@@ -386,16 +404,25 @@ fn around_knots(begun: &Begun<'_>, slot: usize, body: &RigidBody<2>) -> BTreeMap
                 sums.young += weight * young;
                 sums.adhesion += weight * adhesion;
                 sums.cell += weight * cell;
-                for (direction, by_node) in [
-                    (face.normal, &mut sums.opening),
-                    (face.tangent, &mut sums.slip),
+                let arm = [0, 1].map(|a| place[a] - body.pose.origin[a]);
+                let way = turned_by(angle, arm);
+                for (direction, by_node, turned) in [
+                    (face.normal, &mut sums.opening, 0),
+                    (face.tangent, &mut sums.slip, 1),
                 ] {
                     add_way(by_node, &nodes, (direction, weight), (body, first, place));
+                    sums.turned[turned] += weight * (way[0] * direction[1] - way[1] * direction[0]);
                 }
             }
         }
     }
     out
+}
+
+/// The way of the end of an arm that turns by an angle \[rad\].
+fn turned_by(angle: f64, [x, y]: [f64; 2]) -> [f64; 2] {
+    let (sin, cos) = angle.sin_cos();
+    [(cos - 1.0) * x - sin * y, sin * x + (cos - 1.0) * y]
 }
 
 /// Adds how far soil at a place moves away from a body in a direction, by node: those of the soil, and the two that stand for the
