@@ -20,9 +20,6 @@ const FALLEN: f64 = 0.03;
 /// The same where the path is lost behind it \[-\].
 const FALLEN_AND_LOST: f64 = 0.01;
 
-/// A step that does less of the work of the path so far does not end a mechanism \[-\].
-const LEAST_STEP: f64 = 1e-2;
-
 /// The way of a factor in its stage: where it begins, and to which side it goes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Course {
@@ -176,14 +173,9 @@ fn at_work(points: &[PathPoint], work: f64) -> Option<PathPoint> {
 
 /// The point from which on the body moves as a mechanism, to the end of the path, interpolated between equilibria.
 pub(crate) fn mechanism(points: &[PathPoint]) -> Option<PathPoint> {
-    // A step of next to no work, where the path is hard to follow, says nothing of how the body moves.
-    let counts = |k: usize| {
-        let before = k.checked_sub(1).map_or(0.0, |before| points[before].work);
-        points[k].work - before >= LEAST_STEP * points[k].work
-    };
-    let last_before = (0..points.len())
-        .rev()
-        .find(|&k| points[k].dissipated < MECHANISM && counts(k));
+    let last_before = points
+        .iter()
+        .rposition(|point| point.dissipated < MECHANISM);
     let first = last_before.map_or(0, |before| before + 1);
     let after = *points.get(first)?;
     let Some(before) = first.checked_sub(1).map(|k| points[k]) else {
