@@ -66,10 +66,6 @@ stop_when = {{ no_equilibrium = true }}"#
     );
     let run = block(&stage, height);
     let last = run.summary.stages.last().unwrap();
-    println!(
-        "{geometry} {steps} {height}: {} {}",
-        last.reached, last.reason
-    );
     last.reached
 }
 
@@ -116,7 +112,6 @@ ground_motion = { time = ["0 s", "0.1 s", "0.3 s"], values = [0, 0.5, -0.3], uni
         let all = curve.points(0, 1);
         all[all.len() - 1][1]
     });
-    println!("{rotations:?}");
     for own in rotations {
         assert!((own / rotations[0] - 1.0).abs() < 5e-3, "{rotations:?}");
     }

@@ -367,7 +367,6 @@ fn sections_pass_all_that_enters_on_their_side() {
     for (x, (section, other)) in std::iter::zip(at, pairs) {
         // Within a cell with a sink the place of its points counts.
         let exact = enters + 1e-3 * (x - 3.0).max(0.0) + sink(x);
-        println!("x {x}: {:.6e} of {exact:.6e}", section.inflow);
         assert!((section.inflow - exact).abs() < 1e-9 * own.inflow);
         assert!((section.inflow + other.inflow).abs() < 1e-9 * own.inflow);
     }
