@@ -319,6 +319,12 @@ fn parts_of_sections_pass_their_share_of_a_uniform_flow() {
             let rate = 1e-5 * 8.0 / length;
             let off = (own.inflow / rate - within) / 0.5;
             assert!(off.abs() < accuracy, "{}: {off} of a cell", own.name);
+            // Across all of the ground, off its faces, it passes what enters, to what equations are solved to.
+            let is_within = extent.lower[0] > left + 0.5 && extent.lower[0] < right - 0.5;
+            if is_within && extent.lower[1] <= low && extent.upper[1] > top {
+                let off = own.inflow / found.discharges[0].inflow - 1.0;
+                assert!(off.abs() < 1e-6, "{}: {off} of what enters", own.name);
+            }
         }
     }
 }
