@@ -1,7 +1,7 @@
 //! The arm of the centre of mass of a rigid body about its reference point, over a step (theory, eqs. 67b and 67c).
 
-use crate::turn::{cross, curvature, mean_beyond};
-use crate::{RigidBody, rotations, turn};
+use crate::turn::{cross, mean_beyond};
+use crate::{RigidBody, Turn, rotations, turn};
 
 /// From the reference point of a body to its centre of mass, as a step begins and as the body turns in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,10 +93,25 @@ impl<const D: usize> Arm<D> {
         std::array::from_fn(|k| (0..D).map(|a| lever[a][k] * force[a]).sum())
     }
 
-    /// How the moment of a force by an `arm` changes as the body turns, over its squared size \[force/length\]: symmetric, as the
-    /// second derivative of the work of the force.
-    pub fn turning(&self, arm: &[f64; D], force: &[f64; D]) -> [[f64; D]; D] {
-        curvature(&arm.map(|own| force.map(|f| own * f)), self.size)
+    /// The derivative of [`Self::way`] by the rotation in lengths \[-\].
+    pub fn slope_of_way(&self, rotation: &[f64; D]) -> [[f64; D]; D] {
+        let lever = self.lever(&self.after(rotation));
+        if self.turns {
+            Turn::by(rotation, self.size).by_vector(&lever)
+        } else {
+            lever
+        }
+    }
+
+    /// The derivative of the moment of a force at the centre of mass after a rotation in lengths, over the squared size of the body
+    /// \[force/length\].
+    pub fn slope_of_moment(&self, rotation: &[f64; D], force: &[f64; D]) -> [[f64; D]; D] {
+        if self.turns {
+            let arms = self.start.map(|own| force.map(|f| own * f));
+            Turn::by(rotation, self.size).slope_of_moment(&arms)
+        } else {
+            [[0.0; D]; D]
+        }
     }
 }
 
@@ -133,29 +148,29 @@ mod tests {
         }
     }
 
-    /// GOAL: what the moment of a force changes by as the body turns is the derivative that Newton's method needs.
-    /// ORACLE: the second difference of the work of the force.
+    /// GOAL: way and moment have the derivatives that Newton's method needs.
+    /// ORACLE: central differences.
     #[test]
-    fn the_moment_changes_as_the_body_turns() {
-        let force = [2.0, -1.0, 0.5];
-        let work = |rotation: [f64; 3]| -> f64 {
-            std::iter::zip(force, arm().way(&rotation))
-                .map(|(f, w)| f * w)
-                .sum()
-        };
-        let turning = arm().turning(&arm().start, &force);
-        let step = 1e-3;
-        for i in 0..3 {
-            for j in 0..3 {
-                let at = |a: f64, b: f64| {
-                    let mut rotation = [0.0; 3];
-                    rotation[i] += a * step;
-                    rotation[j] += b * step;
-                    work(rotation)
+    fn way_and_moment_change_as_the_body_turns() {
+        let (force, d) = ([2.0, -1.0, 0.5], 1e-5);
+        for by in [0.0, 0.2, 2.0] {
+            let rotation = [0.6 * by, -0.2 * by, 0.5 * by];
+            let of_way = arm().slope_of_way(&rotation);
+            let of_moment = arm().slope_of_moment(&rotation, &force);
+            for k in 0..3 {
+                let at = |sign: f64| {
+                    let mut rotation = rotation;
+                    rotation[k] += sign * d;
+                    rotation
                 };
-                let second = (at(1.0, 1.0) - at(1.0, -1.0) - at(-1.0, 1.0) + at(-1.0, -1.0))
-                    / (4.0 * step * step);
-                assert!((second - turning[i][j]).abs() < 1e-5, "{i} {j}");
+                let [plus, minus] = [at(1.0), at(-1.0)];
+                let [more, less] = [&plus, &minus].map(|own| arm().way(own));
+                let [strong, weak] =
+                    [&plus, &minus].map(|own| arm().moment(&arm().after(own), &force));
+                for i in 0..3 {
+                    assert!((0.5 * (more[i] - less[i]) / d - of_way[i][k]).abs() < 1e-9);
+                    assert!((0.5 * (strong[i] - weak[i]) / d - of_moment[i][k]).abs() < 1e-9);
+                }
             }
         }
     }

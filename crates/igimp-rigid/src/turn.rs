@@ -14,6 +14,8 @@ pub struct Turn<const D: usize> {
     ways: [[f64; D]; D],
     /// R − 1 less what is linear in the rotation, by columns.
     beyond: [[f64; D]; D],
+    /// T − 1 by columns: as the vector of rotation changes by dφ the body turns by T dφ. None in the plane.
+    means: [[f64; D]; D],
     /// What rotations are multiplied by to be lengths \[length\].
     size: f64,
 }
@@ -23,11 +25,13 @@ impl<const D: usize> Turn<D> {
     pub fn by(rotation: &[f64; D], size: f64) -> Self {
         let angle = angle(rotation, size);
         let axis = |k: usize| std::array::from_fn(|a| if a == k { 1.0 } else { 0.0 });
-        let beyond = std::array::from_fn(|k| cross(&angle, &mean_beyond(&angle, &axis(k))));
+        let means: [[f64; D]; D] = std::array::from_fn(|k| mean_beyond(&angle, &axis(k)));
+        let beyond = std::array::from_fn(|k| cross(&angle, &means[k]));
         let linear: [[f64; D]; D] = std::array::from_fn(|k| cross(&angle, &axis(k)));
         Self {
             ways: std::array::from_fn(|k| std::array::from_fn(|a| linear[k][a] + beyond[k][a])),
             beyond,
+            means: if D == 3 { means } else { [[0.0; D]; D] },
             size,
         }
     }
@@ -44,16 +48,33 @@ impl<const D: usize> Turn<D> {
         moment(&turned(&self.ways, arms), self.size)
     }
 
-    /// How the moment of forces changes as the body turns, over its squared size \[force/length\]: symmetric, as the second derivative of
-    /// their work.
-    pub fn curvature(&self, arms: &[[f64; D]; D]) -> [[f64; D]; D] {
+    /// The derivative of [`Self::work_beyond`] by the rotation in lengths \[force\]: Tᵀ ( R r × f ) − r × f. In the plane that is
+    /// [`Self::moment_beyond`]; in space the vector of rotation is no axis that the body turns about.
+    pub fn slope_beyond(&self, arms: &[[f64; D]; D]) -> [f64; D] {
+        let [beyond, start] = [self.moment_beyond(arms), moment(arms, self.size)];
+        let whole: [f64; D] = std::array::from_fn(|k| beyond[k] + start[k]);
+        let own = |k: usize| -> f64 { (0..D).map(|a| self.means[k][a] * whole[a]).sum() };
+        std::array::from_fn(|k| beyond[k] + own(k))
+    }
+
+    /// The derivative of the moment R r × f of forces by the rotation, over the squared size of the body \[force/length\].
+    pub fn slope_of_moment(&self, arms: &[[f64; D]; D]) -> [[f64; D]; D] {
         let mut now = turned(&self.ways, arms);
         for (now, arms) in now.iter_mut().zip(arms) {
             for (now, own) in now.iter_mut().zip(arms) {
                 *now += own;
             }
         }
-        curvature(&now, self.size)
+        self.by_vector(&by_turn(&now, self.size))
+    }
+
+    /// How what changes so much by a turn of the body changes by its vector of rotation: times T.
+    pub(crate) fn by_vector(&self, by_turn: &[[f64; D]; D]) -> [[f64; D]; D] {
+        let entry = |row: &[f64; D], k: usize| -> f64 {
+            let own = std::iter::zip(row, &self.means[k]);
+            row[k] + own.map(|(by_turn, mean)| by_turn * mean).sum::<f64>()
+        };
+        by_turn.map(|row| std::array::from_fn(|k| entry(&row, k)))
     }
 }
 
@@ -77,17 +98,13 @@ fn moment<const D: usize>(arms: &[[f64; D]; D], size: f64) -> [f64; D] {
     moment
 }
 
-/// How the moment of forces at arms changes as the body turns, over its squared size \[force/length\].
-pub(crate) fn curvature<const D: usize>(arms: &[[f64; D]; D], size: f64) -> [[f64; D]; D] {
+/// How the moment of forces at arms changes by a turn of the body, over its squared size \[force/length\]: ( dφ × r ) × f = r ( f · dφ ) − ( r · f ) dφ.
+fn by_turn<const D: usize>(arms: &[[f64; D]; D], size: f64) -> [[f64; D]; D] {
     let along: f64 = (0..D).map(|a| arms[a][a]).sum();
     let mut block = [[0.0; D]; D];
     for (i, row) in block.iter_mut().enumerate().take(rotations(D)) {
         for (j, entry) in row.iter_mut().enumerate().take(rotations(D)) {
-            let across = if D == 3 {
-                0.5 * (arms[i][j] + arms[j][i])
-            } else {
-                0.0
-            };
+            let across = if D == 3 { arms[i][j] } else { 0.0 };
             *entry = (across - if i == j { along } else { 0.0 }) / size.powi(2);
         }
     }
@@ -164,9 +181,9 @@ mod tests {
         of(0) + of(1)
     }
 
-    /// GOAL: forces whose arms turn do the work of the turn, have its moments, and those change by its second derivative.
+    /// GOAL: forces whose arms turn do the work of the turn, and have its moments.
     /// CASE: two forces in space at small and large rotations.
-    /// ORACLE: the rotation of a pose; differences of the work at no rotation; the vector product of turned arms.
+    /// ORACLE: the rotation of a pose; the vector product of turned arms.
     #[test]
     fn arms_turn_with_the_body() {
         for by in [1e-6, 5e-3, 0.0099, 0.0101, 0.7, 3.0] {
@@ -192,23 +209,36 @@ mod tests {
                 assert!((found - exact).abs() < 1e-14, "{by}");
             }
         }
-        let step = 1e-3;
-        let found = curvature(&sums(), 1.0);
-        for i in 0..3 {
-            for j in 0..3 {
-                let at = |a: f64, b: f64| {
-                    let mut angle = [0.0; 3];
-                    angle[i] += a * step;
-                    angle[j] += b * step;
-                    work(angle)
-                };
-                let second = (at(1.0, 1.0) - at(1.0, -1.0) - at(-1.0, 1.0) + at(-1.0, -1.0))
-                    / (4.0 * step * step);
-                assert!((second - found[i][j]).abs() < 1e-5, "{i} {j}");
-            }
-        }
         let still = Turn::by(&[0.0; 3], SIZE).moment_beyond(&sums());
         assert!(still.iter().all(|own| own.abs() < 1e-300), "{still:?}");
+    }
+
+    /// GOAL: work and moment have the derivatives that Newton's method needs.
+    /// CASE: two forces in space at small and large rotations.
+    /// ORACLE: central differences.
+    #[test]
+    fn derivatives_are_those_of_the_vector_of_rotation() {
+        let d = 1e-5;
+        for by in [0.0, 5e-3, 0.0099, 0.0101, 0.7, 3.0] {
+            let own = [0.6 * by, -0.2 * by, 0.5 * by].map(|own| SIZE * own);
+            let turn = Turn::by(&own, SIZE);
+            let (slope, of_moment) = (turn.slope_beyond(&sums()), turn.slope_of_moment(&sums()));
+            for k in 0..3 {
+                let at = |sign: f64| {
+                    let mut own = own;
+                    own[k] += sign * d;
+                    Turn::by(&own, SIZE)
+                };
+                let [plus, minus] = [at(1.0), at(-1.0)];
+                let [more, less] = [&plus, &minus].map(|own| own.work_beyond(&sums()));
+                assert!((0.5 * (more - less) / d - slope[k]).abs() < 1e-8, "{by}");
+                let [more, less] = [&plus, &minus].map(|own| own.moment_beyond(&sums()));
+                for i in 0..3 {
+                    let difference = 0.5 * (more[i] - less[i]) / d;
+                    assert!((difference - of_moment[i][k]).abs() < 1e-8, "{by}");
+                }
+            }
+        }
     }
 
     /// GOAL: in the plane too.
@@ -220,6 +250,6 @@ mod tests {
         let arms = [[1.0, 0.0], [0.0, 0.0]];
         assert!((SIZE * turn.moment_beyond(&arms)[0] + 1.0).abs() < 1e-15);
         assert!((turn.work_beyond(&arms) + 1.0).abs() < 1e-15);
-        assert!(turn.curvature(&arms)[0][0].abs() < 1e-15);
+        assert!(turn.slope_of_moment(&arms)[0][0].abs() < 1e-15);
     }
 }

@@ -150,6 +150,7 @@ fn a_slice_is_the_plane() {
             (0.0, -0.05, 0.0),
             (0.05, -0.02, 0.0),
             (0.0, -0.02, 0.02),
+            (0.0, -0.02, -0.06),
             (0.0, 0.15, 0.0),
         ] {
             let mut motion = RigidMotion::displaced([x, z]);

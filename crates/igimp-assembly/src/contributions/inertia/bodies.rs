@@ -223,26 +223,14 @@ impl<const D: usize> Inertia<D> {
         }
         for (node, arm) in self.with_arms() {
             let mass = self.of_bodies[node - self.mass.diagonal.len()][0][0];
-            // Between the arm that moves the centre and that which turns the body, so that it is symmetric.
-            let after = arm.after(&u[node + 1]);
-            let between = self.arm_between(arm, &u[node + 1]);
-            let own = std::array::from_fn(|a| 0.5 * (after[a] + between[a]));
-            let lever = arm.lever(&own);
-            let turning = arm.turning(&own, &force[node]);
-            blocks(
-                node,
-                node + 1,
-                &lever.map(|row| row.map(|own| rate * mass * own)),
-            );
-            blocks(
-                node + 1,
-                node,
-                &transpose(&lever).map(|row| row.map(|own| rate * mass * own)),
-            );
-            let squared = multiply(&transpose(&lever), &lever);
-            let entry = |a: usize, b: usize| {
-                rate * mass * squared[a][b] + self.weight_of_end() * turning[a][b]
-            };
+            let moved = arm.slope_of_way(&u[node + 1]);
+            let lever = transpose(&arm.lever(&self.arm_between(arm, &u[node + 1])));
+            let turning = arm.slope_of_moment(&u[node + 1], &force[node]);
+            let by_mass = |block: &[[f64; D]; D]| block.map(|row| row.map(|own| rate * mass * own));
+            blocks(node, node + 1, &by_mass(&moved));
+            blocks(node + 1, node, &by_mass(&lever));
+            let both = by_mass(&multiply(&lever, &moved));
+            let entry = |a: usize, b: usize| both[a][b] + self.weight_of_end() * turning[a][b];
             blocks(
                 node + 1,
                 node + 1,

@@ -15,12 +15,6 @@ impl<const D: usize> Inertia<D> {
         all.filter_map(move |(body, own)| Some((first + NODES_PER_BODY * body, own.as_ref()?)))
     }
 
-    /// Whether its derivative is symmetric.
-    pub(crate) fn is_symmetric(&self) -> bool {
-        self.with_gyrations()
-            .all(|(node, _)| self.given_of(node).count() == D)
-    }
-
     /// Sets the force of acceleration of bodies that turn, by moments of inertia and spin where motion is in equilibrium (theory,
     /// eqs. 67d and 67e): accelerations `between` start and end are over the weight of forces at the end, and so is the force.
     pub(super) fn turn_moments(

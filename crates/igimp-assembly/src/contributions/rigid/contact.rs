@@ -282,9 +282,9 @@ fn penalty_of<const D: usize>(
     }
 }
 
-/// Whether arms turn with a body in a step: in the plane, and not those of a round one, which shows the same surface however it turns.
+/// Whether arms turn with a body in a step: not those of a round one, which shows the same surface however it turns.
 fn turns<const D: usize>(body: &RigidBody<D>, method: &Method) -> bool {
-    D == 2 && method.geometry == Geometry::Moving && body.surface.radius().is_none()
+    method.geometry == Geometry::Moving && body.surface.radius().is_none()
 }
 
 /// Sets the gap that a knot begins a step with. Soil that comes near is as far off as what of it stands in front (theory, eq. 45f), and

@@ -41,6 +41,13 @@ pub(crate) struct Arms<const D: usize> {
     pub(crate) slip: [[[f64; D]; D]; 2],
 }
 
+impl<const D: usize> Arms<D> {
+    /// Of the opening and of the slip along the tangents.
+    fn all(&self) -> [&[[f64; D]; D]; 3] {
+        [&self.opening, &self.slip[0], &self.slip[1]]
+    }
+}
+
 /// Contact at one knot of a surface.
 #[derive(Clone, Debug)]
 pub(crate) struct Row<const D: usize> {
@@ -275,28 +282,26 @@ impl<const D: usize> Row<D> {
     ) {
         let tangents = D - 1;
         let turn = self.turn(u);
-        let turned = |function, arms: fn(&Arms<D>) -> &[[f64; D]; D]| match &turn {
-            None => Cow::Borrowed(function),
-            Some((own, turn)) => Cow::Owned(turned(function, own.node, turn, arms(own))),
-        };
-        let opening = turned(&self.opening, |own| &own.opening);
-        let slip = [
-            turned(&self.slip[0], |own| &own.slip[0]),
-            turned(&self.slip[1], |own| &own.slip[1]),
-        ];
+        let all = [&self.opening, &self.slip[0], &self.slip[1]];
+        let of_arms = turn.as_ref().map(|(arms, turn)| (arms.all(), turn));
+        let moments = of_arms.map(|(arms, turn)| arms.map(|own| turn.moment_beyond(own)));
+        let [opening, first, second] = self.turned(all, moments);
         add(&opening, -self.area * traction.pressure, f);
-        for k in 0..tangents {
-            add(&slip[k], -self.area * traction.shear[k], f);
+        for (slip, shear) in [&first, &second]
+            .into_iter()
+            .zip(traction.shear)
+            .take(tangents)
+        {
+            add(slip, -self.area * shear, f);
         }
         let Some(blocks) = blocks else {
             return;
         };
         if let Some((arms, turn)) = &turn {
-            let [of_opening, first, second] =
-                [&arms.opening, &arms.slip[0], &arms.slip[1]].map(|own| {
-                    turn.curvature(own)
-                        .map(|row| row.map(|own| self.area * own))
-                });
+            let [of_opening, first, second] = arms.all().map(|own| {
+                turn.slope_of_moment(own)
+                    .map(|row| row.map(|own| self.area * own))
+            });
             let entry = |a: usize, b: usize| {
                 traction.pressure * of_opening[a][b]
                     + traction.shear[0] * first[a][b]
@@ -305,6 +310,9 @@ impl<const D: usize> Row<D> {
             let block = std::array::from_fn(|a| std::array::from_fn(|b| entry(a, b)));
             blocks(arms.node, arms.node, &block);
         }
+        let slopes = of_arms.map(|(arms, turn)| arms.map(|own| turn.slope_beyond(own)));
+        let [of_gap, of_first, of_second] = self.turned(all, slopes);
+        let (slip, of_slip) = ([first, second], [of_first, of_second]);
         let mut outer = |a: &Functional<D>, b: &Functional<D>, factor: f64| {
             if factor == 0.0 {
                 return;
@@ -315,31 +323,34 @@ impl<const D: usize> Row<D> {
                 }
             }
         };
-        outer(&opening, &opening, -self.area * traction.by_gap);
+        outer(&opening, &of_gap, -self.area * traction.by_gap);
         for k in 0..tangents {
             let by_gap = -self.area * traction.shear_by_gap[k];
-            outer(&slip[k], &opening, by_gap);
+            outer(&slip[k], &of_gap, by_gap);
             for l in 0..tangents {
                 let by_slip = -self.area * traction.shear_by_slip[k][l];
-                outer(&slip[k], &slip[l], by_slip);
+                outer(&slip[k], &of_slip[l], by_slip);
             }
         }
     }
-}
 
-/// A function whose share of the rotation of a body, at a node, is that once the body has turned.
-fn turned<const D: usize>(
-    function: &Functional<D>,
-    node: usize,
-    turn: &Turn<D>,
-    arms: &[[f64; D]; D],
-) -> Functional<D> {
-    let moment = turn.moment_beyond(arms);
-    let own = |&(at, share): &(usize, [f64; D])| {
-        let by = if at == node { moment } else { [0.0; D] };
-        (at, std::array::from_fn(|axis| share[axis] - by[axis]))
-    };
-    function.iter().map(own).collect()
+    /// Functions whose shares of the rotation of the body are less by so much, once the body has turned.
+    fn turned<'a>(
+        &self,
+        functions: [&'a Functional<D>; 3],
+        beyond: Option<[[f64; D]; 3]>,
+    ) -> [Cow<'a, Functional<D>>; 3] {
+        let (Some(arms), Some(beyond)) = (&self.arms, beyond) else {
+            return functions.map(Cow::Borrowed);
+        };
+        std::array::from_fn(|k| {
+            let own = |&(at, share): &(usize, [f64; D])| {
+                let by = if at == arms.node { beyond[k] } else { [0.0; D] };
+                (at, std::array::from_fn(|axis| share[axis] - by[axis]))
+            };
+            Cow::Owned(functions[k].iter().map(own).collect())
+        })
+    }
 }
 
 /// The value of a linear function of nodal displacements.

@@ -79,7 +79,7 @@ impl<const D: usize> NodalForces<D> for TurningWeights<D> {
             let way = std::array::from_fn(|a| own.arm.at_start()[a] - arm[a]);
             add_at(&mut f[own.node], &own.arm.moment(&way, &own.force));
             if let Some(blocks) = &mut blocks {
-                let turning = own.arm.turning(&arm, &own.force);
+                let turning = own.arm.slope_of_moment(&u[own.node], &own.force);
                 blocks(
                     own.node,
                     own.node,

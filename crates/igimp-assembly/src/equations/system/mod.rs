@@ -193,7 +193,6 @@ impl<'a, const D: usize> System<'a, D> {
         self.beside.walls.set_in_motion(&inertia);
         self.damping = damping;
         self.round_off += inertia.round_off();
-        self.symmetric &= inertia.is_symmetric();
         self.inertia = Some(inertia);
         Ok(self)
     }
@@ -210,9 +209,7 @@ impl<'a, const D: usize> System<'a, D> {
     ) -> Result<(), AssemblyError> {
         conditions.validate(self.particles)?;
         self.symmetric_particles = are_symmetric(self.particles, &conditions);
-        self.symmetric = self.symmetric_particles
-            && self.beside.are_symmetric()
-            && (self.inertia.as_ref()).is_none_or(Inertia::is_symmetric);
+        self.symmetric = self.symmetric_particles && self.beside.are_symmetric();
         self.beside.reinforcement.control(&conditions.reinforcement);
         let (particles, stencils) = (self.particles, self.stencils);
         let bodies = self.beside.contact.bodies();
