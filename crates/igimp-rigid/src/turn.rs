@@ -1,4 +1,4 @@
-//! The turn of a rigid body in a step, and what it makes of arms about the reference point (theory, eqs. 48a and 67b).
+//! The turn of a rigid body in a step, and what it makes of arms about the reference point (theory, eqs. 48a, 48c and 67b).
 
 use crate::rotations;
 
