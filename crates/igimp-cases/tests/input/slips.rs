@@ -244,3 +244,21 @@ fn names_of_runs_and_points_on_circles_are_refused() {
         "{said}"
     );
 }
+
+/// GOAL: sharp edges of a body that sinks and slides are told of: they plough. CASE: a footing that is pressed and pushed.
+#[test]
+fn sharp_edges_that_slide_are_told_of() {
+    let warned = |rounding: &str, by: &str| {
+        let shipped = igimp_input::shipped::find("eccentric_footing").unwrap();
+        let changes = [
+            format!("rigid.footing.rounding={rounding}"),
+            format!("stages.load.bodies=[{{ body = \"footing\", {by} }}]"),
+        ];
+        let warnings = shipped.case_file(changes).unwrap().warnings();
+        warnings.contains("plough the soil beside it")
+    };
+    assert!(warned("0", "x = \"0.01 m\""));
+    assert!(warned("0", "force_x = \"1 kN/m\""));
+    assert!(!warned("0", "y = \"-0.01 m\""));
+    assert!(!warned("0.3", "x = \"0.01 m\""));
+}

@@ -123,7 +123,7 @@ fn drives<const D: usize>(
     Ok(drives)
 }
 
-/// Warns of rigid bodies that never come in.
+/// Warns of rigid bodies that never come in, and of sharp edges that plough.
 pub(crate) fn check_use<const D: usize>(
     bodies: &[Thing<RigidBody<D>>],
     stages: &[Thing<Stage>],
@@ -155,5 +155,44 @@ pub(crate) fn check_use<const D: usize>(
                 ),
             );
         }
+        warn_of_edges(
+            own,
+            moved.iter().filter_map(|moved| moved.as_ref().ok()),
+            problems,
+        );
+    }
+}
+
+/// Warns of sharp edges of a body that goes down and slides.
+fn warn_of_edges<'a, const D: usize>(
+    own: &RigidBody<D>,
+    moved: impl Iterator<Item = &'a At<Move>>,
+    problems: &mut Problems,
+) {
+    let Some(rounding) = (own.common.as_ref().ok())
+        .map(|common| &common.rounding)
+        .filter(|rounding| ***rounding == 0.0)
+    else {
+        return;
+    };
+    let goes = |key: &Option<At<f64>>| key.as_ref().is_some_and(|own| **own != 0.0);
+    let [mut sinks, mut slides] = [false; 2];
+    for own in moved.filter(|moved| moved.body.value == own.name.value) {
+        let across = [
+            goes(&own.x) || goes(&own.force_x),
+            goes(&own.y) || goes(&own.force_y),
+        ];
+        let down = goes(&own.z) || goes(&own.force_z);
+        sinks |= if D == 2 { across[1] } else { down };
+        slides |= across[0] || D == 3 && across[1];
+    }
+    if sinks && slides {
+        let name = clip(&own.name, 40);
+        problems
+            .warning(
+                rounding.place,
+                format!("the rigid body `{name}` has sharp edges, sinks and slides: they plough the soil beside it"),
+            )
+            .help("rounding = 0.3, the default: a smooth box of 1 m that had settled by 1 mm met 30 kN/m in place of none");
     }
 }
