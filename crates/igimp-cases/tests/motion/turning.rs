@@ -160,3 +160,78 @@ bodies = [{ body = "block", free = ["x", "y", "rotation"] }]
     let told = still.warnings().contains("gravity never acts");
     assert!(told, "{:?}", still.warnings());
 }
+
+/// A strip on clay, without what loads it.
+const STRIP: &str = r#"
+igimp = 1
+[case]
+title = "A heavy strip on clay"
+[grid]
+cell = "0.2 m"
+domain = { x = ["-4 m", "4 m"], y = ["0 m", "5 m"] }
+[materials.clay]
+model = "tresca"
+unit_weight = "18 kN/m3"
+young = "3 MPa"
+poisson = 0.45
+cu = "10 kPa"
+[[bodies]]
+name = "ground"
+material = "clay"
+polygon = [["-4 m", "0 m"], ["4 m", "0 m"], ["4 m", "3 m"], ["-4 m", "3 m"]]
+[[rigid]]
+name = "strip"
+type = "rectangle"
+from = ["-1 m", "3 m"]
+to = ["1 m", "4 m"]
+WEIGHT
+[[stages]]
+name = "own weight"
+type = "gravity"
+steps = 5
+geometry = "moving"
+reset_displacements = true
+STAGES
+[[curves]]
+name = "settlement"
+x = { of = "rigid.strip.settlement" }
+y = { of = "rigid.strip.settlement" }
+[output]
+figures = []
+report = false
+"#;
+
+/// GOAL: the weight of a body that was held comes on evenly as it is let go; where nothing held it the run tells that it acts at once.
+/// CASE: a strip on clay at 97 % of its strength, in twenty steps.
+/// ORACLE: a dead force at the reference point, of the same size, on the same path.
+#[test]
+fn weight_comes_on_as_a_body_is_let_go() {
+    let loaded = |weight: &str, stages: &str| {
+        let text = STRIP.replace("WEIGHT", weight).replace("STAGES", stages);
+        let file = CaseFile::parse("strip.toml", &text, &[]).unwrap();
+        let run = in_memory(file.case()).unwrap();
+        assert!(run.failure.is_none(), "{:?}", run.failure);
+        let at_once = (run.summary.warnings.iter()).any(|told| told.contains("acts whole"));
+        let all = run.curves[0].points(0, 1);
+        (all[all.len() - 1][1], at_once)
+    };
+    let stage = |name: &str, drive: &str, steps: usize| {
+        format!(
+            "[[stages]]\nname = \"{name}\"\ntype = \"rigid\"\nsteps = {steps}\nbodies = [{{ body = \"strip\", {drive} }}]\n"
+        )
+    };
+    let weight = "weight = \"100 kN/m\"";
+    let free = stage("let go", "free = [\"y\"]", 20);
+    let held = stage("held", "y = \"0 m\"", 1) + &free;
+    let (by_force, _) = loaded("", &stage("push", "force_y = \"-100 kN/m\"", 20));
+    let (let_go, told) = loaded(weight, &held);
+    assert!(
+        (let_go / by_force - 1.0).abs() < 1e-4 && !told,
+        "{let_go} {by_force}"
+    );
+    let (at_once, told) = loaded(weight, &free);
+    assert!(
+        at_once.abs() > 1.1 * by_force.abs() && told,
+        "{at_once} {by_force}"
+    );
+}

@@ -59,7 +59,7 @@ pub(crate) fn advice<const D: usize>(
             body,
             component,
             touches,
-        } => not_held(stage, body, *component, *touches),
+        } => not_held::<D>(stage, body, *component, *touches),
         StepFailure::Thrown { body, .. } => vec![
             format!(
                 "rotation = \"0 deg\" for the rigid body \"{body}\" in stage \"{}\", in place of moment or free: that holds it",
@@ -194,30 +194,42 @@ fn swallowed<const D: usize>(
 }
 
 /// A rigid body that is free, or has a force, where nothing holds it.
-fn not_held(stage: &Stage, body: &str, component: Component, touches: bool) -> Vec<String> {
+fn not_held<const D: usize>(
+    stage: &Stage,
+    body: &str,
+    component: Component,
+    touches: bool,
+) -> Vec<String> {
     let name = &stage.name;
+    let axis = |k: usize| ["x", "y", "z"][k];
     let (key, by, force) = match component {
-        Component::Displacement(0) => ("x", "0 m", "force_x"),
-        Component::Displacement(_) => ("y", "0 m", "force_y"),
-        Component::Rotation(_) => ("rotation", "0 deg", "moment"),
+        Component::Displacement(k) => (axis(k).to_owned(), "0 m", format!("force_{}", axis(k))),
+        Component::Rotation(_) if D == 2 => ("rotation".to_owned(), "0 deg", "moment".to_owned()),
+        Component::Rotation(k) => {
+            let about = axis(k);
+            (
+                format!("rotation_{about}"),
+                "0 deg",
+                format!("moment_{about}"),
+            )
+        }
     };
     let hold = format!(
         "{key} = \"{by}\" for it in stage \"{name}\", in place of {force} or free: that holds it"
     );
+    let down = format!(
+        "bodies = [{{ body = \"{body}\", {} = \"-1 mm\" }}]",
+        axis(D - 1)
+    );
     if touches {
         return vec![
             hold,
-            format!(
-                "a stage before \"{name}\" that presses it on: bodies = [{{ body = \"{body}\", y = \"-1 mm\" }}]"
-            ),
+            format!("a stage before \"{name}\" that presses it on: {down}"),
             "an interface with friction or adhesion, if it slides".to_owned(),
         ];
     }
     vec![
-        format!(
-            "a stage before \"{name}\" that moves it until soil touches it: bodies = [{{ body = \"{body}\", \
-             y = \"-1 mm\" }}]"
-        ),
+        format!("a stage before \"{name}\" that moves it until soil touches it: {down}"),
         hold,
     ]
 }

@@ -133,7 +133,7 @@ fn place<const D: usize>(
     stage: &Stage,
 ) -> Result<(), CaseError> {
     let model = session.model;
-    for text in rigid_begin::begin(model, state, &dynamic.bodies, stage.geometry)? {
+    for text in rigid_begin::begin(model, state, stage, &dynamic.bodies)? {
         session.warn(text);
     }
     reinforcement::begin(model.case, state, stage);

@@ -84,7 +84,7 @@ pub(crate) fn release<const D: usize>(
     let model = session.model;
     let stage = &model.case.stages[number];
     if let (StageKind::Rigid(moves), None) = (&stage.kind, resumption) {
-        for text in rigid_begin::begin(model, state, moves, stage.geometry)? {
+        for text in rigid_begin::begin(model, state, stage, moves)? {
             session.warn(text);
         }
     }

@@ -1,7 +1,7 @@
 //! Rigid bodies at the beginning of a stage that moves them.
 
 use igimp_assembly::{Geometry, Stencils, System};
-use igimp_model::{RigidDrive, RigidMove};
+use igimp_model::{RigidDrive, RigidMove, Stage, StageKind};
 use igimp_text::short;
 
 use crate::CaseError;
@@ -13,13 +13,14 @@ use crate::run::{Model, State};
 pub(crate) fn begin<const D: usize>(
     model: &Model<'_, D>,
     state: &mut State<D>,
+    stage: &Stage,
     moves: &[RigidMove],
-    geometry: Geometry,
 ) -> Result<Vec<String>, CaseError> {
     let mut told = Vec::new();
     for own in moves {
         if !state.controls.rigid[own.body].placed {
             told.extend(place(model, state, own.body)?);
+            told.extend(heavy_at_once(model, stage, own));
         }
         let body = &mut state.controls.rigid[own.body];
         for (k, drive) in own.drives.iter().enumerate() {
@@ -32,7 +33,7 @@ pub(crate) fn begin<const D: usize>(
             }
         }
     }
-    if geometry == Geometry::Given {
+    if stage.geometry == Geometry::Given {
         told.extend(
             moves
                 .iter()
@@ -40,6 +41,25 @@ pub(crate) fn begin<const D: usize>(
         );
     }
     Ok(told)
+}
+
+/// What is said of a body whose weight nothing holds as it is placed, where forces come on in steps.
+fn heavy_at_once<const D: usize>(
+    model: &Model<'_, D>,
+    stage: &Stage,
+    own: &RigidMove,
+) -> Option<String> {
+    let part = &model.case.rigid[own.body];
+    let comes_on = matches!(stage.kind, StageKind::Rigid(_)) && stage.steps > 1;
+    let is_free = matches!(own.drives[D - 1], Some(RigidDrive::Force(_)));
+    (part.weight > 0.0 && is_free && comes_on).then(|| {
+        let (name, up) = (&part.name, ["x", "y", "z"][D - 1]);
+        format!(
+            "the weight of the rigid body \"{name}\" acts whole in the first of {} steps: a stage before that holds it, {up} = \"0 m\", \
+             lets it come on evenly",
+            stage.steps
+        )
+    })
 }
 
 /// What is said of a body that touches no soil as a geometry is drawn that stays as it is: the gap never closes.
