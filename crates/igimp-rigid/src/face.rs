@@ -8,6 +8,14 @@ use igimp_surface::vectors::{dot, minus, norm};
 /// Abscissa of the two-point rule of Gauss on (−1, 1).
 const GAUSS: f64 = 0.577_350_269_189_625_8;
 
+/// A side whose normal has so much of an axis of the grid is along the grid, within some 6°: domains of particles end along it, and
+/// in steps beside others \[-\].
+pub const ALONG_THE_GRID: f64 = 0.995;
+
+/// Height of the centre of a particle at which it counts no more before a side along the grid, over that at which it counts in full \[-\]. A
+/// choice: the next layer of particles stands at one and a half.
+const FADED: f64 = 1.2;
+
 /// A place this much of a length beyond an end is still at it: round-off \[-\].
 const ROUND_OFF: f64 = 1e-9;
 
@@ -29,6 +37,10 @@ pub struct Face<const D: usize> {
     thickness: f64,
     /// From the surface to the face \[length\].
     pub gap: f64,
+    /// Share by which it counts: less than 1 where its particle stands nearly too far off \[-\].
+    pub(crate) share: f64,
+    /// Whether its particle stands as far off, or further, as one that counts in full.
+    is_far: bool,
     /// Centre and half-lengths of the domain of its particle \[length\].
     domain: [[f64; D]; 2],
 }
@@ -68,13 +80,23 @@ impl<const D: usize> Face<D> {
         } else {
             f64::INFINITY
         };
-        if nearest.height <= 0.0 || gap > thickness || nearest.height > most {
+        let most = most.min(2.0 * thickness);
+        let fades =
+            body.surface.radius().is_none() && normal.iter().any(|own| own.abs() >= ALONG_THE_GRID);
+        let share = if fades {
+            ((FADED * most - nearest.height) / ((FADED - 1.0) * most)).min(1.0)
+        } else {
+            f64::from(u8::from(nearest.height <= most))
+        };
+        if nearest.height <= 0.0 || share <= 0.0 {
             return None;
         }
         let along = tangents(&normal);
         Some(Self {
             middle: std::array::from_fn(|a| centre[a] - thickness * normal[a]),
             gap,
+            share,
+            is_far: nearest.height >= (1.0 - ROUND_OFF) * most,
             domain: [*centre, *half_length],
             half: along.map(|tangent| reach(&tangent)),
             thickness,
@@ -83,6 +105,11 @@ impl<const D: usize> Face<D> {
             normal,
             facing: nearest.normal,
         })
+    }
+
+    /// Whether its particle stands as far off, or further, as one that counts in full: behind another it does not count.
+    pub fn is_far(&self) -> bool {
+        self.is_far
     }
 
     /// Whether its particle ends before a face at a gap begins.
@@ -185,7 +212,7 @@ impl<const D: usize> Face<D> {
                 if !nearest.is_beyond {
                     points.push(FacePoint {
                         x,
-                        area: own,
+                        area: self.share * own,
                         knots: nearest.knots,
                     });
                 }
@@ -245,7 +272,7 @@ mod tests {
     }
 
     // GOAL: soil behind other soil does not face a side.
-    // CASE: level rows of particles below a straight side; the first is a slice of 0.2, 0.5 and 0.7 of the thickness of those behind.
+    // CASE: level rows of particles below a straight side; the first is a slice of 0.2, 0.5 and 0.75 of the thickness of those behind.
     // ORACLE: the sketch: the row behind faces the side through slices up to half of its thickness, and is hidden below the slice alone.
     #[test]
     fn a_thin_particle_hides_what_is_behind_it() {
@@ -253,7 +280,7 @@ mod tests {
         let surface = Surface::polygon(&corners, 0.0, 0.1).unwrap();
         let body = RigidBody::new(surface, vec![Interface::rough(); 4], [0.0; 2]);
         let half = 0.1;
-        for (share, faces) in [(0.2, true), (0.5, true), (0.7, false)] {
+        for (share, faces) in [(0.2, true), (0.5, true), (0.75, false)] {
             let slice = share * half;
             let front = [0.0, -slice];
             let front = Face::of(&body, 0, &front, &[half, slice]).unwrap();
@@ -266,5 +293,33 @@ mod tests {
             let beside = Face::of(&body, 0, &beside, &[half; 2]).unwrap();
             assert!(front.hides(&behind) && !front.hides(&beside));
         }
+    }
+    // GOAL: soil that moves off a side along the grid is lost by and by, that before a slanted one at once.
+    // CASE: a particle below a straight side, at heights of its centre over its thickness.
+    // ORACLE: by hand, eq. 45b.
+    #[test]
+    fn soil_that_moves_off_fades() {
+        let share = |turn: f64, height: f64| {
+            let corners = [[-1.0, 0.0], [1.0, 0.0], [1.0, 1.0], [-1.0, 1.0]];
+            let surface = Surface::polygon(&corners, 0.0, 0.1).unwrap();
+            let mut body = RigidBody::new(surface, vec![Interface::rough(); 4], [0.0; 2]);
+            body.pose = body.pose.moved(&[0.0; 2], &[turn, 0.0, 0.0]);
+            let thickness = 0.1 * (turn.cos() + turn.sin());
+            let centre = [turn.sin(), -turn.cos()].map(|own| own * 2.0 * height * thickness);
+            Face::of(&body, 0, &centre, &[0.1; 2]).map(|face| face.share)
+        };
+        for (height, expected) in [
+            (0.5, Some(1.0)),
+            (0.99, Some(1.0)),
+            (1.1, Some(0.5)),
+            (1.21, None),
+        ] {
+            let found = share(0.0, height);
+            assert_eq!(found.is_some(), expected.is_some(), "{height}");
+            let off = found.unwrap_or(0.0) - expected.unwrap_or(0.0);
+            assert!(off.abs() < 1e-12, "{height}: {off}");
+        }
+        assert_eq!(share(0.5, 0.99), Some(1.0));
+        assert_eq!(share(0.5, 1.01), None);
     }
 }

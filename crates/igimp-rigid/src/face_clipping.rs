@@ -81,7 +81,7 @@ pub fn pieces<const D: usize>(
                 for (p, weight) in points_in(&part) {
                     let share = |a: usize, b: usize| turn(&triangle[a], &triangle[b], &p) / double;
                     let shares = [share(1, 2), share(2, 0), share(0, 1)].map(|own| own.max(0.0));
-                    points.push((face.at(&p), weight * own, shares));
+                    points.push((face.at(&p), face.share * weight * own, shares));
                 }
             }
             if !points.is_empty() {

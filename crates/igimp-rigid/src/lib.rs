@@ -19,7 +19,7 @@ use igimp_surface::Surface;
 
 pub use arm::Arm;
 pub use clearance::{Domains, Penetration, WaysOff, push_out, seeded_too_close};
-pub use face::{Face, FacePoint};
+pub use face::{ALONG_THE_GRID, Face, FacePoint};
 pub use face_clipping::{Piece, pieces, tents_within};
 pub use gyration::Gyration;
 pub use images::{Image, Images};

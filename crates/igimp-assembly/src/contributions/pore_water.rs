@@ -8,13 +8,15 @@
 //! of the free water there, acts by its gradient on every particle: buoyancy and seepage, with the pressure of ponds on the
 //! ground and without any surface. By how much the pressure in the pores differs from it acts as a stress.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use crate::body::particles::{CHUNK, Particles};
 use crate::conditions::StepConditions;
-use crate::conditions::water::PoreState;
+use crate::conditions::water::{PoreState, PoreWater};
 use crate::error::AssemblyError;
-use crate::method::{Kinematics, Method};
+use crate::method::{Kinematics, Method, Section};
 use crate::step::stencils::Stencils;
 
 /// What pore water adds to the stress of a particle.
@@ -59,6 +61,32 @@ impl PoreResponse {
     }
 }
 
+/// What a given field is at the particles of a step: it is asked once.
+#[derive(Clone, Debug)]
+pub(crate) struct Asked<const D: usize> {
+    field: Arc<dyn PoreWater<D>>,
+    states: Arc<[PoreState<D>]>,
+}
+
+impl<const D: usize> Asked<D> {
+    /// The `earlier` answers at the same particles, if they are of this field; else it is asked.
+    pub(crate) fn of(
+        field: &Arc<dyn PoreWater<D>>,
+        (particles, section): (&Particles<D>, Section),
+        earlier: Option<&Self>,
+    ) -> Self {
+        if let Some(earlier) = earlier.filter(|own| Arc::ptr_eq(&own.field, field)) {
+            return earlier.clone();
+        }
+        let at = |particle| field.at(particles.pore_site(particle, section));
+        let all = (0..particles.len()).into_par_iter().with_min_len(CHUNK);
+        Self {
+            field: Arc::clone(field),
+            states: all.map(at).collect(),
+        }
+    }
+}
+
 /// Given water at the particles of a step.
 #[derive(Debug, Default)]
 pub(crate) struct Pores {
@@ -74,7 +102,7 @@ pub(crate) struct Pores {
 }
 
 impl Pores {
-    /// Asks the given water at every particle and adds its forces to the nodal external force `f_ext` \[force\].
+    /// Adds the forces of given water, as it was `asked` at the particles, to the nodal external force `f_ext` \[force\].
     ///
     /// # Errors
     /// [`AssemblyError::NonFinite`] for water that is not finite at a particle, [`AssemblyError::Material`] of a law that cannot be
@@ -83,7 +111,7 @@ impl Pores {
         particles: &Particles<D>,
         stencils: &Stencils<D>,
         conditions: &StepConditions<D>,
-        method: &Method,
+        (method, asked): (&Method, Option<&Asked<D>>),
         f_ext: &mut [[f64; D]],
     ) -> Result<Self, AssemblyError> {
         let water = &conditions.water;
@@ -100,17 +128,12 @@ impl Pores {
                 })
                 .collect::<Result<_, _>>()?
         };
-        let Some(given) = &water.given else {
+        let Some(Asked { states, .. }) = asked else {
             return Ok(Self {
                 stiffness,
                 ..Self::default()
             });
         };
-        let states: Vec<PoreState<D>> = (0..n)
-            .into_par_iter()
-            .with_min_len(CHUNK)
-            .map(|particle| given.at(particles.pore_site(particle, method.section)))
-            .collect();
         let gravity = &conditions.loads.gravity;
         let mut pores = Self {
             pressure: vec![0.0; n],

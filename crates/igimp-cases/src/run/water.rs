@@ -149,6 +149,9 @@ impl<const D: usize> Source<D> {
         if self.below(place, upper) > 0.0 {
             return upper;
         }
+        if self.below(place, lower) <= 0.0 {
+            return lower;
+        }
         let (mut wet, mut dry) = (lower, upper);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (wet + dry);
@@ -158,11 +161,7 @@ impl<const D: usize> Source<D> {
                 dry = middle;
             }
         }
-        if self.below(place, wet) > 0.0 {
-            wet
-        } else {
-            lower
-        }
+        wet
     }
 
     /// The pressure at a level of the upright line through a place, not above the top \[Pa\].

@@ -221,13 +221,13 @@ fn weight_comes_on_as_a_body_is_let_go() {
         )
     };
     let weight = "weight = \"100 kN/m\"";
-    let free = stage("let go", "free = [\"y\"]", 20);
+    let free = stage("release", "free = [\"y\"]", 20);
     let held = stage("held", "y = \"0 m\"", 1) + &free;
     let (by_force, _) = loaded("", &stage("push", "force_y = \"-100 kN/m\"", 20));
-    let (let_go, told) = loaded(weight, &held);
+    let (released, told) = loaded(weight, &held);
     assert!(
-        (let_go / by_force - 1.0).abs() < 1e-4 && !told,
-        "{let_go} {by_force}"
+        (released / by_force - 1.0).abs() < 1e-4 && !told,
+        "{released} {by_force}"
     );
     let (at_once, told) = loaded(weight, &free);
     assert!(

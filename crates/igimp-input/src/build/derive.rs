@@ -11,7 +11,7 @@ use super::outputs::quantities::unit_of;
 /// Share of a cell's volume below which a node is a small cut, in the plane and in space \[-\].
 const BELOW: [f64; 2] = [1e-4, 1e-3];
 
-/// The same beside rigid bodies in the plane, which leave slivers of soil in the cells that they cut
+/// The same beside rigid bodies, which leave slivers of soil in the cells that they cut
 /// (docs/src/contact-measured.md, places of the grid) \[-\].
 const BELOW_AT_BODIES: f64 = 0.05;
 
@@ -213,7 +213,7 @@ fn label((dimensions, is_whole): (usize, bool), axis: &Node) -> Option<String> {
 /// Small cuts of a grid that rigid bodies cut, and of others.
 fn derive_small_cuts(tree: &mut Node, dimensions: usize) {
     let has_bodies = tree.get("rigid").is_some_and(|own| !own.items().is_empty());
-    let (below, remedy) = if has_bodies && dimensions == 2 {
+    let (below, remedy) = if has_bodies {
         (BELOW_AT_BODIES, "extrapolate")
     } else {
         (BELOW[dimensions - 2], "tie")

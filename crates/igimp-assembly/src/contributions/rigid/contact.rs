@@ -14,8 +14,8 @@ use crate::method::{Geometry, Method};
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
 use igimp_rigid::{
-    ContactNode, ContactState, Images, Interface, NODES_PER_BODY, Penalty, Penetration, RigidBody,
-    Tension, push_out, rotations, tents_within,
+    ALONG_THE_GRID, ContactNode, ContactState, Images, Interface, NODES_PER_BODY, Penalty,
+    Penetration, RigidBody, Tension, push_out, rotations, tents_within,
 };
 use igimp_surface::vectors::{minus, norm};
 
@@ -25,10 +25,6 @@ const LEAST_COVER: f64 = 1e-10;
 
 /// Soil that is no further from a body touches it, in cells: as drawn, but for round-off. A body that a force pushes is laid on it \[-\].
 const BESIDE: f64 = 1e-6;
-
-/// A side whose normal has so much of an axis of the grid is along the grid, within some 6°: domains of particles end along it, and
-/// in steps beside others \[-\].
-const ALONG_THE_GRID: f64 = 0.995;
 
 /// Contact of one step, with directions and weights frozen at its start.
 #[derive(Debug)]

@@ -76,13 +76,17 @@ impl<'a, const D: usize> Gathering<'a, D> {
         let faces = self.faces();
         let thin = thin(&faces, surface.side_count());
         for (particle, face) in &faces {
+            let sees = !thin[face.side].iter().any(|other| other.hides(face));
+            if face.is_far() && !sees {
+                continue;
+            }
             let law = particles.law[*particle];
             let ratios = particles.ratios[*particle];
             let soil = Soil {
                 face,
                 young: particles.young(*particle, &self.conditions.laws),
                 adhesion: body.interfaces[face.side].adhesion(law, ratios),
-                sees: !thin[face.side].iter().any(|other| other.hides(face)),
+                sees,
             };
             match surface.space() {
                 Some(space) => {

@@ -4,7 +4,7 @@ use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
 use crate::conditions::rigid_motion::{Drive, RigidMotion};
 use crate::contributions::loads::{add_unbalanced_forces, add_variation_of_weight, weight};
-use crate::contributions::pore_water::Pores;
+use crate::contributions::pore_water::{Asked, Pores};
 use crate::contributions::rigid::add_weights;
 use crate::error::AssemblyError;
 use crate::method::Method;
@@ -20,10 +20,12 @@ pub(crate) struct Loads<const D: usize> {
     pub(crate) motions: Vec<[Drive; D]>,
     /// The water in the pores.
     pub(crate) pores: Pores,
+    /// The given field that it is of.
+    water: Option<Asked<D>>,
 }
 
 impl<const D: usize> Loads<D> {
-    /// The loads of a step but for those of loaded points.
+    /// The loads of a step but for those of loaded points; an `earlier` set of the same step has asked for its water.
     ///
     /// # Errors
     /// [`AssemblyError::NonFinite`] for a load that is not finite, and those of given water.
@@ -32,13 +34,18 @@ impl<const D: usize> Loads<D> {
         bodies: &[RigidBody<D>],
         stencils: &Stencils<D>,
         conditions: &StepConditions<D>,
-        method: &Method,
+        (method, earlier): (&Method, Option<&Self>),
     ) -> Result<Self, AssemblyError> {
         let motions = nodal_motions(bodies, conditions);
         let mut f_ext = weight(&conditions.grid, stencils, &conditions.loads);
         let gravity = &conditions.loads.gravity;
         add_variation_of_weight(stencils, &conditions.laws, gravity, &mut f_ext);
-        let pores = Pores::fill(particles, stencils, conditions, method, &mut f_ext)?;
+        let water = conditions.water.given.as_ref().map(|field| {
+            let earlier = earlier.and_then(|own| own.water.as_ref());
+            Asked::of(field, (particles, method.section), earlier)
+        });
+        let of_water = (method, water.as_ref());
+        let pores = Pores::fill(particles, stencils, conditions, of_water, &mut f_ext)?;
         if let Some(held) = &conditions.held {
             add_unbalanced_forces(held, stencils, &mut f_ext);
         }
@@ -54,6 +61,7 @@ impl<const D: usize> Loads<D> {
             f_ext,
             motions,
             pores,
+            water,
         })
     }
 

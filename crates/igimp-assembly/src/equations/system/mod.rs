@@ -116,7 +116,7 @@ impl<'a, const D: usize> System<'a, D> {
             return Err(AssemblyError::NonFinite { what, index });
         }
         let bodies = structures.bodies;
-        let mut loads = Loads::find(particles, bodies, stencils, conditions, method)?;
+        let mut loads = Loads::find(particles, bodies, stencils, conditions, (method, None))?;
         let mut has_scalar = strain_nodes(particles, stencils, conditions)?;
         if has_scalar.is_empty() {
             has_scalar = pressure_nodes(particles, stencils, conditions);
@@ -214,7 +214,8 @@ impl<'a, const D: usize> System<'a, D> {
         let (particles, stencils) = (self.particles, self.stencils);
         let bodies = self.beside.contact.bodies();
         self.beside.weights = TurningWeights::find(bodies, &conditions, self.method);
-        let mut loads = Loads::find(particles, bodies, stencils, &conditions, self.method)?;
+        let of_step = (self.method, Some(&self.loads));
+        let mut loads = Loads::find(particles, bodies, stencils, &conditions, of_step)?;
         loads.f_ext.resize(self.loads.f_ext.len(), [0.0; D]);
         let f_ext = &mut loads.f_ext;
         add_force_of_points(f_ext, points, &conditions, stencils, &self.unknowns)?;

@@ -62,7 +62,12 @@ pub(crate) fn advice<const D: usize>(
         } => not_held::<D>(stage, body, *component, *touches),
         StepFailure::Thrown { body, .. } => vec![
             format!(
-                "rotation = \"0 deg\" for the rigid body \"{body}\" in stage \"{}\", in place of moment or free: that holds it",
+                "{} for the rigid body \"{body}\" in stage \"{}\", in place of moment or free: that holds it",
+                if D == 2 {
+                    "rotation = \"0 deg\""
+                } else {
+                    "rotation_x = \"0 deg\", rotation_y = \"0 deg\""
+                },
                 stage.name
             ),
             "a stage of type dynamic: a body that falls over or slides away has no equilibrium to go on in".to_owned(),

@@ -68,12 +68,59 @@ pub(super) fn walls<const D: usize>(
             .help("name sides in absorbing or free_field, or remove wall_springs");
         return None;
     }
-    Some(StageWalls {
+    let walls = StageWalls {
         absorbing,
         springs: *own.wall_springs,
         tied: *own.tied_sides,
         free_field,
-    })
+    };
+    warn_of_rigid_walls((about, own), &walls, problems);
+    Some(walls)
+}
+
+/// Warns of sides across the motion of the ground that hold the soil: they go along with the base as rigid walls.
+fn warn_of_rigid_walls<const D: usize>(
+    (about, own): (&About<'_, D>, &Dynamic),
+    walls: &StageWalls,
+    problems: &mut Problems,
+) {
+    let (Some(motion), Ok(sides)) = (
+        own.ground_motion.as_ref(),
+        Root::<D>::boundaries(about.context.tree),
+    ) else {
+        return;
+    };
+    let front_and_back = (&sides.front, &sides.back);
+    let (axis, names, stated) = match (*motion.axis, front_and_back) {
+        (MotionAxis::X, _) => (0, ["left", "right"], [&sides.left, &sides.right]),
+        (MotionAxis::Y, (Some(front), Some(back))) => (1, ["front", "back"], [front, back]),
+        _ => return,
+    };
+    if walls.tied && axis == 0 {
+        return;
+    }
+    let gives =
+        |wall: (usize, bool)| walls.absorbing.contains(&wall) || walls.free_field.contains(&wall);
+    let holds = |k: usize| **stated[k] != Side::Free && !gives((axis, k == 1));
+    let held: Vec<&str> = (0..2).filter(|&k| holds(k)).map(|k| names[k]).collect();
+    if held.is_empty() {
+        return;
+    }
+    let remedy = if axis == 0 {
+        "tied_sides for level ground, free_field or absorbing for these sides, or leave a rigid box as it is"
+    } else {
+        "free_field or absorbing for these sides, axis = \"x\" with tied_sides for level ground, or leave a rigid box as it is"
+    };
+    problems
+        .warning(
+            motion.place,
+            format!(
+                "{} {} as rigid walls with the base: ground between them hardly shears",
+                held.join(" and "),
+                if held.len() == 1 { "goes" } else { "go" }
+            ),
+        )
+        .help(remedy);
 }
 
 /// Refuses dashpots at a bottom that moves by a record, whatever the soil does.
