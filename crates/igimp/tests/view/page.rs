@@ -142,7 +142,7 @@ fn a_report_holds_its_frames() {
     let text = std::fs::read_to_string(&frame).unwrap();
     let page = report();
     assert_eq!(page.matches("class=\"held-frame\"").count(), 4);
-    assert!(page.contains("data-label=\"Frame 4 of 4, after "));
+    assert!(page.contains("data-label=\"Frame 4 of 4, stage “own weight”, step 3\""));
     if let Some(browser) = browser() {
         let address = format!("file://{}#soil", results.join("report.html").display());
         let page = dumped(browser, &folder, &address, 15);
