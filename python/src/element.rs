@@ -139,7 +139,12 @@ pub(crate) fn element(
 
 /// A test that cannot begin.
 pub(crate) fn unmade(py: Python<'_>, error: &TestError) -> PyErr {
-    let help = "another initial stress, compression positive, or other steps";
+    let help = match error {
+        TestError::Value { .. } => {
+            "`strain` is a number, 0.2 for 20 %; `stress` and `duration` have a unit, or are in Pa and s"
+        }
+        _ => "another initial stress, compression positive, or other steps",
+    };
     refused(
         py,
         igimp_cases::chain(error).trim_start_matches("error: "),
