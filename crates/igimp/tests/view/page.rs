@@ -229,6 +229,26 @@ fn a_motion_is_shown_with_its_times() {
     assert!(attribute(&page, "slider", "aria-valuetext").starts_with("Frame 5 of 5"));
 }
 
+/// GOAL: histories of a case that takes time are drawn over it, with a chart for every quantity and none for the time.
+/// CASE: a fall with a monitor of the displacement. ORACLE: the header of its table.
+#[test]
+fn histories_are_drawn_over_time() {
+    let monitor = "[[monitors]]\nname = \"middle\"\npoint = [\"2.2 m\", \"5.2 m\"]\nrecord = [\"displacement_y\"]\n[output]";
+    let folder = results_of("history", &FALL.replace("[output]", monitor), &[]);
+    let table = std::fs::read_to_string(folder.0.join("results/monitors/middle.csv")).unwrap();
+    assert!(
+        table.starts_with("stage,step,progress_[-],time_[s],displacement_y_[m]\n"),
+        "{table}"
+    );
+    let Some(browser) = browser() else {
+        return;
+    };
+    let view = View::of(&folder, "results");
+    let page = looked_at(browser, &folder, &view, "frame=1");
+    assert!(page.contains("middle: displacement y [m]") && page.contains("time [s]"));
+    assert!(!page.contains("middle: time") && !page.contains("row of the table"));
+}
+
 /// GOAL: a section across a body has the stress of its weight; the edges of the body are drawn.
 /// ORACLE: γ times the depth, within half a particle of 0.25 m.
 #[test]

@@ -47,7 +47,6 @@ fn the_page_and_the_results_are_served() {
     let place = &index["frames"]["paraview/particles_0002.vtu"];
     assert_eq!(place["stage"], 0);
     assert_eq!(place["when"], "step 2");
-    assert_eq!(index["in_time"], serde_json::json!([false]));
     assert_eq!(
         index["stage_of_curve"]["curves/settlement.csv"],
         serde_json::Value::Null

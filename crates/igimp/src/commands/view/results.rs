@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use std::time::UNIX_EPOCH;
 
 use igimp_input::CaseFile;
-use igimp_model::{AnyCase, Every, Stage, StageKind};
+use igimp_model::{AnyCase, Every, StageKind};
 use igimp_report::viewer::over::{Over, by_stage};
 use igimp_report::viewer::{self, Bodies, Keep};
 use igimp_report::whereabouts::{Whereabouts, whereabouts};
@@ -102,11 +102,6 @@ impl Results {
             .flat_map(|case| case.stages())
             .map(|stage| &*stage.name)
             .collect();
-        let in_time: Vec<bool> = case
-            .iter()
-            .flat_map(|case| case.stages())
-            .map(Stage::takes_time)
-            .collect();
         let recorded: serde_json::Map<String, Value> = case
             .iter()
             .flat_map(|case| case.curves())
@@ -122,7 +117,6 @@ impl Results {
             "folder": self.root.file_name().map(|name| name.to_string_lossy()),
             "stages": stages,
             "planned": planned,
-            "in_time": in_time,
             "frames": self.frames(case),
             "stage_of_curve": recorded,
             "never": case.is_some_and(|case| case.output().paraview == Every::Never),

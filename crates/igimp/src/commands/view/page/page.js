@@ -105,11 +105,10 @@ function timeColumn({ header }) {
   return header.findIndex((label) => plain(label) === "time [s]");
 }
 
-// The times of the rows of a history [s]; null where a stage among them takes no time.
+// The times of the rows of a history [s], which stand still in stages that take none; null in cases without time.
 function timesOf(own) {
   const column = timeColumn(own);
-  const isInTime = own.rows.length > 0 && own.rows.every(([stage]) => (index.in_time || [])[stage - 1]);
-  return column >= 0 && isInTime ? own.rows.map((row) => row[column]) : null;
+  return column >= 0 ? own.rows.map((row) => row[column]) : null;
 }
 
 // The columns of a history that are drawn, each with its place: all behind those of the moment and of the time.
