@@ -174,7 +174,7 @@ impl Asked {
         let stress = self.stress.read(py, "stress", Dimension::Stress)?;
         let side = self.side_stress.as_ref();
         let side = side.map(|own| own.read(py, "side_stress", Dimension::Stress));
-        Ok(Request {
+        let request = Request {
             drive,
             stress: [stress, side.transpose()?.unwrap_or(stress)],
             steps: self.steps,
@@ -185,7 +185,9 @@ impl Asked {
             },
             duration: self.duration.read(py, "duration", Dimension::Time)?,
             data,
-        })
+        };
+        request.check().map_err(|error| unmade(py, &error))?;
+        Ok(request)
     }
 }
 

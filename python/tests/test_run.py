@@ -152,6 +152,12 @@ def test_leaving_the_loop_ends_the_run_and_it_can_go_on(first, tmp_path):
         assert (tmp_path / "stopped" / file).read_bytes() == (tmp_path / "whole" / file).read_bytes()
 
 
+def test_ways_to_begin_exclude_each_other(column, tmp_path):
+    for ways in ({"resume": True, "overwrite": True}, {"resume": True, "from_stage": "x"}):
+        with pytest.raises(ValueError, match="exclude each other"):
+            column.run(out=tmp_path / "r", **ways)
+
+
 def test_threads_that_no_computer_uses_are_refused(column):
     with pytest.raises(igimp.InputError, match="100000 threads are too many: at most"):
         column.run(threads=100_000)

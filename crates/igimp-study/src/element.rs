@@ -226,7 +226,10 @@ pub(crate) fn driven(law: &dyn ConstitutiveModel, request: &Request) -> Result<D
 
 impl Request {
     /// Refuses values that no test can have, as the command line does.
-    fn check(&self) -> Result<(), TestError> {
+    ///
+    /// # Errors
+    /// [`TestError::Value`].
+    pub fn check(&self) -> Result<(), TestError> {
         let stress = "a stress has a finite value";
         let strain = match self.drive {
             Drive::Standard(_, strain) => strain,
