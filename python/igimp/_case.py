@@ -30,13 +30,13 @@ class Estimate:
     Attributes
     ----------
     particles, cells, unknowns : int
-        Size of the model.
+        Size of the model, on its own grid.
     bytes : float
-        Memory [bytes].
+        Memory [bytes]; for a study of the mesh error that of its meshes as they run.
     most_bytes : float
         The same where an iteration is given up for factors [bytes].
     seconds : float
-        Time of all planned steps [s]; an upper bound if ``open_ended``.
+        Time of all planned steps [s], for a study of the mesh error on all its meshes; an upper bound if ``open_ended``.
     threads : int
         Threads that the time holds for.
     solver : str
@@ -336,6 +336,8 @@ class Case:
             warnings.warn(self.warnings.strip(), CaseWarning, stacklevel=2)
         if (resume or from_stage is not None) and out is None:
             raise ValueError("a run goes on in its results folder: give it as out=...")
+        if sum([resume, overwrite, from_stage is not None]) > 1:
+            raise ValueError("resume, from_stage and overwrite exclude each other: give one of them")
         start = ("resume", 0) if resume else ("afresh", 0)
         if from_stage is not None:
             if from_stage not in self.stages:

@@ -64,6 +64,9 @@ class March:
     def leave(self) -> None:
         """Listens no more."""
 
+    def is_own_thread(self) -> bool:
+        """Whether this is the thread of the run."""
+
     def found(self) -> dict[str, Any]:
         """Waits for the end and hands over what was found, once."""
 

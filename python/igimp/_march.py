@@ -128,10 +128,14 @@ class March:
         self.close()
 
     def __del__(self) -> None:
+        # Who leaves the loop may run the case again at once: the folder is free when this returns.
         try:
             self._engine.stop()
+            if self._results is None and not sys.is_finalizing() and not self._engine.is_own_thread():
+                while self._engine.next(PATIENCE) is not None:
+                    pass  # Ctrl-C is heard in between, and leaves the run to end by itself.
             self._engine.leave()
-        except Exception:
+        except (Exception, KeyboardInterrupt):
             pass  # The interpreter may be going down.
 
     def stop(self) -> None:

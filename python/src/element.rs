@@ -139,7 +139,12 @@ pub(crate) fn element(
 
 /// A test that cannot begin.
 pub(crate) fn unmade(py: Python<'_>, error: &TestError) -> PyErr {
-    let help = "another initial stress, compression positive, or other steps";
+    let help = match error {
+        TestError::Value { .. } => {
+            "`strain` is a number, 0.2 for 20 %; `stress` and `duration` have a unit, or are in Pa and s"
+        }
+        _ => "another initial stress, compression positive, or other steps",
+    };
     refused(
         py,
         igimp_cases::chain(error).trim_start_matches("error: "),
@@ -169,7 +174,7 @@ impl Asked {
         let stress = self.stress.read(py, "stress", Dimension::Stress)?;
         let side = self.side_stress.as_ref();
         let side = side.map(|own| own.read(py, "side_stress", Dimension::Stress));
-        Ok(Request {
+        let request = Request {
             drive,
             stress: [stress, side.transpose()?.unwrap_or(stress)],
             steps: self.steps,
@@ -180,7 +185,9 @@ impl Asked {
             },
             duration: self.duration.read(py, "duration", Dimension::Time)?,
             data,
-        })
+        };
+        request.check().map_err(|error| unmade(py, &error))?;
+        Ok(request)
     }
 }
 

@@ -163,7 +163,7 @@ fn unfitted(py: Python<'_>, error: FitError) -> PyErr {
     match error {
         FitError::Input(error) => Raised::from(error).exception(py),
         FitError::Test(error) => unmade(py, &error),
-        FitError::Parameter(_) => refused(
+        FitError::Parameter(_) | FitError::NothingSought => refused(
             py,
             &text,
             "`vary` has keys of the material, or keys with bounds: {\"friction\": (\"20 deg\", \"40 deg\")}",

@@ -18,6 +18,7 @@ use igimp_results::folder::overwrite_guard::Replace;
 use igimp_results::tables::table::Table;
 use igimp_study::narration::lines::Lines;
 use igimp_study::narration::progress::Whole;
+use igimp_study::threads::refusal;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -88,6 +89,9 @@ impl March {
         with_body: bool,
         laws: Vec<(String, Py<PyAny>)>,
     ) -> PyResult<Self> {
+        if let Some(text) = threads.and_then(refusal) {
+            return Err(Raised::bad_input(format!("error: {text}")).exception(py));
+        }
         let interrupt = Arc::new(AtomicBool::new(false));
         let trouble = Trouble::new(Arc::clone(&interrupt));
         let mut any = case.file.any_case().clone();
@@ -183,6 +187,13 @@ impl March {
         let mut ends = self.ends.lock().unwrap_or_else(PoisonError::into_inner);
         ends.told = None;
         let _ = ends.go_on.send(());
+    }
+
+    /// Whether this is the thread of the run, in which a law in Python is asked: it cannot wait for its own end.
+    fn is_own_thread(&self) -> bool {
+        let ends = self.ends.lock().unwrap_or_else(PoisonError::into_inner);
+        let own = ends.thread.as_ref().map(|own| own.thread().id());
+        own == Some(std::thread::current().id())
     }
 
     /// Waits for the end of the run and hands over what it found, once.

@@ -90,6 +90,12 @@ def test_the_size_of_a_case_is_told(slope):
     assert "<table>" in slope._repr_html_() and "<pre>" in told._repr_html_()
 
 
+def test_a_study_of_the_mesh_is_told_with_all_its_meshes(slope):
+    alone, study = slope.check(), slope.with_values({"mesh_study.meshes": 3}).check()
+    assert study.seconds > 2 * alone.seconds and study.bytes > 2 * alone.bytes
+    assert study.particles == alone.particles
+
+
 def test_nothing_is_imported_that_is_not_needed():
     """Importing brings in no package that is not needed."""
     code = "import igimp, sys; assert not {'pandas', 'pyvista', 'matplotlib', 'IPython'} & set(sys.modules)"

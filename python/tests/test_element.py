@@ -40,6 +40,9 @@ def test_a_law_in_python_is_driven():
     given = igimp.element(CLAY, "simple-shear-undrained", strain=0.05, steps=20, small_strain=True, law=law)
     ours, theirs = column(own, "tau_xy [kPa]"), column(given, "tau_xy [kPa]")
     assert ours[-1] == pytest.approx(30, rel=1e-6)
+    # What is told is of the law that is driven.
+    assert given.text.startswith("soil: law in Python, simple shear undrained")
+    assert "VonMises(" in given.text and "closed form" not in given.text
     np.testing.assert_allclose(theirs, ours, rtol=1e-8, atol=1e-8)
 
 
@@ -70,6 +73,17 @@ def test_what_makes_no_sense_is_refused(tmp_path):
         igimp.element(SAND, "squeeze")
     with pytest.raises(igimp.InputError, match="stress"):
         igimp.element(SAND, stress="100 m")
+    for values, match in [
+        ({"strain": float("nan")}, "the strain is NaN"),
+        ({"strain": float("inf")}, "the strain is inf"),
+        ({"strain": 20.0}, "the strain is 20"),
+        ({"stress": float("nan")}, "the axial stress is NaN"),
+        ({"side_stress": float("inf")}, "the stress at the sides is inf"),
+        ({"duration": float("nan")}, "the duration is NaN"),
+        ({"duration": -1.0}, "the duration is -1"),
+    ]:
+        with pytest.raises(igimp.InputError, match=match):
+            igimp.element(SAND, **values)
     with pytest.raises(igimp.InputError, match="unknown field `colour`"):
         igimp.element({**SAND, "colour": "red"})
     file = tmp_path / "soils.toml"

@@ -135,6 +135,9 @@ def test_what_makes_no_sense_is_refused_with_its_place(measured):
             igimp.fit(SAND, vary, [good, test], **more)
 
     refused("no value of `colour` to begin with", vary="colour")
+    refused("no parameter is sought", vary=[])
+    refused("no parameter is sought", vary={})
+    refused("test 2: the duration is -1", test={**good, "duration": -1.0})
     refused("`friction` begins at 30 deg, which is not between", vary={"friction": ("40 deg", "50 deg")})
     refused("bounds of `friction` are '40 deg'", vary={"friction": "40 deg"})
     refused("test 2: there is no argument `cell`", test={**good, "cell": 50})

@@ -72,6 +72,14 @@ def test_a_plastic_law_takes_the_steps_of_the_engine(clay):
     assert np.allclose(found["python"].eps_p_eq, found["engine"].eps_p_eq, atol=1e-9)
 
 
+def test_results_tell_of_the_law_that_ran(column, tmp_path):
+    (name,) = column.materials
+    found = column.with_laws({name: Elastic()}).run(out=tmp_path / "r", progress=False)
+    (materials,) = [own for own in found.summary["setup"] if own["title"] == "Materials"]
+    assert materials["rows"][0][1] == "law in Python" and "Elastic()" in materials["rows"][0][5]
+    assert "law in Python" in (tmp_path / "r" / "report.html").read_text()
+
+
 def test_strength_of_a_law_is_reduced(short):
     found = short.with_laws({"clay": VonMises(60e3)}).run(progress=False)
     assert found.factor_of_safety > 1

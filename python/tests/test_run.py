@@ -143,19 +143,24 @@ def test_leaving_the_loop_ends_the_run_and_it_can_go_on(first, tmp_path):
         assert step.body is None
         if step.number == 3:
             break
-    deadline = time.monotonic() + 60
-    while True:  # The engine ends by itself, and gives the folder free.
-        try:
-            resumed = case.run(out=tmp_path / "stopped", resume=True, progress=False)
-            break
-        except igimp.FileError:
-            assert time.monotonic() < deadline
-            time.sleep(0.1)
+    # The folder is free at once.
+    resumed = case.run(out=tmp_path / "stopped", resume=True, progress=False)
     whole = case.run(out=tmp_path / "whole", progress=False)
     assert resumed.exit_code == 0
     assert np.array_equal(resumed.body.sigma, whole.body.sigma)
     for file in ("monitors/crest.csv", "convergence.csv"):
         assert (tmp_path / "stopped" / file).read_bytes() == (tmp_path / "whole" / file).read_bytes()
+
+
+def test_ways_to_begin_exclude_each_other(column, tmp_path):
+    for ways in ({"resume": True, "overwrite": True}, {"resume": True, "from_stage": "x"}):
+        with pytest.raises(ValueError, match="exclude each other"):
+            column.run(out=tmp_path / "r", **ways)
+
+
+def test_threads_that_no_computer_uses_are_refused(column):
+    with pytest.raises(igimp.InputError, match="100000 threads are too many: at most"):
+        column.run(threads=100_000)
 
 
 def test_ctrl_c_ends_the_run_after_its_step(slope, tmp_path):

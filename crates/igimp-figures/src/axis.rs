@@ -30,7 +30,8 @@ impl Scale {
     }
 
     /// Whether both ends can be shown and differ.
-    pub(super) fn accepts(self, (from, to): (f64, f64)) -> bool {
+    #[must_use]
+    pub fn accepts(self, (from, to): (f64, f64)) -> bool {
         match (self.uniform(from), self.uniform(to)) {
             (Some(a), Some(b)) => visibly_apart(a, b),
             _ => false,

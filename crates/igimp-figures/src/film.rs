@@ -13,8 +13,8 @@ use crate::drawing::Rgb;
 const COLOURS: usize = 255;
 const UNCHANGED: u8 = 255;
 
-/// Shortest time that players keep to \[1/100 s\].
-const SHORTEST: f64 = 2.0;
+/// Shortest time that players keep to, and longest that a frame can stay \[s\].
+pub const STAYS: [f64; 2] = [0.02, 655.35];
 
 /// The bytes of a film: frames of one size, each with the time that it stays \[s\]. It begins anew after its end.
 ///
@@ -68,7 +68,7 @@ impl Clock {
         self.wanted += 100.0 * stays;
         let own = (self.wanted - self.given)
             .round()
-            .clamp(SHORTEST, f64::from(u16::MAX));
+            .clamp(100.0 * STAYS[0], f64::from(u16::MAX));
         self.given += own;
         #[expect(
             clippy::cast_possible_truncation,

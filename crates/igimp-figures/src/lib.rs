@@ -44,5 +44,5 @@ pub use curve::{
 pub use drawing::{Drawing, PIXELS_PER_POINT, Rgb};
 pub use error::FigureError;
 pub use field::{FieldPanel, FieldPlot, KeyEntry, KeySample, Outline, OutlineStyle, Polygon};
-pub use film::film;
+pub use film::{STAYS, film};
 pub use space::{Face, SpacePlot, View};

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use igimp_figures::{Drawing, FieldPlot, Outline, OutlineStyle, film};
+use igimp_figures::{Drawing, FieldPlot, Outline, OutlineStyle, STAYS, Scale as AxisScale, film};
 use igimp_model::{Case, Field, StageKind};
 use igimp_results::ResultsError;
 use igimp_results::fields::{self, Scale};
@@ -16,6 +16,7 @@ use rayon::prelude::*;
 use crate::error::ReportError;
 use crate::patches::{Carriers, Pieces};
 use crate::pictures::{Colours, axes_of, edges, titled, water};
+use crate::whereabouts::whereabouts;
 
 /// Free room around the bodies, as a share of the larger side of what they have been in \[-\].
 const ROOM: f64 = 0.03;
@@ -77,28 +78,30 @@ pub fn film_of(folder: &Path, case: &Case<2>, request: &FilmRequest) -> Result<F
             why: why.to_owned(),
         });
     }
-    let is_motion = frames.iter().all(|own| own.1);
-    let frames: Vec<Frame> = frames.into_iter().map(|own| own.0).collect();
+    let is_motion = frames.iter().all(|own| own.1.is_none());
+    let lasts = frames[frames.len() - 1].0.time - frames[0].0.time;
+    let pace = is_motion.then(|| request.pace.unwrap_or_else(|| pace_of(lasts)));
+    let frames = match pace {
+        Some(pace) => at_pace(frames, pace)?,
+        None => frames,
+    };
+    let (frames, steps): (Vec<Frame>, Vec<Option<String>>) = frames.into_iter().unzip();
     let pieces = Pieces::of(case)?;
     let scenes = frames
         .par_iter()
         .map(|frame| scene(&folder, frame, (case, &pieces), request.field))
         .collect::<Result<Vec<Scene>, ReportError>>()?;
-    let lasts = frames[frames.len() - 1].time - frames[0].time;
-    let pace = is_motion.then(|| request.pace.unwrap_or_else(|| pace_of(lasts)));
     let stage = Stage {
         case,
         pieces: &pieces,
         look: Look::of(request.field, &scenes, case),
         window: window(&pieces, &scenes),
     };
-    let pictures = std::iter::zip(&frames, &scenes)
-        .collect::<Vec<_>>()
+    let pictures = (0..frames.len())
         .into_par_iter()
-        .map(|(frame, scene)| {
-            Ok(stage
-                .draw(&told(frame, pace), scene)?
-                .to_rgb(request.width)?)
+        .map(|k| {
+            let told = told(&frames[k], steps[k].as_deref(), pace);
+            Ok(stage.draw(&told, &scenes[k])?.to_rgb(request.width)?)
         })
         .collect::<Result<Vec<_>, ReportError>>()?;
     let stays = (0..frames.len()).map(|k| match (frames.get(k + 1), pace) {
@@ -115,19 +118,52 @@ pub fn film_of(folder: &Path, case: &Case<2>, request: &FilmRequest) -> Result<F
     })
 }
 
-/// The frames of a film, each with whether its time is that of a motion.
-fn chosen(folder: &Path, case: &Case<2>, stage: Option<usize>) -> Vec<(Frame, bool)> {
+/// Frames of a motion that stay as long at a pace as a film can show: where they follow too fast some are left out.
+fn at_pace<T>(frames: Vec<(Frame, T)>, pace: f64) -> Result<Vec<(Frame, T)>, ReportError> {
+    let [shortest, longest] = STAYS;
+    let gaps = frames.windows(2).map(|two| two[1].0.time - two[0].0.time);
+    let widest = gaps.fold(0.0, f64::max);
+    if widest > longest * pace {
+        return Err(ReportError::NoFilm {
+            why: format!(
+                "at the pace {} a frame would stay for {} s, and a GIF holds one for {longest} s at most; --pace {} shows it",
+                short(pace),
+                short(widest / pace),
+                short(1.1 * widest / longest)
+            ),
+        });
+    }
+    // Rounding of times is no reason to leave a frame out.
+    let least = (1.0 - 1e-6) * shortest * pace;
+    let last = frames.len() - 1;
+    let (mut kept, mut before) = (Vec::new(), f64::NEG_INFINITY);
+    for (k, own) in frames.into_iter().enumerate() {
+        let is_close = own.0.time - before < least;
+        if is_close && k == last && kept.len() > 1 {
+            kept.pop();
+        } else if is_close && k < last {
+            continue;
+        }
+        before = own.0.time;
+        kept.push(own);
+    }
+    Ok(kept)
+}
+
+/// The frames of a film, each with its step in words; none where its time is that of a motion.
+fn chosen(folder: &Path, case: &Case<2>, stage: Option<usize>) -> Vec<(Frame, Option<String>)> {
     let moves = |&number: &usize| matches!(case.stages[number].kind, StageKind::Dynamic(_));
     let motion = stage.or_else(|| (0..case.stages.len()).rfind(moves));
-    let mut frames: Vec<(Frame, bool)> = if let Some(number) = motion.filter(moves) {
+    let mut frames: Vec<(Frame, Option<String>)> = if let Some(number) = motion.filter(moves) {
         let own = pvd::motion(folder, number).into_iter();
-        own.map(|frame| (frame, true)).collect()
+        own.map(|frame| (frame, None)).collect()
     } else {
         let all = pvd::frames(folder, pvd::PARTICLES).unwrap_or_default();
         let name = stage.map(|number| case.stages[number].name.as_str());
         let is_own = |frame: &Frame| name.is_none_or(|name| frame.stage == name);
-        let own = all.into_iter().filter(is_own);
-        own.map(|frame| (frame, false)).collect()
+        let steps = whereabouts(&all, &case.stages).into_iter();
+        let all = all.into_iter().zip(steps.map(|own| Some(own.when)));
+        all.filter(|(frame, _)| is_own(frame)).collect()
     };
     let count = frames.len();
     if count > MOST {
@@ -151,9 +187,10 @@ fn pace_of(lasts: f64) -> f64 {
 }
 
 /// What a frame says of itself.
-fn told(frame: &Frame, pace: Option<f64>) -> String {
+fn told(frame: &Frame, step: Option<&str>, pace: Option<f64>) -> String {
     let Some(pace) = pace else {
-        return format!("{}, step {}", frame.stage, frame.time.ceil());
+        let step = step.map_or_else(String::new, |step| format!(", {step}"));
+        return format!("{}{step}", frame.stage);
     };
     let slower = 1.0 / pace;
     let how = match slower {
@@ -262,7 +299,7 @@ impl Look {
             colours: Colours {
                 range: colours
                     .range
-                    .or(Some(ends).filter(|(low, high)| low < high)),
+                    .or(Some(ends).filter(|&own| own.0 < own.1 && AxisScale::Linear.accepts(own))),
                 ..colours
             },
             scale,
@@ -347,6 +384,36 @@ mod tests {
         close(1e-3, 0.01);
     }
 
+    /// GOAL: a film takes the time that it is said to take, at every pace. CASE: 101 frames, 0.1 s apart, ten times and 10000 times faster, and
+    /// so slowly that a frame would stay for hours. ORACLE: no frame stays for less than 0.02 s or for more than 655.35 s.
+    #[test]
+    fn frames_stay_as_long_as_a_film_can_show() {
+        let frames = || -> Vec<(Frame, ())> {
+            let frame = |k: i32| Frame {
+                time: 0.1 * f64::from(k),
+                stage: "slide".to_owned(),
+                file: String::new(),
+            };
+            (0..=100).map(|k| (frame(k), ())).collect()
+        };
+        let times = |pace: f64| -> Vec<f64> {
+            let kept = at_pace(frames(), pace).unwrap().into_iter();
+            kept.map(|own| own.0.time).collect()
+        };
+        assert_eq!(times(1.0).len(), 101);
+        assert_eq!(times(5.0).len(), 101);
+        for pace in [10.0, 30.0, 70.0] {
+            let kept = times(pace);
+            assert!(kept.windows(2).all(|two| two[1] - two[0] > 0.0199 * pace));
+            assert!((kept[kept.len() - 1] - 10.0).abs() < 1e-9 && kept[0] < 1e-9);
+        }
+        assert_eq!(times(10.0).len(), 51);
+        assert_eq!(times(1e4).len(), 2);
+        let slow = at_pace(frames(), 1e-5).unwrap_err().to_string();
+        assert!(slow.contains("a frame would stay for 1.000e4 s"), "{slow}");
+        assert!(slow.contains("--pace 1.6"), "{slow}");
+    }
+
     #[test]
     fn a_frame_says_its_time_and_how_fast_it_is_shown() {
         let frame = Frame {
@@ -354,10 +421,18 @@ mod tests {
             stage: "slide".to_owned(),
             file: String::new(),
         };
-        assert_eq!(told(&frame, Some(0.1)), "t = 0.125 s, 10 times slower");
-        assert_eq!(told(&frame, Some(1.0)), "t = 0.125 s, as fast as it was");
-        assert_eq!(told(&frame, Some(10.0)), "t = 0.125 s, 10 times faster");
-        let step = Frame { time: 7.0, ..frame };
-        assert_eq!(told(&step, None), "slide, step 7");
+        assert_eq!(
+            told(&frame, None, Some(0.1)),
+            "t = 0.125 s, 10 times slower"
+        );
+        assert_eq!(
+            told(&frame, None, Some(1.0)),
+            "t = 0.125 s, as fast as it was"
+        );
+        assert_eq!(
+            told(&frame, None, Some(10.0)),
+            "t = 0.125 s, 10 times faster"
+        );
+        assert_eq!(told(&frame, Some("step 7"), None), "slide, step 7");
     }
 }

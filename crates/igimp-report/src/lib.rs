@@ -10,5 +10,6 @@ pub mod report;
 pub mod setup;
 pub mod skin;
 pub mod viewer;
+pub mod whereabouts;
 
 pub use error::ReportError;

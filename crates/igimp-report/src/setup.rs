@@ -9,7 +9,7 @@ use igimp_model::{AxisSpec, BodyPart, Boundaries, Case, LoadKind, Side, StageKin
 use igimp_results::summary::SetupTable;
 use igimp_text::short;
 
-pub use materials::of_material;
+pub use materials::{given_in_words, law_name, of_material};
 
 /// Stands for what a row does not have.
 const NONE: &str = "–";
@@ -279,6 +279,31 @@ mod tests {
              on | undeformed, free of stress | 10"
         );
         assert!(!tables.iter().any(|table| table.title == "Loads"));
+    }
+
+    /// GOAL: a report tells of the law that ran, and not of that of the file. CASE: the slope with the law of the undrained one.
+    /// ORACLE: the name and the words of the law that was given.
+    #[test]
+    fn a_law_that_was_given_is_told_in_words() {
+        let case_of = |name: &str| {
+            let shipped = SHIPPED.iter().find(|case| case.name == name).unwrap();
+            CaseFile::parse("case.toml", shipped.text, &[])
+                .unwrap()
+                .into_case()
+        };
+        let law = case_of("undrained_slope").materials[0].law().unwrap();
+        let mut slope = case_of("slope");
+        slope.materials[0].given = Some(igimp_model::GivenLaw(law.clone()));
+        let words = given_in_words(&slope.materials[0]).unwrap();
+        let found = row(&super::tables(&slope), "Materials", 0);
+        assert_eq!(
+            found,
+            format!("clay | {} | 20 | 20 | 0.3 | {words} | –", law.name())
+        );
+        assert!(
+            !found.contains("φ = 20°")
+                && format!("{law:?}").starts_with(words.trim_end_matches('…'))
+        );
     }
 
     #[test]

@@ -20,6 +20,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 pub use surroundings::{Bodies, Surroundings};
 
+use crate::whereabouts::whereabouts;
+
 /// The section `soil` of a page: choices, canvas, slider.
 pub const SECTION: &str = include_str!("viewer/soil.html");
 
@@ -131,25 +133,19 @@ pub(super) fn held(folder: &Path, around: &Surroundings) -> Option<Held> {
     let (bodies, members) = (beside(pvd::RIGID), beside(pvd::REINFORCEMENT));
     let seconds = pvd::seconds(&folder);
     let all = particles.len();
-    let stages: Vec<Option<usize>> = (particles.iter())
-        .scan(0, |last, own| {
-            let stage = around.stage(&own.stage, *last);
-            *last = stage.unwrap_or(*last);
-            Some(stage)
-        })
-        .collect();
+    let places = whereabouts(&particles, &around.stages);
     let of = |k: usize, keep| {
         let packed = |own: Option<&pvd::Frame>| frame(&folder.join(&own?.file), keep, None);
         let own = &particles[k];
         let seconds = seconds.get(&own.file).copied();
         let when = match seconds {
             Some(seconds) => format!("t = {} s, stage “{}”", short(seconds), own.stage),
-            None => format!("after {} steps and trials", own.time),
+            None => format!("stage “{}”, {}", own.stage, places[k].when),
         };
         Some(HeldFrame {
             label: format!("Frame {} of {all}, {when}", k + 1),
             seconds,
-            stage: stages[k],
+            stage: places[k].stage,
             data: frame(&folder.join(&own.file), keep, around.bodies.as_ref())?,
             bodies: packed(bodies.get(k)),
             members: packed(members.get(k)),

@@ -19,6 +19,7 @@ use igimp_figures::CurvePlot;
 use igimp_material::{ConstitutiveModel, MaterialError};
 use igimp_model::{Drainage, Material};
 use igimp_report::ReportError;
+use igimp_report::setup::{given_in_words, law_name};
 use igimp_results::tables::table::Table;
 use igimp_solver::element::{ElementError, ElementPath, ElementRun, ElementTest};
 use igimp_text::short;
@@ -33,6 +34,9 @@ pub use path_file::{PathFileError, read_path};
 use stations::Stations;
 pub use table::{name_of, of_name};
 use values::KeyValues;
+
+/// Largest natural strain of a test \[-\].
+const MOST_STRAIN: f64 = 10.0;
 
 /// What is driven.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,6 +95,16 @@ pub enum TestError {
     /// The test cannot begin.
     #[error(transparent)]
     Element(#[from] ElementError),
+    /// A value that no test can have.
+    #[error("{what} is {value}: {bounds}")]
+    Value {
+        /// Whose value.
+        what: &'static str,
+        /// The value in SI units.
+        value: f64,
+        /// What it may be.
+        bounds: &'static str,
+    },
     /// The data are none of the test.
     #[error(transparent)]
     Data(#[from] DataError),
@@ -159,7 +173,7 @@ pub fn test(material: &Material, request: &Request) -> Result<Tested, TestError>
         compared,
         warnings: String::new(),
         request: request.clone(),
-        title: format!("{}: {}, {what}", material.name, material.strength.name()),
+        title: format!("{}: {}, {what}", material.name, law_name(material)),
         material: material.clone(),
         is_by_stress,
     };
@@ -176,6 +190,7 @@ pub(crate) struct Driven {
 
 /// Drives a law, with a stop at each measurement.
 pub(crate) fn driven(law: &dyn ConstitutiveModel, request: &Request) -> Result<Driven, TestError> {
+    request.check()?;
     let [axial, side] = request.stress;
     let sigma = [-side, -axial, -side];
     let path = match &request.drive {
@@ -207,6 +222,42 @@ pub(crate) fn driven(law: &dyn ConstitutiveModel, request: &Request) -> Result<D
         ways: stations.ways,
         compared,
     })
+}
+
+impl Request {
+    /// Refuses values that no test can have, as the command line does.
+    ///
+    /// # Errors
+    /// [`TestError::Value`].
+    pub fn check(&self) -> Result<(), TestError> {
+        let stress = "a stress has a finite value";
+        let strain = match self.drive {
+            Drive::Standard(_, strain) => strain,
+            Drive::Path(_) => 0.0,
+        };
+        let far = "a strain goes from -10 to 10, which is 1000 %";
+        let long = "a test takes a finite time, and no negative one";
+        let [axial, side] = self.stress;
+        let values = [
+            ("the axial stress", axial, axial.is_finite(), stress),
+            ("the stress at the sides", side, side.is_finite(), stress),
+            ("the strain", strain, strain.abs() <= MOST_STRAIN, far),
+            (
+                "the duration",
+                self.duration,
+                (0.0..f64::INFINITY).contains(&self.duration),
+                long,
+            ),
+        ];
+        match values.into_iter().find(|(.., holds, _)| !holds) {
+            Some((what, value, _, bounds)) => Err(TestError::Value {
+                what,
+                value,
+                bounds,
+            }),
+            None => Ok(()),
+        }
+    }
 }
 
 impl Drive {
@@ -283,7 +334,9 @@ impl Tested {
         let varies = (self.material.varies()).then(|| said::VARIES.to_owned());
         let is_undrained = matches!(self.material.drainage, Drainage::Undrained { .. });
         let undrained = is_undrained.then(|| said::UNDRAINED.to_owned());
-        let notes = by_stress.into_iter().chain(varies);
+        let given = given_in_words(&self.material);
+        let given = given.map(|words| format!("{} {words}", said::GIVEN));
+        let notes = given.into_iter().chain(by_stress).chain(varies);
         notes.chain(undrained).collect()
     }
 }
@@ -370,6 +423,80 @@ mod tests {
             }
         }
         assert_eq!(told, 30);
+    }
+
+    fn sheared(drive: f64) -> Request {
+        Request {
+            drive: Drive::Standard(StandardTest::TriaxialDrained, drive),
+            stress: [100e3; 2],
+            steps: 20,
+            kinematics: Kinematics::Small,
+            duration: 0.0,
+            data: None,
+        }
+    }
+
+    fn soils() -> Vec<Material> {
+        MaterialsFile::parse("soils.toml", SOILS, &[])
+            .unwrap()
+            .materials
+    }
+
+    /// GOAL: values that no test can have are refused, whoever asks. CASE: strains, stresses and durations that are not finite, too large
+    /// or negative. ORACLE: the bounds of the command line.
+    #[test]
+    fn values_that_no_test_can_have_are_refused() {
+        let sand = &soils()[1];
+        let refused = |request: Request| test(sand, &request).unwrap_err().to_string();
+        for strain in [f64::NAN, f64::INFINITY, 20.0, -20.0] {
+            let text = refused(sheared(strain));
+            assert_eq!(
+                text,
+                format!("the strain is {strain}: a strain goes from -10 to 10, which is 1000 %")
+            );
+        }
+        let stress = |stress| Request {
+            stress,
+            ..sheared(0.1)
+        };
+        for (stresses, whose) in [([f64::NAN, 1e5], "axial"), ([1e5, f64::INFINITY], "sides")] {
+            let text = refused(stress(stresses));
+            assert!(text.contains(whose), "{text}");
+        }
+        for duration in [f64::NAN, f64::INFINITY, -1.0] {
+            let text = refused(Request {
+                duration,
+                ..sheared(0.1)
+            });
+            assert!(text.starts_with("the duration is "), "{text}");
+        }
+        assert!(test(sand, &sheared(0.1)).is_ok());
+    }
+
+    /// GOAL: of a law that takes the place of that of the file its name and its words are told, and no formula of the other.
+    /// CASE: sand that is given the law of the clay with c_u = 50 kPa. ORACLE: q = 2 c_u of Tresca.
+    #[test]
+    fn a_law_that_was_given_is_told_of() {
+        let all = soils();
+        let law = all[2].law().unwrap();
+        let sand = Material {
+            given: Some(igimp_model::GivenLaw(std::sync::Arc::clone(&law))),
+            ..all[1].clone()
+        };
+        let tested = test(&sand, &sheared(0.1)).unwrap();
+        let q = tested.run.states.last().unwrap().q();
+        assert!((q / 100e3 - 1.0).abs() < 1e-3, "{q}");
+        let text = &tested.text;
+        let title = format!("sand: {}, triaxial drained\n", law.name());
+        assert!(text.starts_with(&title), "{text}");
+        assert!(text.contains(said::GIVEN), "{text}");
+        assert!(!text.contains("closed form"), "{text}");
+        assert!(
+            test(&all[1], &sheared(0.1))
+                .unwrap()
+                .text
+                .contains("closed form")
+        );
     }
 
     /// GOAL: a path from a file has compression positive; what is no path is refused with a remedy.

@@ -127,6 +127,9 @@ pub enum FitError {
     /// A parameter cannot be varied.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
+    /// No parameter is sought.
+    #[error("no parameter is sought")]
+    NothingSought,
     /// Too few data.
     #[error(
         "{values} values were measured, and {parameters} parameters are sought: nothing would say how well they are known"
@@ -176,6 +179,9 @@ impl From<Lost> for FitError {
 /// # Errors
 /// [`FitError`]; a search that did not converge is one.
 pub fn fit(source: &dyn Source, request: &FitRequest) -> Result<Fitted, FitError> {
+    if request.vary.is_empty() {
+        return Err(FitError::NothingSought);
+    }
     let parameters = parameters(&request.vary, source)?;
     let problem = Problem::new(source, &parameters, request);
     if problem.values() <= parameters.len() {

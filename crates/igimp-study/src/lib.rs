@@ -6,11 +6,13 @@
 //! | [`element`] | a law on its own: test, table, pictures |
 //! | [`fit`] | parameters of a law from data of the laboratory |
 //! | [`narration`] | what is said of a case and of its run, as text |
+//! | [`threads`] | how many threads may be asked for |
 
 pub mod element;
 pub mod fit;
 pub mod narration;
 pub mod sweep;
+pub mod threads;
 
 /// The examples of the book, run as tests.
 #[cfg(doctest)]

@@ -8,6 +8,7 @@ use clap_complete::Shell;
 use igimp_schema::quantity::{Dimension, Quantity};
 use igimp_study::element::{Measure, StandardTest, name_of};
 use igimp_study::fit::Vary;
+use igimp_study::threads;
 use igimp_text::{MemoryLimit, NoAmount};
 
 const EXIT_CODES: &str = "Exit codes: 0 done, references met; 1 a reference missed; 2 bad input; \
@@ -128,7 +129,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "AMOUNT", value_parser = amount_of_memory, conflicts_with = "task")]
     pub(crate) memory: Option<String>,
     /// Threads to use; all cores when not given.
-    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    #[arg(long, value_name = "N", value_parser = a_number_of_threads)]
     pub(crate) threads: Option<usize>,
     /// Go on from the newest checkpoint in the results folder; with --task, also leave a task alone that is done, and
     /// wait for one that another program runs.
@@ -284,7 +285,7 @@ pub(crate) struct SweepArguments {
     #[arg(long, value_name = "N", default_value = "1", value_parser = at_least_one)]
     pub(crate) jobs: usize,
     /// Threads to use in all, all cores when not given; with --to those of a task, 1 when not given.
-    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    #[arg(long, value_name = "N", value_parser = a_number_of_threads)]
     pub(crate) threads: Option<usize>,
     /// Begin tasks afresh that were stopped, and replace those of another sweep.
     #[arg(long)]
@@ -329,7 +330,7 @@ pub(crate) struct Validate {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Threads to use; all cores when not given.
-    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    #[arg(long, value_name = "N", value_parser = a_number_of_threads)]
     pub(crate) threads: Option<usize>,
 }
 
@@ -352,6 +353,11 @@ fn at_least_one(text: &str) -> Result<usize, String> {
         Ok(number) => Ok(number),
         Err(_) => Err("expected a whole number".to_owned()),
     }
+}
+
+fn a_number_of_threads(text: &str) -> Result<usize, String> {
+    let threads = at_least_one(text)?;
+    threads::refusal(threads).map_or(Ok(threads), Err)
 }
 
 fn a_test() -> PossibleValuesParser {

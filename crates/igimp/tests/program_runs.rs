@@ -259,6 +259,75 @@ fn a_sweep_runs_what_is_not_done_and_collects() {
     assert!(folder.has("sweep/results-settlement.svg"));
 }
 
+/// GOAL: the table has results of the case as it is now: those that are gone run again, those of another case are left out and told of.
+/// CASE: the summary of a task is removed; then the soil is heavier; then the case is gone.
+/// ORACLE: u = γ H² / (2 E), and the table of before.
+#[test]
+fn a_table_has_results_of_the_case_as_it_is_now() {
+    let folder = Folder::new("sweep-now", &block(&check("3.6")));
+    std::fs::write(folder.0.join("study.toml"), SWEEP).unwrap();
+    let parts_of = |words: &[&str]| parts(&folder.igimp(words));
+    let table = || std::fs::read_to_string(folder.0.join("sweep/results.csv")).unwrap();
+    assert_eq!(parts_of(&["sweep", "study.toml"]).0, 1);
+    let first = table();
+
+    std::fs::remove_file(folder.0.join("sweep/task-0001/summary.json")).unwrap();
+    let (code, _, err) = parts_of(&["collect", "study.toml"]);
+    assert_eq!(code, 4);
+    assert!(err.contains("no results of 1 of 2 tasks: 1\n"), "{err}");
+    let (code, out, err) = parts_of(&["sweep", "study.toml"]);
+    assert_eq!(code, 1, "{err}");
+    assert!(out.contains("1 of 2 tasks are done"), "{out}");
+    assert_eq!(table(), first);
+
+    let case = folder.0.join("case.toml");
+    let heavier = block(&check("3.6")).replace("18 kN/m3", "36 kN/m3");
+    std::fs::write(&case, heavier).unwrap();
+    let (code, out, err) = parts_of(&["collect", "study.toml"]);
+    assert_eq!(code, 4);
+    let text = "error: results of another case or of other settings of 2 of 2 tasks: 1, 2\n  help: igimp sweep study.toml runs them anew";
+    assert!(err.contains(text), "{err}");
+    assert!(out.contains("outdated") && !out.contains("3.6"), "{out}");
+    assert!(!table().contains("settlement"), "{}", table());
+    assert_eq!(parts_of(&["sweep", "study.toml"]).0, 1);
+    assert_eq!(parts_of(&["collect", "study.toml"]).0, 0);
+    let anew = table();
+    let settled: f64 = anew
+        .lines()
+        .nth(1)
+        .unwrap()
+        .split(',')
+        .nth(3)
+        .unwrap()
+        .parse()
+        .unwrap();
+    assert!((settled / 7.2 - 1.0).abs() < 0.05, "{anew}");
+
+    std::fs::remove_file(case).unwrap();
+    let (code, _, err) = parts_of(&["collect", "study.toml"]);
+    assert_eq!(code, 0, "{err}");
+    assert!(
+        err.contains("warning: results are not held against the case as it is now"),
+        "{err}"
+    );
+    assert_eq!(table(), anew);
+}
+
+/// GOAL: a number of threads that no computer uses is refused with the number of cores. CASE: 100000. ORACLE: the bound of 512.
+#[test]
+fn threads_have_a_bound() {
+    let folder = Folder::new("threads", &block(""));
+    let words = ["run", "case.toml", "--threads", "100000"];
+    let (code, _, err) = parts(&folder.igimp(&words));
+    assert_eq!(code, 2, "{err}");
+    assert!(
+        err.contains("100000 threads are too many: at most"),
+        "{err}"
+    );
+    assert!(err.contains("this computer has"), "{err}");
+    assert!(!folder.has("results"));
+}
+
 #[test]
 fn an_interrupted_run_says_how_to_go_on() {
     let long = block("").replace("steps = 3", "steps = 100000");

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use igimp_assembly::{Particles, SharedLaw};
-use igimp_figures::{ColourMap, FieldPlot, Outline, OutlineStyle};
+use igimp_figures::{ColourMap, FieldPlot, Outline, OutlineStyle, Scale as AxisScale};
 use igimp_model::{Case, Field};
 use igimp_results::fields::{self, Scale};
 use igimp_results::summary::FigureNote;
@@ -204,8 +204,21 @@ pub(crate) struct Colours {
 
 impl Colours {
     /// From zero where a field has no sign, about zero where both signs matter, without the few values
-    /// that would pale all others.
+    /// that would pale all others; without a range where its ends are equal but for rounding, so that the picture finds one.
     pub(crate) fn of(field: Field, values: &[f64]) -> Self {
+        let own = Self::between(field, values);
+        match own.range {
+            Some(range) if !AxisScale::Linear.accepts(range) => Self {
+                range: None,
+                cut: (false, false),
+                ..own
+            },
+            _ => own,
+        }
+    }
+
+    /// The same, whether or not its range can be drawn.
+    fn between(field: Field, values: &[f64]) -> Self {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
         let whole = Self {
@@ -306,6 +319,29 @@ mod tests {
         assert_eq!(range(Field::Utilisation, &both), Some((0.0, 1.0)));
         assert_eq!(range(Field::PlasticStrain, &[0.0]), Some((0.0, 1.0)));
         assert_eq!(range(Field::P, &[f64::NAN]), None);
+    }
+
+    /// GOAL: a field that is even but for rounding and a few values has a picture; the run ended with its colour bar.
+    /// CASE: an excess pore pressure of 9.9975 kPa with differences of 1e-12, one value that is larger, and one of nothing; a speed of 1e-200.
+    /// ORACLE: what the figures take.
+    #[test]
+    fn an_even_field_has_a_range_that_can_be_drawn() {
+        let mut values: Vec<f64> = (0..1000).map(|k| 9.9975 + 1e-15 * f64::from(k)).collect();
+        let plain = Colours::of(Field::UExcess, &values);
+        assert_eq!((plain.range, plain.told()), (None, ""));
+        for wild in [12.0, 0.0] {
+            values[500] = wild;
+            for &field in Field::ALL {
+                let own = Colours::of(field, &values);
+                let is_drawn = own
+                    .range
+                    .is_none_or(|range| AxisScale::Linear.accepts(range));
+                assert!(is_drawn, "{field:?}: {:?}", own.range);
+            }
+            let own = Colours::of(Field::UExcess, &values);
+            assert_eq!((own.range, own.told()), (None, ""));
+        }
+        assert_eq!(Colours::of(Field::Speed, &[1e-200]).range, None);
     }
 
     /// GOAL: a single particle neither pales a field nor goes unsaid, whatever the field.

@@ -4,7 +4,7 @@ use igimp_model::{
     Case, Material, Parameter, ParameterValue, Profile, Profiles, Strength, StressShare, Variation,
 };
 use igimp_results::summary::SetupTable;
-use igimp_text::short;
+use igimp_text::{on_a_line, short};
 
 use super::{NONE, kilo, table};
 
@@ -25,13 +25,33 @@ pub(super) fn materials<const D: usize>(case: &Case<D>) -> SetupTable {
     )
 }
 
+/// Most letters of a law in words.
+const MOST_LETTERS: usize = 200;
+
+/// The name of the law of a material: of the one that it was given, or of its strength.
+pub fn law_name(material: &Material) -> &str {
+    match &material.given {
+        Some(given) => given.0.name(),
+        None => material.strength.name(),
+    }
+}
+
+/// A law that takes the place of that of the file, in the words by which a run knows it; none of other materials.
+pub fn given_in_words(material: &Material) -> Option<String> {
+    let given = material.given.as_ref()?;
+    let whole = format!("{:?}", given.0);
+    let whole = on_a_line(&whole);
+    Some(match whole.char_indices().nth(MOST_LETTERS) {
+        Some((end, _)) => format!("{}…", &whole[..end]),
+        None => whole.into_owned(),
+    })
+}
+
 /// The law of a material and its parameters with their units, a row each; where they vary, the greatest.
 pub fn of_material(material: &Material) -> SetupTable {
     let row = |name: &str, value: String| vec![name.to_owned(), value];
-    let mut rows = match &material.given {
-        Some(given) => vec![row("Law", given.0.name().to_owned())],
-        None => vec![row("Law", material.strength.name().to_owned())],
-    };
+    let mut rows = vec![row("Law", law_name(material).to_owned())];
+    rows.extend(given_in_words(material).map(|words| row("in place of that of the file", words)));
     let poisson = || short(material.poisson);
     match &material.strength {
         // Its elasticity is among the parameters.
@@ -85,26 +105,25 @@ fn material(material: &Material) -> Vec<String> {
         None => short(constant / scale),
     };
     let printed = |parameter: Parameter| format!("{}{}", parameter.label, value(parameter, own));
-    let parameters = material.strength.parameters().into_iter();
-    let mut strength: Vec<String> = parameters.map(printed).collect();
-    strength.extend(
-        material
-            .softening
-            .iter()
-            .flat_map(|own| own.in_words(short)),
-    );
-    if own.friction.is_some() && material.softening.is_some_and(|own| own.friction.is_some()) {
-        strength.push(
-            "φ in the end where it is greatest, elsewhere as much less by its tangent".into(),
-        );
-    }
+    let of_file = || {
+        let parameters = material.strength.parameters().into_iter();
+        let effects = material.softening.iter();
+        let effects = effects.flat_map(|own| own.in_words(short));
+        let varies =
+            own.friction.is_some() && material.softening.is_some_and(|own| own.friction.is_some());
+        let varies = varies.then(|| {
+            "φ in the end where it is greatest, elsewhere as much less by its tangent".to_owned()
+        });
+        let each = parameters.map(printed).chain(effects).chain(varies);
+        each.collect::<Vec<_>>().join(", ")
+    };
     vec![
         material.name.clone(),
-        material.strength.name().to_owned(),
+        law_name(material).to_owned(),
         or_constant(&own.unit_weight, material.unit_weight, 1e3),
         or_constant(&own.young, material.young, 1e6),
         short(material.poisson),
-        strength.join(", "),
+        given_in_words(material).unwrap_or_else(of_file),
         material.k0.map_or_else(|| NONE.to_owned(), short),
     ]
 }

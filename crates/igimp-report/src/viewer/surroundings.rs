@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use igimp_model::{Case, Stage, in_plane};
 use igimp_results::paraview::pvd;
-use igimp_text::on_a_line;
 
 use super::over::{Over, by_stage};
 use crate::outlines::Outlines;
@@ -35,8 +34,7 @@ impl Bodies {
 #[derive(Clone, Debug, Default)]
 pub struct Surroundings {
     pub(super) bodies: Option<Bodies>,
-    /// Names of the stages as collections of frames have them.
-    stages: Vec<String>,
+    pub(super) stages: Vec<Stage>,
     pub(super) over: Vec<Over>,
 }
 
@@ -48,17 +46,10 @@ impl Surroundings {
         if frames.is_none_or(|own| own.is_empty()) {
             return Self::default();
         }
-        let name = |stage: &Stage| on_a_line(&stage.name).into_owned();
         Self {
             bodies: pieces.map(Bodies::Plane).or_else(|| Bodies::of(case)),
-            stages: case.stages.iter().map(name).collect(),
+            stages: case.stages.clone(),
             over: by_stage(case, folder),
         }
-    }
-
-    /// The number of a stage by its name, at the one before it or later: names may come again.
-    pub(super) fn stage(&self, name: &str, before: usize) -> Option<usize> {
-        let later = (before..self.stages.len()).find(|&k| self.stages[k] == name);
-        later.or_else(|| self.stages.iter().position(|own| own == name))
     }
 }

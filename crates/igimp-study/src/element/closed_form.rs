@@ -27,6 +27,10 @@ pub(super) fn strength(
         Kinematics::Finite => (-end.volumetric_strain()).exp(),
         Kinematics::Small => 1.0,
     };
+    if material.given.is_some() {
+        // What the file says of strength is not what is driven.
+        return None;
+    }
     let effects = material.softening.unwrap_or_default();
     if effects.goes_with_strain() {
         // What it ends on depends on how far it was sheared, and how fast.

@@ -13,6 +13,8 @@ use super::{Request, Tested};
 pub(super) const VARIES: &str = "strength or stiffness vary: the greatest in the soil count, in a file of materials alone those at the top of a gradient";
 /// Of a strength that is a share of the vertical effective stress.
 pub(super) const BY_STRESS: &str = "cu by the vertical stress that the test begins with:";
+/// Of a law that takes the place of that of the file.
+pub(super) const GIVEN: &str = "the law takes the place of that of the file:";
 /// Of a material that is undrained in its case.
 pub(super) const UNDRAINED: &str = "stresses are effective ones; an undrained test keeps the volume, whatever the water's stiffness";
 

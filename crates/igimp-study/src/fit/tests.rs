@@ -396,3 +396,10 @@ fn what_cannot_be_fitted_is_refused() {
         "{words}"
     );
 }
+
+/// GOAL: a fit without a parameter is refused; it ended by an index beyond an array. CASE: none, with data. ORACLE: the error.
+#[test]
+fn a_fit_without_a_parameter_is_refused() {
+    let refused = fit(&soil(SAND), &request(&[], vec![sheared(100e3)]));
+    assert!(matches!(refused, Err(FitError::NothingSought)));
+}

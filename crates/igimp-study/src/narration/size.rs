@@ -1,5 +1,6 @@
 //! The expected cost of a case in words, printed before it runs.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use igimp_cases::CaseError;
@@ -22,8 +23,12 @@ const FILM: usize = 20;
 pub struct Told {
     /// Particles, cells, unknowns and memory.
     pub size: Estimate,
-    /// Time of the case on its own grid.
+    /// Time of the case, for a study of the mesh error of all its meshes.
     pub time: time::Time,
+    /// Memory of the case, for a study of the mesh error of its meshes as they run \[bytes\].
+    pub bytes: f64,
+    /// The same where an iteration is given up for factors \[bytes\].
+    pub most_bytes: f64,
     /// All of it as it is printed.
     pub text: String,
 }
@@ -81,42 +86,54 @@ pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Told, CaseErr
             ]
         })
         .collect();
-    let text = format!(
-        "{} is fine\n  {}\n\n{}\nstages\n{}{}",
-        name.display(),
-        on_a_line(&case.title),
-        table(&rows),
-        table(&stages),
-        study(case, speed)?
-    );
-    Ok(Told { size, time, text })
+    let mut told = Told {
+        text: format!(
+            "{} is fine\n  {}\n\n{}\nstages\n{}",
+            name.display(),
+            on_a_line(&case.title),
+            table(&rows),
+            table(&stages),
+        ),
+        bytes: size.bytes,
+        most_bytes: size.most_bytes,
+        size,
+        time,
+    };
+    if case.mesh_study.meshes > 1 {
+        add_study(&mut told, case, speed)?;
+    }
+    Ok(told)
 }
 
-/// How many frames make the film of a run, and what they take; none where a run is to make none.
+/// How many frames a run writes along its stages, and what they take; none where it writes those of their ends alone.
 fn film<const D: usize>(case: &Case<D>, particles: usize) -> Option<String> {
-    if case.output.paraview != Every::Film {
-        return None;
-    }
+    let (most, every, how) = match case.output.paraview {
+        Every::Film => ([FILM_OF_MOTION, FILM], 1, "up to"),
+        // Steps that are cut have frames too.
+        Every::Steps(every) => ([usize::MAX; 2], every.max(1), "about"),
+        Every::Never | Every::Stage => return None,
+    };
     let of_stage = |stage: &Stage| match stage.kind {
-        StageKind::Dynamic(_) => stage.steps.min(FILM_OF_MOTION) + 2,
+        StageKind::Dynamic(_) => (stage.steps / every).min(most[0]) + 2,
         StageKind::StrengthReduction(_) => 3,
-        _ => stage.steps.min(FILM) + 1,
+        _ => (stage.steps / every).min(most[1]) + 1,
     };
     let frames: usize = case.stages.iter().map(of_stage).sum();
     let bytes = (frames * particles) as f64 * FRAME[D - 2];
     Some(format!(
-        "up to {frames}, about {} in paraview/",
+        "{how} {frames}, about {} in paraview/",
         readable(bytes)
     ))
 }
 
-/// The meshes of a study of the mesh error, each with its size, and the cost of all; empty without one.
-fn study<const D: usize>(case: &Case<D>, speed: Speed) -> Result<String, CaseError> {
-    if case.mesh_study.meshes < 2 {
-        return Ok(String::new());
-    }
+/// Adds the meshes of a study of the mesh error, each with its size, and the cost of all.
+fn add_study<const D: usize>(
+    told: &mut Told,
+    case: &Case<D>,
+    speed: Speed,
+) -> Result<(), CaseError> {
     let mut rows = Vec::new();
-    let (mut bytes, mut most_bytes, mut all) = (Vec::new(), Vec::new(), None::<time::Time>);
+    let (mut bytes, mut most_bytes, mut times) = (Vec::new(), Vec::new(), Vec::new());
     for (mesh, parts) in std::iter::zip(meshes::meshes(case), meshes::refinements(case)) {
         let size = estimate(&mesh)?;
         let own = time::time(&mesh, &size, speed);
@@ -130,22 +147,24 @@ fn study<const D: usize>(case: &Case<D>, speed: Speed) -> Result<String, CaseErr
         ]);
         bytes.push(size.bytes);
         most_bytes.push(size.most_bytes);
-        all = Some(all.map_or(own, |all| time::Time {
-            seconds: all.seconds + own.seconds,
-            ..own
-        }));
+        times.push(own);
     }
+    told.time.seconds = times.iter().map(|own| own.seconds).sum();
+    told.time.open_ended = times.iter().any(|own| own.open_ended);
+    (told.bytes, told.most_bytes) = (together(&bytes), together(&most_bytes));
     let how = if side_by_side(&bytes) > 1 {
         "side by side"
     } else {
         "one after another"
     };
-    Ok(format!(
+    let _ = write!(
+        told.text,
         "\nmeshes\n{}  {how}: {} of memory, {}\n",
         table(&rows),
-        memory(together(&bytes), together(&most_bytes)),
-        all.map_or_else(String::new, |all| time::sentence(&all))
-    ))
+        memory(told.bytes, told.most_bytes),
+        time::sentence(&told.time)
+    );
+    Ok(())
 }
 
 /// Expected memory of a run \[bytes\], and that of a run whose iteration is abandoned for a factorisation.
@@ -170,6 +189,54 @@ fn round(bytes: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// GOAL: the numbers of a study of the mesh error are those of its text, and not of its first mesh. CASE: the slope on three meshes.
+    /// ORACLE: the sizes of its meshes, one by one.
+    #[test]
+    fn a_study_of_the_mesh_costs_all_its_meshes() {
+        let told = |setting: &str| {
+            let slope = igimp_input::shipped::find("slope").unwrap();
+            let case = slope.case_file([setting]).unwrap().into_case();
+            (size(&case, Path::new("slope.toml")).unwrap(), case)
+        };
+        let (alone, _) = told("mesh_study.meshes=1");
+        let (all, case) = told("mesh_study.meshes=3");
+        let meshes: Vec<Estimate> = (meshes::meshes(&case).iter())
+            .map(|mesh| estimate(mesh).unwrap())
+            .collect();
+        let bytes: Vec<f64> = meshes.iter().map(|own| own.bytes).collect();
+        assert!((all.bytes / together(&bytes) - 1.0).abs() < 1e-12);
+        assert!(all.bytes > 2.0 * alone.bytes && all.time.seconds > 2.0 * alone.time.seconds);
+        assert!(
+            all.text.contains(&time::sentence(&all.time)),
+            "{}",
+            all.text
+        );
+        assert!(
+            all.text.contains(&memory(all.bytes, all.most_bytes)),
+            "{}",
+            all.text
+        );
+    }
+
+    /// GOAL: what frames take is told wherever a run writes them along its stages. CASE: the column with ten steps, a frame for every step and
+    /// for every fifth, and those of its end alone. ORACLE: counted by hand.
+    #[test]
+    fn frames_along_a_stage_are_told() {
+        let told = |every: &str| {
+            let column = igimp_input::shipped::find("column").unwrap();
+            let settings = [
+                format!("output.paraview={{ every = {every} }}"),
+                "stages.0.steps=10".to_owned(),
+            ];
+            film(&column.case_file(settings).unwrap().into_case(), 1000)
+        };
+        let frames = |every: &str| told(every).unwrap().split(',').next().unwrap().to_owned();
+        assert_eq!(frames("1"), "about 11");
+        assert_eq!(frames("5"), "about 3");
+        assert_eq!(frames("\"film\""), "up to 11");
+        assert_eq!(told("\"stage\""), None);
+    }
 
     #[test]
     fn memory_with_factors_is_told_beside() {

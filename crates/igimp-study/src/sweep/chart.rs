@@ -159,6 +159,8 @@ mod tests {
             .iter()
             .flat_map(|own| [f64::from(u8::from(own.0 == "10 m")); 2]);
         let collected = Collected {
+            outdated: Vec::new(),
+            unchecked: None,
             header: ["task", "x", "H", "base", "end", "q", "message"]
                 .map(str::to_owned)
                 .to_vec(),

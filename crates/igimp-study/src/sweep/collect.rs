@@ -9,7 +9,11 @@ use igimp_results::tables::cells::cell;
 use igimp_text::{on_a_line, short};
 
 use super::columns::{Column, column};
+use super::record::fingerprint;
 use super::{Record, Sweep, SweepError, Task};
+
+/// Message of a task whose results are outdated.
+const OUTDATED: &str = "its results are those of another case or of other settings";
 
 /// The table of a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,27 +26,49 @@ pub struct Collected {
     pub numbers: Vec<Option<Vec<f64>>>,
     /// Tasks without results.
     pub missing: Vec<usize>,
+    /// Tasks whose results are those of another case or of other settings: their values are left out.
+    pub outdated: Vec<usize>,
+    /// Why results were not held against the case, where it cannot be read.
+    pub unchecked: Option<String>,
     /// Names asked for that no task has.
     pub unknown: Vec<String>,
 }
 
-/// Reads what the tasks of a study found, as far as they ran.
+/// What is there of a task.
+struct Standing {
+    /// How it ended, in a word.
+    end: String,
+    message: String,
+    /// Named results; none without a readable summary, and none where they are outdated.
+    found: Option<Vec<(String, f64)>>,
+    /// Whether its results are those of another case or of other settings.
+    is_outdated: bool,
+}
+
+/// Reads what the tasks of a study found, as far as they ran with the case and settings that they have now.
 pub fn collect(sweep: &Sweep) -> Collected {
-    let found: Vec<Option<Vec<(String, f64)>>> = sweep
+    let mut unchecked = None;
+    let standing: Vec<Standing> = sweep
         .tasks
         .iter()
-        .map(|task| results(task, &sweep.collect))
+        .map(|task| {
+            let file = sweep.case_of(task);
+            let print = file.map(|file| fingerprint(&file));
+            let print = print.map_err(|error| unchecked.get_or_insert_with(|| error.to_string()));
+            Standing::of(task, print.ok().as_deref(), &sweep.collect)
+        })
         .collect();
     let mut columns: Vec<String> = Vec::new();
-    for (name, _) in found.iter().flatten().flatten() {
+    for (name, _) in standing.iter().flat_map(|own| &own.found).flatten() {
         if !columns.contains(name) {
             columns.push(name.clone());
         }
     }
+    let some = standing.iter().any(|own| own.found.is_some());
     let unknown = sweep
         .collect
         .iter()
-        .filter(|&name| found.iter().any(Option::is_some) && !columns.iter().any(|c| is(c, name)))
+        .filter(|&name| some && !columns.iter().any(|c| is(c, name)))
         .cloned()
         .collect();
     let parameters: Vec<Column> = std::iter::zip(&sweep.keys, 0..)
@@ -51,20 +77,15 @@ pub fn collect(sweep: &Sweep) -> Collected {
             column(key, &values.collect::<Vec<_>>())
         })
         .collect();
-    let rows = sweep
-        .tasks
-        .iter()
-        .zip(&found)
+    let rows = std::iter::zip(&sweep.tasks, &standing)
         .enumerate()
-        .map(|(place, (task, found))| row(place, task, &parameters, found.as_deref(), &columns))
+        .map(|(place, (task, own))| row((place, task), &parameters, own, &columns))
         .collect();
-    let missing = sweep
-        .tasks
-        .iter()
-        .zip(&found)
-        .filter(|(_, found)| found.is_none())
-        .map(|(task, _)| task.number)
-        .collect();
+    let numbers_where = |holds: fn(&Standing) -> bool| {
+        let tasks = std::iter::zip(&sweep.tasks, &standing);
+        let those = tasks.filter(|(_, own)| holds(own));
+        those.map(|(task, _)| task.number).collect()
+    };
     let mut header = vec!["task".to_owned()];
     header.extend(parameters.iter().map(|one| one.header.clone()));
     header.push("end".to_owned());
@@ -74,8 +95,33 @@ pub fn collect(sweep: &Sweep) -> Collected {
         header,
         rows,
         numbers: parameters.into_iter().map(|one| one.numbers).collect(),
-        missing,
+        missing: numbers_where(|own| own.found.is_none() && !own.is_outdated),
+        outdated: numbers_where(|own| own.is_outdated),
+        unchecked,
         unknown,
+    }
+}
+
+impl Standing {
+    /// That of a task; `print` is the fingerprint of its case as it is now, where it can be read.
+    fn of(task: &Task, print: Option<&str>, wanted: &[String]) -> Self {
+        let record = Record::read(&task.folder);
+        let is_outdated = match (&record, print) {
+            (Some(record), Some(print)) => record.fingerprint != print,
+            _ => false,
+        };
+        let (end, message) = match record {
+            _ if is_outdated => ("outdated".to_owned(), OUTDATED.to_owned()),
+            None => ("missing".to_owned(), String::new()),
+            Some(record) => (record.ending.to_string(), record.message),
+        };
+        let found = || results(task, wanted);
+        Self {
+            end,
+            message,
+            found: (!is_outdated).then(found).flatten(),
+            is_outdated,
+        }
     }
 }
 
@@ -148,33 +194,27 @@ pub fn aligned(lines: &[Vec<String>]) -> String {
 }
 
 fn row(
-    place: usize,
-    task: &Task,
+    (place, task): (usize, &Task),
     parameters: &[Column],
-    found: Option<&[(String, f64)]>,
+    own: &Standing,
     columns: &[String],
 ) -> Vec<String> {
-    let record = Record::read(&task.folder);
-    let (end, message) = record.map_or_else(
-        || ("missing".to_owned(), String::new()),
-        |record| (record.ending.to_string(), record.message),
-    );
     let mut row = vec![task.number.to_string()];
     row.extend(parameters.iter().map(|one| one.cells[place].clone()));
-    row.push(end);
+    row.push(own.end.clone());
     row.extend(columns.iter().map(|column| {
+        let mut found = own.found.iter().flatten();
         found
-            .and_then(|found| found.iter().find(|(name, _)| name == column))
+            .find(|(name, _)| name == column)
             .map_or_else(String::new, |(_, value)| value.to_string())
     }));
-    row.push(message);
+    row.push(own.message.clone());
     row
 }
 
 /// Named results of a task; `None` without a readable summary.
 fn results(task: &Task, wanted: &[String]) -> Option<Vec<(String, f64)>> {
-    let text = std::fs::read_to_string(task.folder.join("summary.json")).ok()?;
-    let summary: Summary = serde_json::from_str(&text).ok()?;
+    let summary = summary(&task.folder)?;
     let mut found = safety(&summary);
     for row in &summary.checks {
         found.push((row.check.quantity.clone(), row.check.measured));
@@ -182,6 +222,12 @@ fn results(task: &Task, wanted: &[String]) -> Option<Vec<(String, f64)>> {
     found.extend(curve_ends(&task.folder.join("curves")));
     found.retain(|(name, _)| wanted.is_empty() || wanted.iter().any(|wanted| is(name, wanted)));
     Some(found)
+}
+
+/// The summary in a folder, if there is a readable one.
+pub(super) fn summary(folder: &Path) -> Option<Summary> {
+    let text = std::fs::read_to_string(folder.join("summary.json")).ok()?;
+    serde_json::from_str(&text).ok()
 }
 
 /// Middle and ends of the interval of each factor of safety; the stage is named when there are

@@ -14,7 +14,7 @@
 //!
 //! Tasks are numbered from 1; task 1 writes into `results/sweep/task-0001/`, with its settings and
 //! its end in `task.json`. A task is done when it ran to a verdict with the case and settings that
-//! it has now. One that was stopped goes on where it was.
+//! it has now, and its summary is there. One that was stopped goes on where it was.
 
 mod chart;
 mod collect;
@@ -266,7 +266,7 @@ impl Sweep {
         })
     }
 
-    /// How a task ended, if it ran to a verdict with the case and settings that it has now.
+    /// How a task ended, if it ran to a verdict with the case and settings that it has now, and its results are there.
     ///
     /// # Errors
     /// [`SweepError::Task`].
@@ -275,7 +275,7 @@ impl Sweep {
         Ok(Record::read(&task.folder)
             .filter(|record| record.fingerprint == record::fingerprint(&file))
             .map(|record| record.ending)
-            .filter(|ending| ending.is_verdict()))
+            .filter(|ending| ending.is_verdict() && collect::summary(&task.folder).is_some()))
     }
 
     /// The tasks that are not done, in order.

@@ -130,6 +130,9 @@ fn unfitted(error: FitError) -> ProgramError {
             error.to_string(),
             "begin with values that bear the path, with --set, or let the test drive strain",
         ),
+        FitError::NothingSought => {
+            ProgramError::usage(error.to_string(), "--vary friction names one")
+        }
         FitError::TooFew { .. } => {
             ProgramError::usage(error.to_string(), "vary less, or add data of another test")
         }

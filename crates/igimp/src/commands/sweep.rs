@@ -167,16 +167,34 @@ pub(crate) fn collect(arguments: &Collect) -> Result<Exit, ProgramError> {
     table.draw(&sweep.folder)?;
     output::print(&format!("{}table in {}", table.to_text(), path.display()))?;
     warn_of_unknown(&table);
-    if table.missing.is_empty() {
-        return Ok(Exit::Done);
+    if let Some(why) = &table.unchecked {
+        output::print_message(&format!(
+            "warning: results are not held against the case as it is now, which cannot be read\n  because: {why}"
+        ));
     }
-    let numbers: Vec<String> = table.missing.iter().map(usize::to_string).collect();
-    output::print_message(&format!(
-        "error: no results of {} of {} tasks: {}\n  help: igimp sweep {} runs them",
-        table.missing.len(),
-        sweep.tasks.len(),
-        numbers.join(", "),
-        arguments.file.display()
-    ));
-    Ok(Exit::InputOutput)
+    let of = sweep.tasks.len();
+    let (numbers, file) = (
+        |tasks: &[usize]| {
+            let each: Vec<String> = tasks.iter().map(usize::to_string).collect();
+            format!("{} of {of} tasks: {}", tasks.len(), each.join(", "))
+        },
+        arguments.file.display(),
+    );
+    if !table.missing.is_empty() {
+        let tasks = numbers(&table.missing);
+        output::print_message(&format!(
+            "error: no results of {tasks}\n  help: igimp sweep {file} runs them"
+        ));
+    }
+    if !table.outdated.is_empty() {
+        let tasks = numbers(&table.outdated);
+        output::print_message(&format!(
+            "error: results of another case or of other settings of {tasks}\n  help: igimp sweep {file} runs them anew"
+        ));
+    }
+    Ok(if table.missing.is_empty() && table.outdated.is_empty() {
+        Exit::Done
+    } else {
+        Exit::InputOutput
+    })
 }

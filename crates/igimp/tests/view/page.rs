@@ -142,7 +142,7 @@ fn a_report_holds_its_frames() {
     let text = std::fs::read_to_string(&frame).unwrap();
     let page = report();
     assert_eq!(page.matches("class=\"held-frame\"").count(), 4);
-    assert!(page.contains("data-label=\"Frame 4 of 4, after "));
+    assert!(page.contains("data-label=\"Frame 4 of 4, stage “own weight”, step 3\""));
     if let Some(browser) = browser() {
         let address = format!("file://{}#soil", results.join("report.html").display());
         let page = dumped(browser, &folder, &address, 15);
@@ -227,6 +227,26 @@ fn a_motion_is_shown_with_its_times() {
     let page = looked_at(browser, &folder, &view, "frame=1&play=1");
     assert!(!page.contains("id=\"pace-label\" hidden"));
     assert!(attribute(&page, "slider", "aria-valuetext").starts_with("Frame 5 of 5"));
+}
+
+/// GOAL: histories of a case that takes time are drawn over it, with a chart for every quantity and none for the time.
+/// CASE: a fall with a monitor of the displacement. ORACLE: the header of its table.
+#[test]
+fn histories_are_drawn_over_time() {
+    let monitor = "[[monitors]]\nname = \"middle\"\npoint = [\"2.2 m\", \"5.2 m\"]\nrecord = [\"displacement_y\"]\n[output]";
+    let folder = results_of("history", &FALL.replace("[output]", monitor), &[]);
+    let table = std::fs::read_to_string(folder.0.join("results/monitors/middle.csv")).unwrap();
+    assert!(
+        table.starts_with("stage,step,progress_[-],time_[s],displacement_y_[m]\n"),
+        "{table}"
+    );
+    let Some(browser) = browser() else {
+        return;
+    };
+    let view = View::of(&folder, "results");
+    let page = looked_at(browser, &folder, &view, "frame=1");
+    assert!(page.contains("middle: displacement y [m]") && page.contains("time [s]"));
+    assert!(!page.contains("middle: time") && !page.contains("row of the table"));
 }
 
 /// GOAL: a section across a body has the stress of its weight; the edges of the body are drawn.

@@ -44,7 +44,9 @@ fn the_page_and_the_results_are_served() {
     assert_eq!(status, 200);
     let index: serde_json::Value = serde_json::from_str(&index).unwrap();
     assert_eq!(index["title"], "a <b>block</b>");
-    assert_eq!(index["stages"][0]["moments"], 3);
+    let place = &index["frames"]["paraview/particles_0002.vtu"];
+    assert_eq!(place["stage"], 0);
+    assert_eq!(place["when"], "step 2");
     assert_eq!(
         index["stage_of_curve"]["curves/settlement.csv"],
         serde_json::Value::Null

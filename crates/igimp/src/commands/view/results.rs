@@ -1,6 +1,5 @@
 //! The files of a results folder that the page shows, and no others.
 
-use std::collections::HashMap;
 use std::fs::{self, File};
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -11,7 +10,8 @@ use igimp_input::CaseFile;
 use igimp_model::{AnyCase, Every, StageKind};
 use igimp_report::viewer::over::{Over, by_stage};
 use igimp_report::viewer::{self, Bodies, Keep};
-use igimp_results::paraview::pvd;
+use igimp_report::whereabouts::{Whereabouts, whereabouts};
+use igimp_results::paraview::pvd::{self, Frame};
 use igimp_results::summary::Summary;
 use serde_json::{Value, json};
 
@@ -93,9 +93,6 @@ impl Results {
                 let trials = stage.safety.as_ref().map(|found| found.trials.len());
                 json!({
                     "name": stage.name,
-                    "search": trials.is_some(),
-                    // The time of a frame counts steps, and the trials of a search.
-                    "moments": trials.unwrap_or(stage.steps),
                     "rows": trials.map_or(stage.steps, |made| made.min(listed(case, number))),
                 })
             })
@@ -104,16 +101,6 @@ impl Results {
             .iter()
             .flat_map(|case| case.stages())
             .map(|stage| &*stage.name)
-            .collect();
-        let motions: Vec<Value> = case
-            .iter()
-            .flat_map(|case| case.stages())
-            .map(|stage| match &stage.kind {
-                StageKind::Dynamic(own) => {
-                    json!({ "from": stage.start_from, "lasts": own.duration })
-                }
-                _ => Value::Null,
-            })
             .collect();
         let recorded: serde_json::Map<String, Value> = case
             .iter()
@@ -130,7 +117,7 @@ impl Results {
             "folder": self.root.file_name().map(|name| name.to_string_lossy()),
             "stages": stages,
             "planned": planned,
-            "motions": motions,
+            "frames": self.frames(case),
             "stage_of_curve": recorded,
             "never": case.is_some_and(|case| case.output().paraview == Every::Never),
             "seconds": self.seconds(),
@@ -140,15 +127,30 @@ impl Results {
         .to_string()
     }
 
-    /// The times \[s\] of frames by their files, where the soil moves in time.
-    fn seconds(&self) -> serde_json::Map<String, Value> {
+    /// The folder of frames, if it is there and no link.
+    fn paraview(&self) -> Option<PathBuf> {
         let folder = self.root.join("paraview");
         let is_there = fs::canonicalize(&folder).is_ok_and(|real| real == folder);
-        let times = if is_there {
-            pvd::seconds(&folder)
-        } else {
-            HashMap::new()
+        is_there.then_some(folder)
+    }
+
+    /// Where frames stand in the run, by their files.
+    fn frames(&self, case: Option<&AnyCase>) -> serde_json::Map<String, Value> {
+        let folder = self.paraview();
+        let frames = folder.and_then(|own| pvd::frames(&own, pvd::PARTICLES));
+        let frames = frames.unwrap_or_default();
+        let places = whereabouts(&frames, case.map_or(&[], AnyCase::stages));
+        let place = |(frame, own): (Frame, Whereabouts)| {
+            let told = json!({ "stage": own.stage, "step": own.step, "when": own.when });
+            (format!("paraview/{}", frame.file), told)
         };
+        frames.into_iter().zip(places).map(place).collect()
+    }
+
+    /// The times \[s\] of frames by their files, where the soil moves in time.
+    fn seconds(&self) -> serde_json::Map<String, Value> {
+        let times = self.paraview().map(|folder| pvd::seconds(&folder));
+        let times = times.unwrap_or_default();
         let named = times
             .into_iter()
             .map(|(file, time)| (format!("paraview/{file}"), json!(time)));

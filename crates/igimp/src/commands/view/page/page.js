@@ -20,34 +20,16 @@ async function fetched(name) {
   return answer.text();
 }
 
-// Moments of a stage that the time of frames counts. The last steps of a run-out, without drag, are
-// no rows of a monitor, and not counted.
-function momentsOf(k) {
-  const monitor = [...tables].find(([name]) => name.startsWith("monitors/"));
-  const rows = monitor ? monitor[1].rows.filter((row) => row[0] === k + 1) : [];
-  const { search, moments } = index.stages[k];
-  return search || rows.length === 0 ? moments : rows[rows.length - 1][1];
-}
-
-// The stage and the step (or trial) at a time, which counts steps and trials of the whole run. A search that follows a path has
-// none: the stage of its frame is known by its name, at the stage of the frame before or later.
-function momentOf(time, name, last) {
-  let [before, found] = [0, null];
-  for (const k of index.stages.keys()) {
-    const moments = momentsOf(k);
-    if (k >= last && stageName(k) === name) return { stage: k, step: time - before };
-    if (!found && time <= before + moments) found = { stage: k, step: time - before };
-    before += moments;
-  }
-  return found || { stage: index.stages.length, step: time - before };
+// Where a frame stands: its stage, its step (or trial), and the step in words. One that the index does not know yet is taken for the last.
+function momentOf(name) {
+  const own = index.frames[name] || {};
+  const stage = typeof own.stage === "number" ? own.stage : Math.max(index.planned.length - 1, 0);
+  return { stage, step: own.step || 0, when: own.when || "" };
 }
 
 // A moment in words.
-function whenOf({ stage, step }) {
-  const own = index.stages[stage];
-  const where = `stage ${stage + 1} “${stageName(stage)}”`;
-  if (own && own.search && step <= 0) return `${where}, as it ends`;
-  return `${where}, ${own && own.search ? "trial" : "step"} ${Math.ceil(step)}`;
+function whenOf({ stage, when }) {
+  return [`stage ${stage + 1} “${stageName(stage)}”`, when].filter(Boolean).join(", ");
 }
 
 function stageName(k) {
@@ -75,11 +57,9 @@ async function framesOf() {
   if (!index.files[collection]) return [];
   const page = new DOMParser().parseFromString(await fetched(collection), "application/xml");
   const sets = [...page.querySelectorAll("DataSet")].filter((set) => index.files[`paraview/${set.getAttribute("file")}`]);
-  let last = 0;
   return sets.map((set, k) => {
-    const moment = momentOf(Number(set.getAttribute("timestep")), set.getAttribute("group"), last);
-    last = moment.stage;
     const name = `paraview/${set.getAttribute("file")}`;
+    const moment = momentOf(name);
     const seconds = index.seconds[name];
     const when = seconds === undefined ? "" : `t = ${short(seconds)} s, `;
     const label = `Frame ${k + 1} of ${sets.length}: ${when}${whenOf(moment)}`;
@@ -120,16 +100,21 @@ function pointCharts() {
   for (const { chart, name } of charts.values()) chart.point(rowOf(name, tables.get(name), current.moment));
 }
 
-// The times of the rows of a history [s]; null where a stage among them takes no time.
-function timesOf({ rows }) {
-  const ends = [];
-  const times = rows.map(([stage, , progress]) => {
-    const motion = (index.motions || [])[stage - 1];
-    if (!motion) return NaN;
-    ends[stage - 1] = (ends[motion.from] || 0) + progress * motion.lasts;
-    return ends[stage - 1];
-  });
-  return rows.length > 0 && times.every(Number.isFinite) ? times : null;
+// The place of the column of time of a history; -1 where there is none.
+function timeColumn({ header }) {
+  return header.findIndex((label) => plain(label) === "time [s]");
+}
+
+// The times of the rows of a history [s], which stand still in stages that take none; null in cases without time.
+function timesOf(own) {
+  const column = timeColumn(own);
+  return column >= 0 ? own.rows.map((row) => row[column]) : null;
+}
+
+// The columns of a history that are drawn, each with its place: all behind those of the moment and of the time.
+function columnsOf(own) {
+  const first = Math.max(timeColumn(own) + 1, 3);
+  return own.header.slice(first).map((label, k) => [label, k + first]);
 }
 
 async function drawTables() {
@@ -141,7 +126,7 @@ async function drawTables() {
     tables.set(name, own);
     const title = name.replace(/^.*?\//, "").replace(/\.csv$/, "");
     const times = isHistory(name) ? timesOf(own) : null;
-    const columns = isHistory(name) ? own.header.slice(3).map((label, k) => [label, k + 3]) : [[own.header[1], 1]];
+    const columns = isHistory(name) ? columnsOf(own) : [[own.header[1], 1]];
     for (const [label, column] of columns) {
       const id = `${name} ${column}`;
       if (!charts.has(id)) {
