@@ -80,13 +80,16 @@ impl<const D: usize> Face<D> {
         } else {
             f64::INFINITY
         };
-        let most = (1.0 + ROUND_OFF) * most.min(2.0 * thickness);
+        let is_far = gap > thickness || nearest.height > most;
         let fades =
             body.surface.radius().is_none() && normal.iter().any(|own| own.abs() >= ALONG_THE_GRID);
-        let share = if fades {
-            ((FADED * most - nearest.height) / ((FADED - 1.0) * most)).min(1.0)
-        } else {
-            f64::from(u8::from(nearest.height <= most))
+        let share = match (is_far, fades) {
+            (false, _) => 1.0,
+            (true, true) => {
+                let most = most.min(2.0 * thickness);
+                ((FADED * most - nearest.height) / ((FADED - 1.0) * most)).min(1.0)
+            }
+            (true, false) => 0.0,
         };
         if nearest.height <= 0.0 || share <= 0.0 {
             return None;
@@ -96,7 +99,7 @@ impl<const D: usize> Face<D> {
             middle: std::array::from_fn(|a| centre[a] - thickness * normal[a]),
             gap,
             share,
-            is_far: nearest.height > most,
+            is_far,
             domain: [*centre, *half_length],
             half: along.map(|tangent| reach(&tangent)),
             thickness,
@@ -317,7 +320,7 @@ mod tests {
             let found = share(0.0, height);
             assert_eq!(found.is_some(), expected.is_some(), "{height}");
             let off = found.unwrap_or(0.0) - expected.unwrap_or(0.0);
-            assert!(off.abs() < 1e-7, "{height}: {off}");
+            assert!(off.abs() < 1e-12, "{height}: {off}");
         }
         assert_eq!(share(0.5, 0.99), Some(1.0));
         assert_eq!(share(0.5, 1.01), None);

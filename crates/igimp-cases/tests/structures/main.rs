@@ -6,6 +6,7 @@ mod edits;
 mod messages;
 
 mod closing;
+mod deep_push;
 mod reinforcement;
 mod rigid;
 mod rigid_results;
