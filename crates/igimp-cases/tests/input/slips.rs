@@ -262,3 +262,20 @@ fn sharp_edges_that_slide_are_told_of() {
     assert!(!warned("0", "y = \"-0.01 m\""));
     assert!(!warned("0.3", "x = \"0.01 m\""));
 }
+
+/// GOAL: sides that hold soil against the motion of the ground are told of: they go along as rigid walls. CASE: the shipped slope in an
+/// earthquake, with soil in free field at its sides and without.
+#[test]
+fn rigid_walls_of_shaken_ground_are_told_of() {
+    let warned = |free_field: &str| {
+        let shipped = igimp_input::shipped::find("earthquake_slope").unwrap();
+        let changes = [
+            "stages.earthquake.tied_sides=false".to_owned(),
+            format!("stages.earthquake.free_field={free_field}"),
+        ];
+        shipped.case_file(changes).unwrap().warnings()
+    };
+    assert!(!warned("[\"left\", \"right\"]").contains("rigid walls"));
+    assert!(warned("[\"left\"]").contains("right goes with the base as rigid walls"));
+    assert!(warned("[]").contains("left and right go with the base as rigid walls"));
+}

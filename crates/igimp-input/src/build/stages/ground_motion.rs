@@ -115,7 +115,7 @@ fn warn_of_rigid_walls<const D: usize>(
         .warning(
             motion.place,
             format!(
-                "{} {} as rigid walls with the base: ground between them hardly shears",
+                "{} {} with the base as rigid walls: soil beside them hardly shears",
                 held.join(" and "),
                 if held.len() == 1 { "goes" } else { "go" }
             ),
