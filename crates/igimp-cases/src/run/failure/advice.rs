@@ -367,7 +367,11 @@ fn collapse<const D: usize>(case: &Case<D>, number: usize, stage: &Stage) -> Vec
             let is_loaded = moves.iter().any(RigidMove::is_loaded);
             is_loaded.then_some(instead).into_iter().collect()
         }
-        StageKind::RunOut(_) | StageKind::Dynamic(_) | StageKind::Wait => Vec::new(),
+        StageKind::RunOut(_) => vec![format!(
+            "type = \"dynamic\" with a duration and at_rest = 5e-3 for stage \"{}\": soil that gains speed needs no equilibrium",
+            stage.name
+        )],
+        StageKind::Dynamic(_) | StageKind::Wait => Vec::new(),
     }
 }
 

@@ -309,6 +309,11 @@ fn a_run_out_wants_smaller_moves() {
         "move_per_step = 0.1 in stage \"first\" (now 0.2)"
     );
     assert!(try_this[1].contains("ghost_penalty"), "{try_this:?}");
+    let yielding = advice(&case, 0, &stagnated(), Some([3, 3, 0]));
+    assert!(
+        yielding[0].starts_with("type = \"dynamic\""),
+        "{yielding:?}"
+    );
 }
 
 #[test]
