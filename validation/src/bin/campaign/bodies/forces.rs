@@ -76,9 +76,16 @@ struct Face {
     thickness: f64,
     reach: f64,
     middle: [f64; 2],
+    /// Share by which it counts (theory, eq. 45b).
+    share: f64,
 }
 
 impl Face {
+    /// Height over that up to which it counts in full.
+    fn far(&self) -> f64 {
+        0.5 * self.height / self.thickness
+    }
+
     fn gap(&self) -> f64 {
         self.height - self.thickness
     }
@@ -144,6 +151,10 @@ pub(crate) fn forces(begun: &Begun<'_>, after: &[RigidBody<2>], u: &[[f64; 2]]) 
     }
     out
 }
+
+/// A side whose normal has so much of an axis of the grid is along it, and there faces fade over so much of their height \[-\].
+const ALONG: f64 = 0.995;
+const FADES: f64 = 0.04;
 
 /// Soil that is no further off than so many cells adheres (theory, eq. 47a) \[-\].
 const ADHESIVE_GAP: f64 = 0.1;
@@ -342,7 +353,15 @@ fn faces(particles: &Particles<2>, body: &RigidBody<2>, sides: &[Side]) -> Vec<F
         let (x, half) = (particles.x[particle], particles.half_length[particle]);
         for (side, height, normal) in sides_near(body, sides, x) {
             let thickness = half[0] * normal[0].abs() + half[1] * normal[1].abs();
-            if height <= 0.0 || height > 2.0 * thickness {
+            let far = 0.5 * height / thickness;
+            let is_along = normal[0].abs().max(normal[1].abs()) >= ALONG;
+            let fades = is_along && body.surface.radius().is_none();
+            let share = match far <= 1.0 {
+                true => 1.0,
+                false if fades => ((1.0 + FADES - far) / FADES).min(1.0),
+                false => 0.0,
+            };
+            if height <= 0.0 || share <= 0.0 {
                 continue;
             }
             let tangent = [-normal[1], normal[0]];
@@ -355,6 +374,7 @@ fn faces(particles: &Particles<2>, body: &RigidBody<2>, sides: &[Side]) -> Vec<F
                 thickness,
                 reach: half[0] * tangent[0].abs() + half[1] * tangent[1].abs(),
                 middle: [0, 1].map(|a| x[a] - thickness * normal[a]),
+                share,
             });
         }
     }
@@ -379,6 +399,9 @@ fn around_knots(
     let faces = faces(particles, body, &sides);
     for face in &faces {
         let is_in_front = !faces.iter().any(|other| other.hides(face));
+        if face.far() > 1.0 && !is_in_front {
+            continue;
+        }
         let law = particles.law[face.particle];
         let young = particles.young(face.particle, &conditions.laws);
         let adhesion = match &body.interfaces[face.side].shear {
@@ -393,7 +416,7 @@ fn around_knots(
                 continue;
             };
             for (knot, tent) in knots.into_iter().filter(|(_, tent)| *tent > 0.0) {
-                let weight = length * tent;
+                let weight = face.share * length * tent;
                 let sums = out.entry(knot).or_default();
                 sums.area += weight;
                 sums.gap += weight * face.gap();
