@@ -10,8 +10,8 @@ use crate::equations::trial::Trial;
 use crate::error::AssemblyError;
 
 /// What elastic work that particles only exchange counts as, over that which is left in the sum \[-\]. A choice: where bodies move as
-/// mechanisms they exchange less than a tenth of the gross work, and where few particles begin to yield all of it and more.
-const EXCHANGE: f64 = 0.1;
+/// mechanisms they exchange up to a seventh of the gross work, and where few particles begin to yield all of it and more.
+const EXCHANGE: f64 = 0.05;
 
 /// The work of effective stress and of reinforcement on the strain of a step.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -141,7 +141,7 @@ impl<const D: usize> Source<D> {
         }
     }
 
-    /// The level above which there is no pressure between two levels \[m\]; the lower one where there is none at all.
+    /// The level above which there is no pressure between two levels \[m\]; the lower one where that is dry.
     fn top_within(&self, place: &[f64; D], [lower, upper]: [f64; 2]) -> f64 {
         let (Self::Points(_) | Self::Seepage { .. }) = self else {
             return self.top(place).min(upper);
