@@ -109,7 +109,10 @@ impl<const D: usize> ContinuationState<D> {
                     },
                 }
             }
-            _ => Target::Factor(self.factor * (1.0 + self.change)),
+            _ => Target::Factor {
+                to: self.factor * (1.0 + self.change),
+                is_resolved: self.change > RESOLVED,
+            },
         }
     }
 
@@ -128,11 +131,11 @@ impl<const D: usize> ContinuationState<D> {
         let does_work = step.external_work > 0.0 && of_stress > 0.0 && step.plastic_share > 0.0;
         match target {
             Target::Work { .. } => self.size = work * growth(step.iterations),
-            Target::Factor(_) if !does_work => {
+            Target::Factor { .. } if !does_work => {
                 self.change = (2.0 * self.change).min(LARGEST_CHANGE);
                 return;
             }
-            Target::Factor(_) => {
+            Target::Factor { .. } => {
                 self.working += 1;
                 self.size = work;
                 self.change = self.change.min(settings.first_change);
@@ -173,6 +176,10 @@ impl<const D: usize> ContinuationState<D> {
 
 /// A step whose work is dissipated by this share moves the body as a mechanism \[-\].
 pub const MECHANISM: f64 = 0.99;
+
+/// Change of the load factor, as a share of it, by which a path may come to its mechanism at once \[-\]: a larger one hides
+/// where the mechanism begins, and the factor of safety goes by that.
+const RESOLVED: f64 = 1e-3;
 
 /// Largest change of the load factor where nothing yields, as a share of it \[-\].
 const LARGEST_CHANGE: f64 = 0.4;

@@ -5,13 +5,15 @@ use std::time::Instant;
 
 use igimp_assembly::{
     AcceptedContact, AssemblyError, Geometry, LoadPoint, Method, OutOfBalance, Particles,
-    PoresAfter, Reach, Reinforcement, Stencils, StepConditions, System, Trial, WaterMoved,
+    PoresAfter, Reach, Reinforcement, Stencils, StepConditions, StepWork, System, Trial,
+    WaterMoved,
 };
 use igimp_linear::{LinearEffort, SolverKind};
 use igimp_material::{Regime, TangentKind};
 use igimp_shape::Grid;
 
 use crate::body::Body;
+use crate::continuation::MECHANISM;
 use crate::corrector::Corrector;
 use crate::free_factor::{FreeFactor, Guess};
 use crate::free_field;
@@ -88,6 +90,7 @@ fn step_of_body<const D: usize>(
         is_guarded: false,
         on_path: None,
         measures_work: false,
+        is_short_of_mechanism: false,
     };
     let mut history = ResidualHistory::default();
     let failure = match equilibrium(&attempt, body, workspace, &mut history) {
@@ -158,7 +161,7 @@ pub(crate) fn step_on_path<const D: usize>(
     workspace: &mut Workspace<D>,
 ) -> Result<(StepConditions<D>, StepReport, NodalForces<D>), StepError> {
     let to = match target {
-        Target::Factor(to) => *to,
+        Target::Factor { to, .. } => *to,
         Target::Work { guess, .. } => guess.factor,
     };
     let mut history = ResidualHistory::default();
@@ -175,10 +178,17 @@ pub(crate) fn step_on_path<const D: usize>(
                 ghost_penalty: 0.0,
                 is_guarded: false,
                 on_path: match target {
-                    Target::Factor(_) => None,
+                    Target::Factor { .. } => None,
                     Target::Work { work, guess } => Some((load_path, *work, guess)),
                 },
                 measures_work: true,
+                is_short_of_mechanism: matches!(
+                    target,
+                    Target::Factor {
+                        is_resolved: true,
+                        ..
+                    }
+                ),
             };
             let (report, forces) = equilibrium(&attempt, body, workspace, &mut history)?;
             let conditions = load_path.conditions(from, report.to)?;
@@ -196,8 +206,13 @@ pub(crate) fn step_on_path<const D: usize>(
 /// What a step on a path is to reach.
 #[derive(Clone, Debug)]
 pub(crate) enum Target<const D: usize> {
-    /// A load factor \[-\].
-    Factor(f64),
+    /// A load factor.
+    Factor {
+        /// Where to \[-\].
+        to: f64,
+        /// Whether the step is refused where the body moves as a mechanism in it.
+        is_resolved: bool,
+    },
     /// Gross work of the external force on the step \[force·length\].
     Work {
         /// How much.
@@ -223,6 +238,8 @@ struct Attempt<'a, const D: usize> {
     on_path: Option<(&'a dyn LoadPath<D>, f64, &'a Guess<D>)>,
     /// Whether the work of the step is measured.
     measures_work: bool,
+    /// Whether the step is refused where the body moves as a mechanism in it.
+    is_short_of_mechanism: bool,
 }
 
 /// The Newton–Raphson loop. What makes a correction is in the [`Corrector`].
@@ -321,7 +338,7 @@ impl<const D: usize> Found<'_, D> {
     /// What the step says of itself before it is accepted.
     ///
     /// # Errors
-    /// [`StepFailure::TooLong`], [`StepFailure::Thrown`], and those of its energy and its work.
+    /// [`StepFailure::TooLong`], [`StepFailure::Thrown`], [`StepFailure::MechanismAtOnce`], and those of its energy and its work.
     fn report(&self, attempt: &Attempt<'_, D>) -> Result<StepReport, StepFailure> {
         let Self {
             system, trial, u, ..
@@ -330,6 +347,11 @@ impl<const D: usize> Found<'_, D> {
         let work = (attempt.measures_work)
             .then(|| system.work(trial, u))
             .transpose()?;
+        let gross_work = system.gross_work_of_loads(u);
+        let is_mechanism = |work: &StepWork| work.dissipated_share(gross_work) >= MECHANISM;
+        if attempt.is_short_of_mechanism && work.as_ref().is_some_and(is_mechanism) {
+            return Err(StepFailure::MechanismAtOnce);
+        }
         Ok(StepReport {
             from: attempt.from,
             to: attempt.to,
@@ -349,7 +371,7 @@ impl<const D: usize> Found<'_, D> {
             energy: system.energy(trial, u)?,
             water: None,
             external_work: system.work_of_loads(u),
-            gross_work: system.gross_work_of_loads(u),
+            gross_work,
             factor_in_doubt: 0.0,
             linear: LinearEffort::default(),
             times: PhaseTimes::default(),

@@ -87,6 +87,11 @@ pub enum StepFailure {
         /// Duration of the step \[time\].
         duration: f64,
     },
+    /// Converged, but the body moves as a mechanism in a step that hides where that begins.
+    #[error(
+        "the body moves as a mechanism in the first steps of its path: a smaller one shows where that begins"
+    )]
+    MechanismAtOnce,
     /// A rigid body is free to move, and nothing holds it.
     #[error(
         "nothing holds the rigid body \"{body}\" in its {}: {}",
@@ -161,6 +166,7 @@ impl StepFailure {
             | Self::Diverged
             | Self::Stagnated
             | Self::Thrown { .. }
+            | Self::MechanismAtOnce
             | Self::NotHeld { .. } => true,
             Self::LeavesGrid { .. }
             | Self::LoadPointLeavesGrid { .. }

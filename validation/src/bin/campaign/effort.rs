@@ -68,6 +68,7 @@ fn cause(failure: &StepFailure) -> &'static str {
         | StepFailure::ReinforcementLeavesGrid { .. } => "leaves the grid",
         StepFailure::TooLong { .. } => "too long a step",
         StepFailure::Thrown { .. } => "throws a body",
+        StepFailure::MechanismAtOnce => "is a mechanism at once",
         StepFailure::TooDeep { .. } => "penetrates too deep",
         StepFailure::Penetration(_) => "soil caught by a body",
         StepFailure::NotHeld { .. } => "nothing holds a body",

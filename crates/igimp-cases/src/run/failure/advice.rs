@@ -91,7 +91,10 @@ pub(crate) fn advice<const D: usize>(
             finer_cell(case),
         ],
         StepFailure::NotFinite { .. } => vec![more_steps(stage), finer_cell(case)],
-        StepFailure::MaxIterations { .. } | StepFailure::Diverged | StepFailure::Stagnated => {
+        StepFailure::MaxIterations { .. }
+        | StepFailure::Diverged
+        | StepFailure::Stagnated
+        | StepFailure::MechanismAtOnce => {
             no_equilibrium(case, (number, stage), error, near_worst)
         }
     };
