@@ -10,7 +10,7 @@ use crate::body::Body;
 use crate::free_factor::Guess;
 use crate::march::{Accepted, MarchState, Observer};
 use crate::newton::{Target, step_on_path};
-use crate::report::{NodalForces, StepError, StepReport};
+use crate::report::{MECHANISM, NodalForces, StepError, StepReport};
 use crate::settings::LoadPath;
 use crate::settings::NewtonSettings;
 use crate::workspace::Workspace;
@@ -173,9 +173,6 @@ impl<const D: usize> ContinuationState<D> {
         settings.halvings + leaps
     }
 }
-
-/// A step whose work is dissipated by this share moves the body as a mechanism \[-\].
-pub const MECHANISM: f64 = 0.99;
 
 /// Change of the load factor, as a share of it, by which a path may come to its mechanism at once \[-\]: a larger one hides
 /// where the mechanism begins, and the factor of safety goes by that.

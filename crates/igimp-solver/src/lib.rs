@@ -24,11 +24,13 @@ pub use crate::settings::LoadPath;
 pub use crate::settings::NewtonSettings;
 pub use crate::workspace::Workspace;
 pub use body::Body;
-pub use continuation::{ContinuationSettings, ContinuationState, MECHANISM, follow};
+pub use continuation::{ContinuationSettings, ContinuationState, follow};
 pub use free_field::FreeField;
 pub use march::{
     Accepted, MarchReport, MarchSettings, MarchState, Observer, Outcome, Pace, march, march_from,
 };
 pub use newton::step;
-pub use report::{Component, NodalForces, PhaseTimes, StepError, StepFailure, StepReport};
+pub use report::{
+    Component, MECHANISM, NodalForces, PhaseTimes, StepError, StepFailure, StepReport,
+};
 pub use sensitivity::{Increment, KinematicFactor};

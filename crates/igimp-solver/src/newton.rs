@@ -13,12 +13,13 @@ use igimp_material::{Regime, TangentKind};
 use igimp_shape::Grid;
 
 use crate::body::Body;
-use crate::continuation::MECHANISM;
 use crate::corrector::Corrector;
 use crate::free_factor::{FreeFactor, Guess};
 use crate::free_field;
 use crate::pace;
-use crate::report::{NodalForces, PhaseTimes, StepError, StepFailure, StepReport, padded};
+use crate::report::{
+    MECHANISM, NodalForces, PhaseTimes, StepError, StepFailure, StepReport, padded,
+};
 use crate::residual_history::ResidualHistory;
 use crate::settings::LoadPath;
 use crate::{NewtonSettings, Workspace};
