@@ -521,7 +521,16 @@ pub struct SafetySummary {
 /// Factor of safety beyond which strength is not needed \[-\]: with a thousandth of it the ground stands.
 pub const NEEDLESS: f64 = 1e3;
 
+/// A share of the mass that moves below which a failure may be local \[-\].
+const LOCAL: f64 = 0.02;
+
 impl SafetySummary {
+    /// Whether so little of the mass moves at failure that a part of the ground may fail alone.
+    pub fn may_be_local(&self) -> bool {
+        let fails = (self.path.as_ref()).is_none_or(|path| path.limit.is_some());
+        fails && self.moving_mass.is_some_and(|share| share < LOCAL)
+    }
+
     /// Whether the ground stands with hardly any strength, as level ground between rollers does: its factor is no number to state.
     pub fn needs_no_strength(&self) -> bool {
         self.stable.is_some_and(|factor| factor > NEEDLESS)

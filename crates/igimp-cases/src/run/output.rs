@@ -413,7 +413,12 @@ impl<const D: usize> Output<D> {
         let clock = Instant::now();
         let notes = self.notes(case, number, run, &state.controls);
         self.save_end(number, &state.body, &notes)?;
-        self.write_summary(run)?;
+        // Until its end a run is one that can be resumed: it may be killed.
+        let so_far = Summary {
+            interrupted: true,
+            ..run.clone()
+        };
+        self.write_summary(&so_far)?;
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }

@@ -11,9 +11,6 @@ use serde::Serialize;
 
 use crate::report::numbers::{interval, percent};
 
-/// A share of moving mass below this may be a failure of a small part only \[-\].
-const LOCAL: f64 = 0.05;
-
 /// The first thing that a reader sees.
 #[derive(Debug, PartialEq, Serialize)]
 pub(super) struct Verdict {
@@ -82,7 +79,11 @@ fn ending(summary: &Summary) -> String {
         );
     }
     if summary.interrupted {
-        return "The run was interrupted; it can be resumed.".to_owned();
+        let after = match summary.stages.last() {
+            Some(stage) => format!(" after stage “{}”", stage.name),
+            None => String::new(),
+        };
+        return format!("The run has not come to its end{after}; it can be resumed.");
     }
     let whole = match summary.stages.len() {
         0 => return "No stage was run.".to_owned(),
@@ -158,14 +159,18 @@ pub(super) fn on_safety(safety: &SafetySummary) -> Vec<String> {
         sentences.push(format!("Strength was reduced in {materials}{not}."));
     }
     if let Some(share) = safety.moving_mass {
-        let local = if share < LOCAL {
+        let local = if safety.may_be_local() {
             ": so little may be a local failure; exclude its material to find the global one"
         } else {
             ""
         };
+        let state = if safety.path.is_some() {
+            "By the end of the path"
+        } else {
+            "In the first unstable state"
+        };
         sentences.push(format!(
-            "In the first unstable state {} of the mass moves by more than a tenth of the largest \
-             displacement{local}.",
+            "{state} {} of the mass moves by more than a tenth of the largest displacement{local}.",
             percent(share)
         ));
     }

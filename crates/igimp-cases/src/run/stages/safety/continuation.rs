@@ -16,7 +16,7 @@ use igimp_text::short;
 
 use super::shares::{LastStep, shares};
 use super::{names, undeformed_or_found};
-use crate::error::CaseError;
+use crate::error::{CaseError, on_one_line};
 use crate::limit::{self, Course};
 use crate::run::Event;
 use crate::run::model::displacement_scale;
@@ -401,6 +401,7 @@ fn finish<const D: usize>(
     } = followed;
     let shares = match shares {
         Some(Err(cause)) => {
+            let cause = on_one_line(&cause);
             session.warn_of_stage(
                 number,
                 &format!("what decides the factor of safety is not known: {cause}"),
@@ -428,7 +429,7 @@ fn finish<const D: usize>(
         session.warn_of_stage(number, &text);
     }
     if let StageEnd::NotConverged(cause) = &ended {
-        let cause = &cause.failure;
+        let cause = on_one_line(&*cause.failure);
         session.warn_of_stage(
             number,
             &format!(
@@ -447,7 +448,7 @@ fn finish<const D: usize>(
         output.keep_ends(last, None);
     }
     let whose = session.whose_displacement(reduction.monitor);
-    summary.safety = Some(SafetySummary {
+    let safety = SafetySummary {
         stable,
         failed,
         criterion: criterion(reduction, &whose),
@@ -456,7 +457,11 @@ fn finish<const D: usize>(
         moving_mass,
         trials: Vec::new(),
         path: Some(path),
-    });
+    };
+    if let Some(text) = super::remarks::local(&safety) {
+        session.warn_of_stage(number, &text);
+    }
+    summary.safety = Some(safety);
     match ended {
         StageEnd::NotConverged(cause) => StageEnd::Completed(EndReason::PathLost {
             cause: cause.failure.to_string(),

@@ -15,9 +15,6 @@ use crate::run::state::State;
 /// A particle moves when its displacement exceeds this share of the largest \[-\].
 const MOVING: f64 = 0.1;
 
-/// A moving share of the mass below this is called local \[-\].
-const LOCAL: f64 = 0.02;
-
 /// Cells over the height of a slope below which its factor of safety is not to be trusted on one mesh.
 const ENOUGH: f64 = 10.0;
 
@@ -85,14 +82,18 @@ pub(super) fn remarks(safety: &SafetySummary, reduction: &StrengthReduction) -> 
         )),
         _ => {}
     }
-    if let Some(share) = safety.moving_mass.filter(|&share| share < LOCAL) {
-        remarks.push(format!(
-            "only {} % of the mass moves at failure: this is a local failure; leave its material \
-             out with `materials`, or give it a little cohesion, to find that of the whole slope",
-            short(100.0 * share)
-        ));
-    }
+    remarks.extend(local(safety));
     remarks
+}
+
+/// A remark where hardly any of the mass moves at failure.
+pub(super) fn local(safety: &SafetySummary) -> Option<String> {
+    let share = safety.moving_mass.filter(|_| safety.may_be_local())?;
+    Some(format!(
+        "only {} % of the mass moves at failure: this may be a local failure; leave its material \
+         out with `materials`, or give it a little cohesion, to find that of the whole slope",
+        short(100.0 * share)
+    ))
 }
 
 /// The share of the mass that moves by more than a tenth of the largest displacement \[-\]; of the
