@@ -20,8 +20,6 @@ use crate::workspace::Workspace;
 pub struct ContinuationSettings {
     /// First change of the load factor, as a share of it \[-\].
     pub first_change: f64,
-    /// Changes of the load factor that begin a path, before steps of work: so many that do work.
-    pub direct_steps: usize,
     /// Most steps in all.
     pub most_steps: usize,
     /// How often a step may be halved in succession.
@@ -38,7 +36,6 @@ impl ContinuationSettings {
     pub fn new(newton: NewtonSettings) -> Self {
         Self {
             first_change: 0.05,
-            direct_steps: 2,
             most_steps: 200,
             halvings: 8,
             leaps: 4,
@@ -54,8 +51,8 @@ pub struct ContinuationState<const D: usize> {
     pub factor: f64,
     /// Change of the load factor in the next step, while such steps are made, as a share of it \[-\].
     pub change: f64,
-    /// Steps that did work so far.
-    pub working: usize,
+    /// Whether steps are steps of work: a change of the load factor failed after soil had yielded.
+    pub is_by_work: bool,
     /// Steps so far.
     pub steps: usize,
     /// Gross work of the external force since the beginning \[force·length\].
@@ -79,24 +76,48 @@ pub struct LastStep<const D: usize> {
     pub dissipated: f64,
 }
 
+impl<const D: usize> LastStep<D> {
+    /// An accepted step, if it did work in soil that yields.
+    pub fn of(step: &StepReport, forces: &NodalForces<D>) -> Option<Self> {
+        does_work(step).then(|| Self::of_path(step, forces))
+    }
+
+    /// An accepted step of a path.
+    fn of_path(step: &StepReport, forces: &NodalForces<D>) -> Self {
+        let work = step.gross_work;
+        Self {
+            u: forces.u.clone(),
+            change: step.to - step.from,
+            work,
+            dissipated: (step.work.as_ref()).map_or(0.0, |own| own.dissipated_share(work)),
+        }
+    }
+}
+
+/// Whether a step did work in soil that yields.
+fn does_work(step: &StepReport) -> bool {
+    let of_stress = step.work.as_ref().map_or(0.0, |work| work.whole);
+    step.external_work > 0.0 && of_stress > 0.0 && step.plastic_share > 0.0
+}
+
 impl<const D: usize> ContinuationState<D> {
-    /// The beginning of a path at a load factor.
-    pub fn start(factor: f64, settings: &ContinuationSettings) -> Self {
+    /// The beginning of a path at a load factor, after a step that came there.
+    pub fn start(factor: f64, last: Option<LastStep<D>>, settings: &ContinuationSettings) -> Self {
         Self {
             factor,
             change: settings.first_change,
-            working: 0,
+            is_by_work: false,
             steps: 0,
             work: 0.0,
-            size: 0.0,
-            last: None,
+            size: last.as_ref().map_or(0.0, |last| last.work),
+            last,
         }
     }
 
     /// What the next step is to reach.
     fn target(&self, settings: &ContinuationSettings) -> Target<D> {
         match &self.last {
-            Some(last) if self.working >= settings.direct_steps => {
+            Some(last) if self.is_by_work => {
                 let by = self.size / last.work;
                 let most = settings.first_change * self.factor.abs();
                 let u = last.u.iter().map(|u| u.map(|u| by * u)).collect();
@@ -127,26 +148,18 @@ impl<const D: usize> ContinuationState<D> {
         self.steps += 1;
         self.work += work;
         self.factor = step.to;
-        let of_stress = step.work.as_ref().map_or(0.0, |work| work.whole);
-        let does_work = step.external_work > 0.0 && of_stress > 0.0 && step.plastic_share > 0.0;
         match target {
             Target::Work { .. } => self.size = work * growth(step.iterations),
-            Target::Factor { .. } if !does_work => {
+            Target::Factor { .. } if !does_work(step) => {
                 self.change = (2.0 * self.change).min(LARGEST_CHANGE);
                 return;
             }
             Target::Factor { .. } => {
-                self.working += 1;
                 self.size = work;
                 self.change = self.change.min(settings.first_change);
             }
         }
-        self.last = Some(LastStep {
-            u: forces.u.clone(),
-            change: step.to - step.from,
-            work,
-            dissipated: (step.work.as_ref()).map_or(0.0, |own| own.dissipated_share(work)),
-        });
+        self.last = Some(LastStep::of_path(step, forces));
     }
 
     /// The next step after so many failures in succession, the first of them with `first` \[force·length\]: half of the one that
@@ -157,10 +170,8 @@ impl<const D: usize> ContinuationState<D> {
             None | Some(0) => 0.5 * self.size,
             Some(leaps) => first * 2.0_f64.powi(leaps as i32),
         };
-        // A limit that is nearer than the first change is approached by steps of work at once.
-        if self.last.is_some() {
-            self.working = settings.direct_steps;
-        }
+        // Steps of work alone go past a limit. Far from it corners that yield by themselves do most of the work.
+        self.is_by_work |= self.last.is_some();
     }
 
     /// How often the next step may fail in succession.
@@ -274,7 +285,7 @@ mod tests {
             leaps: 2,
             ..ContinuationSettings::new(NewtonSettings::default())
         };
-        let mut state: ContinuationState<2> = ContinuationState::start(1.0, &settings);
+        let mut state: ContinuationState<2> = ContinuationState::start(1.0, None, &settings);
         assert_eq!(state.most_failures(&settings), 2);
         state.size = 8.0;
         state.last = Some(LastStep {
@@ -292,6 +303,6 @@ mod tests {
             [4.0_f64, 2.0, 16.0, 32.0].map(f64::to_bits)
         );
         assert_eq!(state.most_failures(&settings), 4);
-        assert_eq!(state.working, settings.direct_steps);
+        assert!(state.is_by_work);
     }
 }

@@ -24,7 +24,7 @@ pub use crate::settings::LoadPath;
 pub use crate::settings::NewtonSettings;
 pub use crate::workspace::Workspace;
 pub use body::Body;
-pub use continuation::{ContinuationSettings, ContinuationState, follow};
+pub use continuation::{ContinuationSettings, ContinuationState, LastStep, follow};
 pub use free_field::FreeField;
 pub use march::{
     Accepted, MarchReport, MarchSettings, MarchState, Observer, Outcome, Pace, march, march_from,

@@ -7,7 +7,7 @@ use igimp_assembly::{AssemblyError, Method, StepConditions};
 
 use crate::LoadPath;
 use crate::body::Body;
-use crate::newton::step;
+use crate::newton::step_of_march;
 use crate::report::{NodalForces, PhaseTimes, StepError, StepFailure, StepReport};
 use crate::settings::NewtonSettings;
 use crate::workspace::Workspace;
@@ -92,6 +92,8 @@ pub struct MarchSettings {
     pub growth: f64,
     /// How steps that take time are chosen; none where their size is that of [`Self::steps`].
     pub pace: Option<Pace>,
+    /// Whether a step is refused in which the body moves as a mechanism, so that it ends before one: a path of equilibria goes on.
+    pub is_short_of_mechanism: bool,
     /// The iteration of each step.
     pub newton: NewtonSettings,
 }
@@ -115,6 +117,7 @@ impl MarchSettings {
             cut_factor: 0.5,
             growth: 1.5,
             pace: None,
+            is_short_of_mechanism: false,
             newton: NewtonSettings::default(),
         }
     }
@@ -216,15 +219,9 @@ pub fn march_from<const D: usize>(
         stride.bound(&mut state, load_path.longest_step(at));
         let to = stride.next(at, state.size);
         let result = conditions_at(load_path, at, to).and_then(|conditions| {
-            step(
-                body,
-                method,
-                &conditions,
-                (at, to),
-                &settings.newton,
-                workspace,
-            )
-            .map(|(step, forces)| (conditions, step, forces))
+            let way = (at, to, settings.is_short_of_mechanism);
+            step_of_march(body, method, &conditions, way, &settings.newton, workspace)
+                .map(|(step, forces)| (conditions, step, forces))
         });
         match result {
             Ok((conditions, step, forces)) => {

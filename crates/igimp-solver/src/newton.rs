@@ -47,7 +47,20 @@ pub fn step<const D: usize>(
     settings: &NewtonSettings,
     workspace: &mut Workspace<D>,
 ) -> Result<(StepReport, NodalForces<D>), StepError> {
-    let factors = (from, to);
+    let way = (from, to, false);
+    step_of_march(body, method, conditions, way, settings, workspace)
+}
+
+/// The same, refused where the body moves as a mechanism in it if that is asked for.
+pub(crate) fn step_of_march<const D: usize>(
+    body: &mut Body<D>,
+    method: &Method,
+    conditions: &StepConditions<D>,
+    way: (f64, f64, bool),
+    settings: &NewtonSettings,
+    workspace: &mut Workspace<D>,
+) -> Result<(StepReport, NodalForces<D>), StepError> {
+    let factors = (way.0, way.1);
     let of_column = |particles: Particles<D>, own: &StepConditions<D>| {
         let mut column = Body::new(particles);
         let mut workspace = Workspace::new(SolverKind::Auto.build());
@@ -55,7 +68,7 @@ pub fn step<const D: usize>(
             &mut column,
             method,
             own,
-            (0.0, 1.0),
+            (0.0, 1.0, false),
             settings,
             &mut workspace,
         )
@@ -63,9 +76,9 @@ pub fn step<const D: usize>(
         .map_err(|error| *error.failure)
     };
     match free_field::go_ahead(&body.free_fields, method, conditions, factors, &of_column)? {
-        None => step_of_body(body, method, conditions, factors, settings, workspace),
+        None => step_of_body(body, method, conditions, way, settings, workspace),
         Some((free_fields, conditions)) => {
-            let done = step_of_body(body, method, &conditions, factors, settings, workspace)?;
+            let done = step_of_body(body, method, &conditions, way, settings, workspace)?;
             body.free_fields = free_fields;
             Ok(done)
         }
@@ -77,7 +90,7 @@ fn step_of_body<const D: usize>(
     body: &mut Body<D>,
     method: &Method,
     conditions: &StepConditions<D>,
-    (from, to): (f64, f64),
+    (from, to, is_short_of_mechanism): (f64, f64, bool),
     settings: &NewtonSettings,
     workspace: &mut Workspace<D>,
 ) -> Result<(StepReport, NodalForces<D>), StepError> {
@@ -90,8 +103,8 @@ fn step_of_body<const D: usize>(
         ghost_penalty: 0.0,
         is_guarded: false,
         on_path: None,
-        measures_work: false,
-        is_short_of_mechanism: false,
+        measures_work: is_short_of_mechanism,
+        is_short_of_mechanism,
     };
     let mut history = ResidualHistory::default();
     let failure = match equilibrium(&attempt, body, workspace, &mut history) {

@@ -1,4 +1,4 @@
-//! GOAL: what yields first is not taken for a mechanism, and where one begins is seen.
+//! GOAL: what yields first is not taken for a mechanism, where one begins is seen, and a path goes past what yields before.
 //! CASE: a slope of 20 m in weak rock, 1:2, by the criterion of Hoek and Brown, whose first particles yield far below its strength.
 //! ORACLE: the search by trials, which asks for equilibrium and for no mechanism; and rock that is lighter is safer.
 
@@ -140,4 +140,120 @@ fn a_slope_that_stands_barely_has_one_factor() {
         .iter()
         .fold(f64::INFINITY, |highest, own| highest.min(own.1));
     assert!(most < 1.001 * highest, "{found:?}");
+}
+
+/// A slope of 4 m, 1:1, whose toe and crest stand on nodes, with a stage after its weight.
+fn on_nodes(soil: &str, extra: &str, stage: &str) -> String {
+    format!(
+        r#"
+igimp = 1
+[case]
+title = "slope on nodes"
+[grid]
+domain = {{ x = ["0 m", "18 m"], y = ["0 m", "8 m"] }}
+{extra}
+[[bodies]]
+name = "slope"
+material = "soil"
+polygon = [["0 m","0 m"], ["18 m","0 m"], ["18 m","2 m"], ["10 m","2 m"], ["6 m","6 m"], ["0 m","6 m"]]
+[materials.soil]
+model = "mohr-coulomb"
+unit_weight = "20 kN/m3"
+young = "50 MPa"
+{soil}
+{stage}
+[output]
+report = false
+figures = []
+paraview = {{ every = "never" }}
+"#
+    )
+}
+
+/// A search after the weight.
+fn searched(soil: &str, extra: &str, stages: &str) -> [f64; 2] {
+    let text = on_nodes(soil, extra, stages);
+    let file = CaseFile::parse("nodes.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let run = in_memory(file.case()).unwrap();
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let found = run.summary.stages[1].safety.as_ref().unwrap();
+    [found.stable.unwrap(), found.failed.unwrap_or(f64::NAN)]
+}
+
+/// GOAL: a path goes past a corner of the toe that yields by itself. Steps of work went into the corner alone, and the path was lost
+/// at F = 1.119.
+/// ORACLE: the factor of safety does not depend on Poisson's ratio; with others the corner yields otherwise.
+#[test]
+fn a_corner_that_yields_by_itself_does_not_end_a_path() {
+    let stages = "[[stages]]\nname = \"weight\"\ntype = \"gravity\"\nsteps = 5\n\
+                  [[stages]]\nname = \"safety\"\ntype = \"strength-reduction\"\n";
+    let cells = "cell = \"0.4 m\"\nsmall_cuts = { below = 0 }\n";
+    let found = [0.2, 0.28, 0.3, 0.45].map(|poisson| {
+        let soil = format!(
+            "poisson = {poisson}\ncohesion = \"6 kPa\"\nfriction = \"35 deg\"\ndilation = \"25 deg\"\n"
+        );
+        searched(&soil, cells, stages)
+    });
+    println!("{found:?}");
+    for [stable, failed] in found {
+        assert!((stable / found[0][0] - 1.0).abs() < 3e-3, "{found:?}");
+        assert!(failed < 1.01 * stable, "{found:?}");
+    }
+}
+
+/// GOAL: where gravity is raised anew, undrained soil drains under its weight if it did so before.
+/// ORACLE: the search that goes on from the weight.
+#[test]
+fn soil_drains_under_a_weight_that_is_raised_anew() {
+    let soil = "poisson = 0.3\ncohesion = \"6 kPa\"\nfriction = \"25 deg\"\ndilation = \"0 deg\"\ndrainage = \"undrained\"\n\
+                saturated_unit_weight = \"20 kN/m3\"\n";
+    let stages = |path: &str| {
+        format!(
+            "[[water]]\nname = \"table\"\nlevel = \"2 m\"\n\
+             [[stages]]\nname = \"weight\"\ntype = \"gravity\"\nsteps = 5\ndrained = true\n\
+             [[stages]]\nname = \"safety\"\ntype = \"strength-reduction\"\npath = \"{path}\"\n"
+        )
+    };
+    let [reduced, raised] =
+        ["reduce", "gravity"].map(|path| searched(soil, "cell = \"0.5 m\"\n", &stages(path))[0]);
+    println!("{reduced} {raised}");
+    assert!((raised / reduced - 1.0).abs() < 0.01, "{reduced} {raised}");
+}
+
+/// GOAL: a limit load does not depend on the steps that it is divided into. They went far past the beginning of the mechanism, or lost
+/// the path: 0.277 to 0.281 of the weight, and 5.19 to 5.38 times the pressure.
+/// ORACLE: finer steps, and another load at the end of the stage.
+#[test]
+fn a_limit_load_does_not_depend_on_its_steps() {
+    let limit = |(push, dilation): (&str, f64), (most, steps): (f64, usize)| {
+        let soil = format!(
+            "poisson = 0.3\ncohesion = \"8 kPa\"\nfriction = \"25 deg\"\ndilation = \"{dilation} deg\"\n"
+        );
+        let stages = format!(
+            "[[loads]]\nname = \"crest\"\ntype = \"pressure\"\nfrom = [\"2 m\", \"6 m\"]\nto = [\"6 m\", \"6 m\"]\npressure = \"10 kPa\"\n\
+             [[stages]]\nname = \"weight\"\ntype = \"gravity\"\nsteps = 5\n\
+             [[stages]]\nname = \"push\"\n{push} = {most}\nsteps = {steps}\ngeometry = \"given\"\n\
+             stop_when = {{ no_equilibrium = true }}\n"
+        );
+        let text = on_nodes(&soil, "cell = \"0.5 m\"\n", &stages);
+        let file = CaseFile::parse("push.toml", &text, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let run = in_memory(file.case()).unwrap();
+        let stage = &run.summary.stages[1];
+        assert_eq!(stage.code, "path-ended", "{}", stage.reason);
+        let path = stage.path.as_ref().unwrap();
+        path.limit.unwrap().factor
+    };
+    let aside = "type = \"gravity\"\nhorizontal";
+    let down = "type = \"load\"\nload = \"crest\"\nfactor";
+    let cases = [
+        ((aside, 25.0), [(1.0, 5), (1.0, 40), (0.4, 40), (10.0, 10)]),
+        ((down, 0.0), [(40.0, 5), (40.0, 20), (40.0, 40), (6.0, 6)]),
+    ];
+    for (case, ways) in cases {
+        let found = ways.map(|way| limit(case, way));
+        println!("{found:?}");
+        let least = found.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = found.iter().copied().fold(0.0, f64::max);
+        assert!(most / least < 1.005, "{found:?}");
+    }
 }

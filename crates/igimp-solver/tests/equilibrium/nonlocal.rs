@@ -213,7 +213,7 @@ impl Layer {
             StepConditions::new(self.grid(), self.constraints(None), loads, laws.clone())
         };
         let settings = ContinuationSettings::new(NewtonSettings::default());
-        let mut state = ContinuationState::start(0.9, &settings);
+        let mut state = ContinuationState::start(0.9, None, &settings);
         let mut body = self.body();
         let mut path: Vec<Point> = Vec::new();
         let failure = follow(

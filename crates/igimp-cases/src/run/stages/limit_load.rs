@@ -9,12 +9,13 @@ use igimp_model::{RigidMove, Stage, StageKind};
 use igimp_results::ending::{EndReason, PathEnd};
 use igimp_results::summary::{PathPoint, PathSummary, StageSummary};
 use igimp_solver::{
-    Accepted, ContinuationSettings, ContinuationState, MarchSettings, Observer, StepError, follow,
+    Accepted, ContinuationSettings, ContinuationState, LastStep, MarchSettings, Observer,
+    StepError, follow,
 };
 use igimp_text::short;
 
 use crate::driven::Driven;
-use crate::error::CaseError;
+use crate::error::{CaseError, on_one_line};
 use crate::limit::{self, Course};
 use crate::run::model::displacement_scale;
 use crate::run::output::moment::Moment;
@@ -25,17 +26,21 @@ use crate::run::{Event, rigid};
 /// The first change of the load over the smallest one at which the march found no equilibrium \[-\].
 const FIRST_CHANGE: f64 = 0.5;
 
-/// Whether a stage that found no equilibrium goes on along its path.
-pub(crate) fn is_sought(stage: &Stage, summary: &StageSummary, error: &StepError) -> bool {
+/// Whether a stage goes on along its path of equilibria where its march finds none, or moves as a mechanism.
+pub(crate) fn is_sought(stage: &Stage) -> bool {
     stage.stop_when.no_equilibrium
         && stage.geometry == Geometry::Given
+        && stage.consolidation.is_none()
         && match &stage.kind {
             StageKind::Gravity { .. } | StageKind::Load { .. } => true,
             StageKind::Rigid(moves) => !moves.iter().any(RigidMove::is_moved),
             _ => false,
         }
-        && summary.reached > 0.0
-        && error.failure.is_want_of_equilibrium()
+}
+
+/// Whether the path begins where a march ended.
+pub(crate) fn begins(summary: &StageSummary, error: &StepError) -> bool {
+    summary.reached > 0.0 && error.failure.is_want_of_equilibrium()
 }
 
 /// The factor of the control that a stage drives, or of the forces on rigid bodies, the share of them that was `reached`
@@ -69,11 +74,12 @@ fn continuation_settings(
     }
 }
 
-/// Follows the path of a stage on from the last equilibrium of its march, from controls to controls.
+/// Follows the path of a stage on from the last equilibrium of its march and the step that came there, from controls to controls.
 pub(crate) fn follow_on<const D: usize>(
     session: &mut Session<'_, D>,
     state: &mut State<D>,
     (number, from, to): (usize, &Controls, &Controls),
+    last: Option<LastStep<D>>,
     summary: &mut StageSummary,
 ) -> Result<StageEnd, CaseError> {
     let model = session.model;
@@ -85,7 +91,7 @@ pub(crate) fn follow_on<const D: usize>(
         model.conditions_on(grid, (&at(before), &at(after)), 0.0)
     };
     let settings = continuation_settings(model.march_settings(stage.steps), stage, summary);
-    let mut continuation = ContinuationState::start(summary.reached, &settings);
+    let mut continuation = ContinuationState::start(summary.reached, last, &settings);
     let mut workspace = session.workspace();
     let (driven, course) = way(stage, from, to);
     let begins = PathPoint {
@@ -131,6 +137,13 @@ pub(crate) fn follow_on<const D: usize>(
         (None, Some(error)) => StageEnd::NotConverged(error),
         (None, None) => StageEnd::Stopped(EndReason::StepsOfPathRanOut),
     };
+    if let StageEnd::NotConverged(error) = &ended {
+        let cause = on_one_line(&*error.failure);
+        session.warn_of_stage(
+            number,
+            &format!("the path of equilibria was lost: {cause}; the load that it reached stands, and may not be the limit"),
+        );
+    }
     let path = PathSummary {
         end,
         from: factor(driven, from, 0.0),

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use igimp_model::{Case, Dynamic, RigidDrive, Stage, StageKind};
 use igimp_results::ending::EndReason;
 use igimp_results::summary::StageSummary;
+use igimp_solver::LastStep;
 
 use super::{limit_load, rigid_begin};
 use crate::error::CaseError;
@@ -104,6 +105,9 @@ pub(crate) fn release<const D: usize>(
     if let Some(own) = consolidation {
         settings = flow::steps(model.case, own, settings, model.smallest_side()?);
     }
+    let seeks_limit = limit_load::is_sought(stage);
+    settings.is_short_of_mechanism = seeks_limit;
+    let mut last = None;
     let path = StagePath {
         flow: consolidation,
         held,
@@ -117,6 +121,9 @@ pub(crate) fn release<const D: usize>(
         summary,
         &mut |session, summary, taken| {
             session.record(&taken.moment(number, summary.steps))?;
+            if seeks_limit {
+                last = LastStep::of(taken.accepted.report, taken.accepted.forces);
+            }
             let end = reason_to_stop(session, stage, resistance, taken);
             resistance = taken.resistance;
             let resumption = Resumption {
@@ -135,10 +142,8 @@ pub(crate) fn release<const D: usize>(
         },
     )?;
     match &ended {
-        StageEnd::NotConverged(error)
-            if consolidation.is_none() && limit_load::is_sought(stage, summary, error) =>
-        {
-            limit_load::follow_on(session, state, (number, &from, &to), summary)
+        StageEnd::NotConverged(error) if seeks_limit && limit_load::begins(summary, error) => {
+            limit_load::follow_on(session, state, (number, &from, &to), last, summary)
         }
         _ => Ok(ended),
     }

@@ -11,7 +11,7 @@ mod trial;
 use std::sync::Arc;
 
 use igimp_assembly::Geometry;
-use igimp_model::{Case, ReductionPath, SearchMethod, Stage, StrengthReduction};
+use igimp_model::{Case, ReductionPath, SearchMethod, Stage, StageKind, StrengthReduction};
 use igimp_results::ending::EndReason;
 use igimp_results::summary::{SafetySummary, StageSummary, TrialSummary};
 use igimp_solver::Body;
@@ -19,7 +19,7 @@ use igimp_text::short;
 
 use self::criterion::default_limit;
 use self::interval::next_factor;
-use self::remarks::{few_cells, moving_mass, remarks, tension};
+use self::remarks::{few_cells, holds_its_weight, moving_mass, remarks, tension};
 use super::loading::begin;
 use crate::error::CaseError;
 use crate::run::Event;
@@ -89,6 +89,9 @@ fn by_trials<const D: usize>(
     if trials.made.is_empty() && reduction.path == ReductionPath::Reduce {
         // Displacements of trials count from the start of the search, and so does the first row.
         begin(session, &trials.base, number)?;
+    }
+    if let Some(text) = holds_its_weight(session.model.case, number, reduction) {
+        session.warn_of_stage(number, &text);
     }
     let ended = trials.search(session, summary);
     summary.safety = Some(trials.finish(session));
@@ -452,6 +455,18 @@ fn undeformed_or_found<const D: usize>(
     };
     base.body.particles.reset_displacements();
     Ok(base)
+}
+
+/// Whether all soil drained while its weight came on, of the stages that lead to a search: under gravity, or as K₀ gave its stress.
+fn weight_drains<const D: usize>(case: &Case<D>, number: usize) -> bool {
+    let stages = &case.stages;
+    let mut before = std::iter::successors(Some(number), |&own| stages[own].start_from).skip(1);
+    let drains = before.find_map(|own| match stages[own].kind {
+        StageKind::Gravity { .. } => Some(stages[own].drained),
+        StageKind::K0 => Some(true),
+        _ => None,
+    });
+    drains.unwrap_or(stages[number].drained)
 }
 
 /// Names of the materials that a search reduces, or of the others.

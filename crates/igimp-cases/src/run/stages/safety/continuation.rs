@@ -15,7 +15,7 @@ use igimp_solver::{
 use igimp_text::short;
 
 use super::shares::{LastStep, shares};
-use super::{names, undeformed_or_found};
+use super::{names, undeformed_or_found, weight_drains};
 use crate::error::{CaseError, on_one_line};
 use crate::limit::{self, Course};
 use crate::run::Event;
@@ -63,6 +63,7 @@ pub(super) fn search<const D: usize>(
             stage,
             reduction,
             found: &state.controls,
+            weight_drains: weight_drains(session.model.case, number),
         };
         let (start, ended) = search.loaded(session, &base, from, summary)?;
         if let Some(StageEnd::Interrupted) = ended {
@@ -106,6 +107,8 @@ struct Search<'a> {
     reduction: &'a StrengthReduction,
     /// Controls of the state that was found.
     found: &'a Controls,
+    /// Whether all soil drains while gravity is raised anew.
+    weight_drains: bool,
 }
 
 /// A path that was followed.
@@ -165,7 +168,8 @@ impl Search<'_> {
             from.srf[material] = factor;
         }
         let model = session.model;
-        let to = self.at(factor);
+        let mut to = self.at(factor);
+        to.drained = self.weight_drains;
         let path = StagePath::of_equilibria(
             (&from, &to),
             model.method(self.stage.geometry),
@@ -225,7 +229,7 @@ impl Search<'_> {
             first_change,
             ..ContinuationSettings::new(model.march_settings(1).newton)
         };
-        let mut continuation = ContinuationState::start(from, &settings);
+        let mut continuation = ContinuationState::start(from, None, &settings);
         let mut workspace = session.workspace();
         let mut watch = Watch::of(self, session, summary, &state.body);
         let method = model.method(self.stage.geometry);

@@ -3,12 +3,12 @@
 use std::collections::HashMap;
 
 use igimp_assembly::Particles;
-use igimp_model::{Case, Strength, StrengthReduction};
+use igimp_model::{Case, Drainage, Material, ReductionPath, Strength, StrengthReduction};
 use igimp_results::fields::length;
 use igimp_results::summary::SafetySummary;
 use igimp_text::short;
 
-use super::{at_full_strength, stands_nowhere};
+use super::{at_full_strength, stands_nowhere, weight_drains};
 use crate::run::output::moment::largest_displacement;
 use crate::run::state::State;
 
@@ -84,6 +84,23 @@ pub(super) fn remarks(safety: &SafetySummary, reduction: &StrengthReduction) -> 
     }
     remarks.extend(local(safety));
     remarks
+}
+
+/// A remark where trials raise gravity on soil that holds its water, though its weight came while all soil drained.
+pub(super) fn holds_its_weight<const D: usize>(
+    case: &Case<D>,
+    number: usize,
+    reduction: &StrengthReduction,
+) -> Option<String> {
+    let by_weight = reduction.path == ReductionPath::Gravity && !case.stages[number].drained;
+    let holds = |own: &Material| matches!(own.drainage, Drainage::Undrained { .. });
+    let of_soil = by_weight && weight_drains(case, number) && case.materials.iter().any(holds);
+    of_soil.then(|| {
+        "trials raise gravity on soil that holds its water, though its weight came while all soil drained: the weight is carried \
+         by water; search = \"continuation\" lets the soil drain under its weight, and drained = true in this stage tells the \
+         drained factor"
+            .to_owned()
+    })
 }
 
 /// A remark where hardly any of the mass moves at failure.
