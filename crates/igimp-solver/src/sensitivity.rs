@@ -21,7 +21,7 @@ const REGULARISED: [f64; 5] = [1e-4, 1e-3, 1e-2, 0.1, 1.0];
 const OF_ANSWERS: f64 = 1e-6;
 
 /// Most factors that a kinematic one is looked for among, the change at which it is found, and the least share of the work
-/// in plastic flow with which the search goes on \[-\].
+/// in plastic flow, and of the factor at the beginning, with which the search goes on \[-\].
 const MOST_FACTORS: usize = 60;
 const SAME_FACTOR: f64 = 1e-8;
 const FEWEST: f64 = 0.05;
@@ -110,6 +110,10 @@ impl<const D: usize> Increment<'_, D> {
                 return Ok(None);
             }
             factor *= ratio;
+            // Soil that misses its volume at every factor is followed to none.
+            if !(FEWEST..1.0 / FEWEST).contains(&(factor / from)) {
+                return Ok(None);
+            }
             if (ratio - 1.0).abs() <= SAME_FACTOR {
                 let missed = flow.missed / work;
                 return Ok(Some(KinematicFactor { factor, missed }));
