@@ -788,3 +788,25 @@ fn motions_that_do_little_are_told() {
     let none = warnings("0", "\"20 kN/m3\"");
     assert!(!none.contains(late) && !none.contains(massless), "{none}");
 }
+
+/// GOAL: a record of velocity that does not begin at zero is told, as its first value is left out. ORACLE: the words; records that begin at
+/// zero, and of acceleration.
+#[test]
+fn a_record_of_velocity_that_begins_moving_is_told() {
+    let warnings = |unit: &str, first: &str| {
+        let stage = format!(
+            "duration = \"0.5 s\"\nground_motion = {{ unit = \"{unit}\", time = [\"0 s\", \"0.2 s\", \"0.4 s\"], \
+             values = [{first}, 10, -10] }}"
+        );
+        CaseFile::parse("layer.toml", &layer(&stage), &[])
+            .unwrap()
+            .warnings()
+    };
+    let said = "the record begins with a velocity of 0.1 m/s, which is left out";
+    let all = warnings("cm/s", "10");
+    assert!(all.contains(said), "{all}");
+    for (unit, first) in [("cm/s", "0"), ("cm/s", "0.09"), ("cm/s2", "10")] {
+        let none = warnings(unit, first);
+        assert!(!none.contains("is left out"), "{none}");
+    }
+}
