@@ -244,7 +244,7 @@ impl<const D: usize> System<'_, D> {
 }
 
 /// The double contraction a : b.
-fn contracted(a: &Tensor, b: &Tensor) -> f64 {
+pub(crate) fn contracted(a: &Tensor, b: &Tensor) -> f64 {
     let pairs = std::iter::zip(a.as_flattened(), b.as_flattened());
     pairs.map(|(a, b)| a * b).sum()
 }

@@ -4,6 +4,7 @@ use igimp_material::{MaterialError, Tensor, logarithmic_strain, principal_values
 use rayon::prelude::*;
 
 use crate::body::particles::CHUNK;
+use crate::energy::contracted;
 use crate::equations::kinematics::Gradients;
 use crate::equations::system::System;
 use crate::equations::trial::Trial;
@@ -161,15 +162,4 @@ impl<const D: usize> System<'_, D> {
         let volume = self.reference_volume(particle);
         Ok([&strain, &elastic].map(|strain| volume * contracted(&own.tau, strain)))
     }
-}
-
-/// The double contraction a : b.
-fn contracted(a: &Tensor, b: &Tensor) -> f64 {
-    let mut sum = 0.0;
-    for i in 0..3 {
-        for j in 0..3 {
-            sum += a[i][j] * b[i][j];
-        }
-    }
-    sum
 }

@@ -243,7 +243,8 @@ pub fn march_from<const D: usize>(
             Err(error) => {
                 observer.on_cut(&error);
                 report.failures.push(error.clone());
-                if !stride.cut(&mut state, to) || error.failure.leaves_grid() {
+                let share = error.failure.share_of_next();
+                if !stride.cut(&mut state, to, share) || error.failure.leaves_grid() {
                     report.outcome = Outcome::StepTooSmall {
                         last_converged: at,
                         cause: error,
@@ -312,15 +313,21 @@ impl<'a> Stride<'a> {
         }
     }
 
-    /// A step to a load factor failed: the next one is shorter; whether there is one.
-    fn cut(&mut self, state: &mut MarchState, to: f64) -> bool {
+    /// A step to a load factor failed: the next one is shorter, by a `share` where the failure tells it; whether there is one.
+    fn cut(&mut self, state: &mut MarchState, to: f64, share: Option<f64>) -> bool {
         // The last step may have been shorter than its size, so as to end on 1.
         let tried = if self.settings.pace.is_some() {
             to - state.at
         } else {
             1.0 - state.at
         };
-        state.size = self.settings.cut_factor * state.size.min(tried);
+        let cut_factor = self.settings.cut_factor;
+        let share = share.map_or(cut_factor, |share| share.min(cut_factor));
+        state.size = share * state.size.min(tried);
+        if share < cut_factor {
+            // What a step resolves is known: it is no sign of want of equilibrium.
+            self.smallest = self.smallest.min(self.least * state.size);
+        }
         state.successes = 0;
         self.cuts += 1;
         let next = self.next(state.at, state.size);

@@ -322,7 +322,7 @@ fn equilibrium<const D: usize>(
         factor_in_doubt,
         linear,
         times,
-        ..found.report(attempt)?
+        ..found.report(attempt, body)?
     };
     let changes = found.changes()?;
     let (forces, water) = changes.accept(body, method, &stencils, trial);
@@ -353,7 +353,7 @@ impl<const D: usize> Found<'_, D> {
     ///
     /// # Errors
     /// [`StepFailure::TooLong`], [`StepFailure::Thrown`], [`StepFailure::MechanismAtOnce`], and those of its energy and its work.
-    fn report(&self, attempt: &Attempt<'_, D>) -> Result<StepReport, StepFailure> {
+    fn report(&self, attempt: &Attempt<'_, D>, body: &Body<D>) -> Result<StepReport, StepFailure> {
         let Self {
             system, trial, u, ..
         } = self;
@@ -381,7 +381,7 @@ impl<const D: usize> Found<'_, D> {
             drag_share: system.drag_share(u),
             work,
             duration: attempt.conditions.duration(),
-            pace: pace_after(system, trial, u, self.iterations)?,
+            pace: pace_after(system, (trial, u), body, self.iterations)?,
             energy: system.energy(trial, u)?,
             water: None,
             external_work: system.work_of_loads(u),
@@ -476,19 +476,19 @@ fn start<const D: usize>(
 /// [`StepFailure::TooLong`] for a step that has to resolve the change of motion and does not.
 fn pace_after<const D: usize>(
     system: &System<'_, D>,
-    trial: &Trial<D>,
-    u: &[[f64; D]],
+    (trial, u): (&Trial<D>, &[[f64; D]]),
+    body: &Body<D>,
     iterations: usize,
 ) -> Result<f64, StepFailure> {
-    let (pace, is_too_long) = pace::after(system, trial, u, iterations);
+    let pace = pace::after(system, (trial, u), body, iterations);
     let conditions = system.conditions();
     let of_motion = conditions.time.is_some_and(|time| time.must_resolve);
     let of_flow = (conditions.flow.as_ref()).is_some_and(|flow| flow.must_resolve);
     let duration = conditions.duration();
-    if is_too_long && (of_motion || of_flow) {
-        return Err(StepFailure::TooLong { duration });
+    match pace.again {
+        Some(share) if of_motion || of_flow => Err(StepFailure::TooLong { duration, share }),
+        _ => Ok(pace.next),
     }
-    Ok(pace)
 }
 
 /// Share of particles that returned to the yield surface \[-\].

@@ -86,6 +86,8 @@ pub enum StepFailure {
     TooLong {
         /// Duration of the step \[time\].
         duration: f64,
+        /// How long it may be, as a share of that \[-\].
+        share: f64,
     },
     /// Converged, but the body moves as a mechanism in a step that hides where that begins.
     #[error(
@@ -187,6 +189,14 @@ impl StepFailure {
     /// Whether a linear system had no solution: a node without soil that holds it, or soil that has lost its stiffness.
     pub fn is_singular(&self) -> bool {
         matches!(self, Self::Linear(error) if error.is_singular())
+    }
+
+    /// How long a step may be that is made again, as a share of this one, where the failure tells \[-\].
+    pub(crate) fn share_of_next(&self) -> Option<f64> {
+        match self {
+            Self::TooLong { share, .. } => Some(*share),
+            _ => None,
+        }
     }
 
     /// Whether something was to be carried off the grid: a smaller step only puts that off.

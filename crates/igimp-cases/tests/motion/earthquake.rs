@@ -788,3 +788,52 @@ fn motions_that_do_little_are_told() {
     let none = warnings("0", "\"20 kN/m3\"");
     assert!(!none.contains(late) && !none.contains(massless), "{none}");
 }
+
+/// GOAL: a record of velocity that does not begin at zero is told, as its first value is left out. ORACLE: the words; records that begin at
+/// zero, and of acceleration.
+#[test]
+fn a_record_of_velocity_that_begins_moving_is_told() {
+    let warnings = |unit: &str, first: &str| {
+        let stage = format!(
+            "duration = \"0.5 s\"\nground_motion = {{ unit = \"{unit}\", time = [\"0 s\", \"0.2 s\", \"0.4 s\"], \
+             values = [{first}, 10, -10] }}"
+        );
+        CaseFile::parse("layer.toml", &layer(&stage), &[])
+            .unwrap()
+            .warnings()
+    };
+    let said = "the record begins with a velocity of 0.1 m/s, which is left out";
+    let all = warnings("cm/s", "10");
+    assert!(all.contains(said), "{all}");
+    for (unit, first) in [("cm/s", "0"), ("cm/s", "0.09"), ("cm/s2", "10")] {
+        let none = warnings(unit, first);
+        assert!(!none.contains("is left out"), "{none}");
+    }
+}
+
+/// GOAL: a motion of round-off is rest for the stage after it. CASE: a level layer that is pushed by next to nothing.
+/// ORACLE: no warning; one where the same layer was pushed.
+#[test]
+fn a_motion_of_round_off_is_rest() {
+    let run = |values: &str| {
+        let stage = format!(
+            "duration = \"0.02 s\"\nsteps = 2\ngeometry = \"given\"\nground_motion = {{ unit = \"g\", time = [\"0 s\", \"0.01 s\", \"0.02 s\"], values = {values} }}"
+        );
+        let text = layer(&stage).replace("\"gravity\"", "\"gravity\"\ngeometry = \"given\"");
+        let (before, after) = text.split_once("[[monitors]]").unwrap();
+        let next =
+            "[[stages]]\nname = \"next\"\ntype = \"gravity\"\nsteps = 1\ngeometry = \"given\"\n";
+        ran(&format!("{before}{next}[[monitors]]{after}")).summary
+    };
+    let told = |values: &str| {
+        let summary = run(values);
+        let most = summary.stages[1].energy.unwrap().most_kinetic;
+        println!("{values}: {most:e} J, {:?}", summary.warnings);
+        let mut warnings = summary.warnings.iter();
+        (most, warnings.any(|own| own.contains("moves as it begins")))
+    };
+    let (most, is_told) = told("[0, 1e-9, 1e-9]");
+    assert!(most > 0.0 && most < 1e-9 && !is_told, "{most:e} {is_told}");
+    let (most, is_told) = told("[0, 0.1, 0.1]");
+    assert!(most > 1e-3 && is_told, "{most:e} {is_told}");
+}

@@ -3,6 +3,7 @@
 #[path = "../common/resuming.rs"]
 mod resuming;
 
+mod blows;
 mod dynamic;
 mod earthquake;
 mod limits;

@@ -192,10 +192,13 @@ impl<const D: usize> Inertia<D> {
     /// Step displacements of nodes that go on as the soil around them moves at the start \[length\]: by the mean of the velocities of
     /// their particles, for those of nodes that few particles reach are in doubt.
     pub(crate) fn predicted(&self) -> Vec<[f64; D]> {
+        self.ways(&self.mean_velocity)
+    }
+
+    /// Displacements of nodes that go on for the duration of the step with these velocities of theirs and of centres of mass \[length\].
+    pub(crate) fn ways(&self, velocity: &[[f64; D]]) -> Vec<[f64; D]> {
         let duration = self.step.duration;
-        let mut u: Vec<_> = (self.mean_velocity.iter())
-            .map(|v| v.map(|v| duration * v))
-            .collect();
+        let mut u: Vec<_> = velocity.iter().map(|v| v.map(|v| duration * v)).collect();
         for (node, arm) in self.with_arms() {
             let way = arm.way(&u[node + 1]);
             u[node] = std::array::from_fn(|axis| u[node][axis] - way[axis]);

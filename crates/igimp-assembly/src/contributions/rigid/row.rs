@@ -185,7 +185,7 @@ impl<const D: usize> Row<D> {
     }
 
     /// The slip of the soil along the tangents by nodal step displacements `u` \[length\].
-    fn slip_at(&self, u: &[[f64; D]]) -> [f64; 2] {
+    pub(super) fn slip_at(&self, u: &[[f64; D]]) -> [f64; 2] {
         let turn = self.turn(u);
         [0, 1].map(|k| {
             let beyond = |(arms, turn): &(&Arms<D>, Turn<D>)| turn.work_beyond(&arms.slip[k]);

@@ -150,6 +150,17 @@ impl<const D: usize> System<'_, D> {
         self.beside.contact.closing(u)
     }
 
+    /// By rigid body, what a step by nodal displacements `u` \[length\] changes of contact: the force by which it grows where body and soil
+    /// come nearer, and its work along the motion that the step begins with (theory, eq. 68c); and friction at knots that slip, and its
+    /// work where it drives what it should hold back (eq. 68d) \[force, force·length\]. Motion that is given counts as none; none in statics.
+    pub fn changes_of_contact(&self, u: &[[f64; D]]) -> Vec<[[f64; 2]; 2]> {
+        let (Some(inertia), Some(free)) = (&self.inertia, self.predicted_motion()) else {
+            return Vec::new();
+        };
+        let next = inertia.ways(&inertia.motion(u).after);
+        self.beside.contact.changes(u, (&free, &next))
+    }
+
     /// The error in time of a step with nodal values `u` in which water flows, as a share of its excess pore pressures \[-\]; none
     /// where none flows.
     pub fn flow_error(&self, trial: &Trial<D>, u: &[[f64; D]]) -> Option<f64> {

@@ -10,6 +10,9 @@ use crate::run::state::State;
 /// Kinetic energy above this share of the largest one is told of \[-\].
 const TOLD: f64 = 1e-3;
 
+/// The fall of a body, in cells, whose energy is that of round-off \[-\]: displacements of statics are known to no more digits.
+const ROUND_OFF: f64 = 1e-10;
+
 /// Takes the motion from a state with which a stage without inertia begins, and tells of it. A search leaves the state as it
 /// finds it, and its trials begin at rest.
 pub(crate) fn still<const D: usize>(
@@ -44,8 +47,18 @@ fn lost<const D: usize>(session: &Session<'_, D>, state: &State<D>) -> Option<St
     let energies = session.summary.stages.iter();
     let energies = energies.filter_map(|stage| stage.energy.as_ref());
     let most = energies.fold(0.0, |most: f64, own| most.max(own.most_kinetic));
-    let share = kinetic_energy(&state.body.particles, &state.body.rigid) / most;
-    (most > 0.0 && share > TOLD).then(|| {
+    let (particles, rigid) = (&state.body.particles, &state.body.rigid);
+    let share = kinetic_energy(particles, rigid) / most;
+    let case = session.model.case;
+    let cell = case
+        .grid
+        .smallest_cell()
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
+    let mass =
+        particles.mass.iter().sum::<f64>() + rigid.iter().map(|own| own.motion.mass).sum::<f64>();
+    let round_off = ROUND_OFF * mass * case.gravity * cell;
+    (most > round_off && share > TOLD).then(|| {
         format!(
             "the body moves as it begins, with {} % of the largest kinetic energy so far",
             short(100.0 * share)

@@ -7,7 +7,7 @@ use igimp_schema::schema::Root;
 use igimp_schema::schema::stages as keys;
 use igimp_schema::text::clip;
 
-use super::ground_motion::{motion, newmark_from, rayleigh, walls};
+use super::ground_motion::{begins_at_rest, motion, newmark_from, rayleigh, walls};
 use super::safety::{materials, reduction_of};
 use crate::build::context::About;
 use crate::build::gravity;
@@ -48,6 +48,7 @@ pub(crate) fn stage<const D: usize>(
                     )
                     .help("let duration be longer, or the record begin earlier");
             }
+            begins_at_rest(stated, &motion, problems);
             Some(motion)
         }
     };

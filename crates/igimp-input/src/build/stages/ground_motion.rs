@@ -8,10 +8,14 @@ use igimp_schema::schema::grid::Side;
 use igimp_schema::schema::ground_motion::{self as keys, BaseKind, MotionAxis, Wall};
 use igimp_schema::schema::stages::{Dynamic, StageForm};
 use igimp_schema::tree::read::At;
+use igimp_text::short;
 
 use super::consolidation::side;
 use crate::build::bodies::reach::meets_side;
 use crate::build::context::About;
+
+/// A record of velocity whose first value is no larger share of its largest one begins at rest \[-\].
+const AT_REST: f64 = 1e-2;
 
 /// What lies beyond the walls.
 pub(super) fn walls<const D: usize>(
@@ -287,6 +291,29 @@ pub(super) fn motion<const D: usize>(
         axis,
         base,
     })
+}
+
+/// Remarks on a record of velocity that does not begin at zero: acceleration is its slope, and knows no first value.
+pub(super) fn begins_at_rest(
+    own: &At<keys::GroundMotion>,
+    motion: &GroundMotion,
+    problems: &mut Problems,
+) {
+    let (Some(first), Some(values)) = (motion.values.first(), &own.values) else {
+        return;
+    };
+    let largest = motion.values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    if !motion.is_velocity || first.abs() <= AT_REST * largest {
+        return;
+    }
+    let first = short(*first);
+    let message = format!(
+        "the record begins with a velocity of {first} m/s, which is left out: the ground begins at rest, and ends with {first} m/s less than \
+         the record"
+    );
+    problems
+        .warning(values.place, message)
+        .help("let the record begin with a sample of 0, so long before the first one as the ground took to reach it");
 }
 
 /// Damping of soil.
