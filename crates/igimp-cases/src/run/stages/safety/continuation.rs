@@ -268,6 +268,8 @@ impl Search<'_> {
             }
             _ => None,
         };
+        // Systems of shares are none of a step.
+        session.drop_system();
         let ended = match (stopped?, failure, limit::lost_past(&points)) {
             (Some(ended), ..) => ended,
             (None, Some(_), Some(largest)) => {
@@ -332,6 +334,7 @@ impl<'w, 's, const D: usize> Watch<'w, 's, D> {
         let number = self.summary.steps + 1;
         self.session.tell(&Event::Equilibrium { number, accepted });
         self.session.tally(self.summary, report)?;
+        self.session.keep_system(accepted.conditions, self.summary);
         let now = Arc::new(accepted.body.clone());
         self.before = Some(std::mem::replace(&mut self.last, now));
         let before = self.points.last().map_or(0.0, |point| point.work);
@@ -376,6 +379,7 @@ impl<const D: usize> Observer<D> for Watch<'_, '_, D> {
     }
 
     fn on_cut(&mut self, error: &StepError) {
+        self.session.drop_system();
         let told = self.session.tally_cut(self.summary, error);
         if let (Ok(_), Err(error)) = (&self.stopped, told) {
             self.stopped = Err(error);
