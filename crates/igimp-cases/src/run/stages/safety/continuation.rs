@@ -444,10 +444,6 @@ fn finish<const D: usize>(
     let moving_mass = last
         .as_ref()
         .and_then(|end| super::remarks::moving_mass(&end.state));
-    session.records.factor_of_safety = match (stable, failed) {
-        (Some(stable), Some(failed)) => 0.5 * (stable + failed),
-        _ => f64::NAN,
-    };
     if let Some(output) = &mut session.output {
         output.keep_ends(last, None);
     }
@@ -462,6 +458,7 @@ fn finish<const D: usize>(
         trials: Vec::new(),
         path: Some(path),
     };
+    session.records.factor_of_safety = safety.factor().unwrap_or(f64::NAN);
     if let Some(text) = super::remarks::local(&safety) {
         session.warn_of_stage(number, &text);
     }
