@@ -68,7 +68,8 @@ fn of_stage<const D: usize>(
                 band: check.band,
                 measured: value / check.divide_by,
             };
-            if !is_reached && !(is_factor && value.is_finite()) {
+            let is_known = is_factor && value.is_finite();
+            if !(is_reached || is_known) {
                 return CheckRow::not_reached(own);
             }
             let mut row = CheckRow::held(own);
