@@ -125,37 +125,51 @@ fn because(reason: &str) -> String {
     }
 }
 
-fn on_checks(summary: &Summary, missed: &[&CheckRow]) -> Option<String> {
+fn on_checks(summary: &Summary, unmet: &[&CheckRow]) -> Option<String> {
     let count = summary.checks.len();
-    if let Some(first) = missed.iter().find(|row| !row.is_reached()) {
-        let met = count - missed.len();
-        return Some(format!(
-            "{met} of {count} checks {}; “{}” was not reached, and is not held.",
-            if met == 1 { "holds" } else { "hold" },
-            first.check.quantity
-        ));
+    let (missed, beyond): (Vec<&CheckRow>, Vec<&CheckRow>) =
+        unmet.iter().partition(|row| row.is_reached());
+    let (missed, beyond) = (on_missed(count, &missed), on_unreached(count, &beyond));
+    let told: Vec<String> = [missed, beyond].into_iter().flatten().collect();
+    match (told.is_empty(), count) {
+        (false, _) => Some(told.join(" ")),
+        (true, 0) => None,
+        (true, 1) => Some("The one check holds.".to_owned()),
+        (true, _) => Some(format!("All {count} checks hold.")),
     }
-    match (missed, count) {
-        (_, 0) => None,
-        ([], 1) => Some("The one check holds.".to_owned()),
-        ([], _) => Some(format!("All {count} checks hold.")),
-        ([first, rest @ ..], _) => {
-            let check = &first.check;
-            let others = match rest.len() {
-                0 => String::new(),
-                1 => ", and another one".to_owned(),
-                more => format!(", and {more} others"),
-            };
-            Some(format!(
-                "{} of {count} checks {}: {} is {}, expected {} ({}){others}.",
-                missed.len(),
-                if missed.len() == 1 { "fails" } else { "fail" },
-                check.quantity,
-                first.measured(),
-                short(check.expected),
-                check.band
-            ))
-        }
+}
+
+/// The checks whose stages did not come to their end.
+fn on_unreached(count: usize, rows: &[&CheckRow]) -> Option<String> {
+    let first = &rows.first()?.check.quantity;
+    let verb = if rows.len() == 1 { "was" } else { "were" };
+    Some(format!(
+        "{} of {count} checks {verb} not reached: {first}{}.",
+        rows.len(),
+        and_others(rows.len() - 1)
+    ))
+}
+
+fn on_missed(count: usize, rows: &[&CheckRow]) -> Option<String> {
+    let first = rows.first()?;
+    let check = &first.check;
+    Some(format!(
+        "{} of {count} checks {}: {} is {}, expected {} ({}){}.",
+        rows.len(),
+        if rows.len() == 1 { "fails" } else { "fail" },
+        check.quantity,
+        first.measured(),
+        short(check.expected),
+        check.band,
+        and_others(rows.len() - 1)
+    ))
+}
+
+fn and_others(count: usize) -> String {
+    match count {
+        0 => String::new(),
+        1 => ", and another one".to_owned(),
+        more => format!(", and {more} others"),
     }
 }
 
@@ -325,7 +339,7 @@ mod tests {
             checks: vec![CheckRow::held(check.clone()), CheckRow::not_reached(check)],
             ..Summary::default()
         });
-        let sentence = "1 of 2 checks holds; “settlement” was not reached, and is not held.";
+        let sentence = "1 of 2 checks was not reached: settlement.";
         assert!(told.text.contains(sentence), "{}", told.text);
     }
 }
