@@ -103,7 +103,7 @@ pub enum AssemblyError {
     },
     /// A trial displacement turns a particle inside out.
     #[error(
-        "particle {particle}: the determinant of the deformation increment is {determinant:e}, \
+        "particle {particle}: the determinant of the deformation increment is {determinant:.3e}, \
              but must be positive"
     )]
     Inverted {
@@ -113,7 +113,7 @@ pub enum AssemblyError {
         determinant: f64,
     },
     /// A trial displacement strains a particle beyond what numbers hold.
-    #[error("particle {particle}: the elastic strain {strain:e} is beyond all bounds")]
+    #[error("particle {particle}: the elastic strain {strain:.3e} is beyond all bounds")]
     Overstrained {
         /// Number of the particle, from 0.
         particle: usize,
@@ -209,4 +209,23 @@ pub(crate) fn padded<const D: usize>(x: &[f64; D]) -> [f64; 3] {
     let mut out = [0.0; 3];
     out[..D].copy_from_slice(x);
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::AssemblyError;
+
+    /// GOAL: a determinant is told with four digits. ORACLE: by hand.
+    #[test]
+    fn determinants_have_four_digits() {
+        let error = AssemblyError::Inverted {
+            particle: 8072,
+            determinant: -0.204_181_711_961_970_46,
+        };
+        let told = error.to_string();
+        assert!(
+            told.contains("increment is -2.042e-1, but must be positive"),
+            "{told}"
+        );
+    }
 }

@@ -18,8 +18,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         ..Target::of(&file, std::env::temp_dir().join("igimp-slope"))
     };
     let mut listener = |event: &Event<'_, 2>| {
-        if let Event::Trial { trial, .. } = event {
-            println!("SRF {:.4}: {}", trial.srf, trial.reason);
+        if let Event::Path { point } = event {
+            println!("SRF {:.4}: {:.4} m", point.factor, point.displacement);
         }
     };
     let (start, never) = (Start::Afresh, AtomicBool::new(false));

@@ -60,7 +60,7 @@ pub enum LinearSolverError {
     },
 
     /// The solution does not satisfy the equations well enough.
-    #[error("relative residual {relative_residual:e} above the tolerance {tolerance:e}")]
+    #[error("relative residual {relative_residual:.3e} above the tolerance {tolerance:e}")]
     Inaccurate {
         /// Best relative residual reached.
         relative_residual: f64,
@@ -70,7 +70,7 @@ pub enum LinearSolverError {
 
     /// An iteration did not come to a solution, and there was no room for a factorisation.
     #[error(
-        "no solution after {iterations} iterations: relative residual {relative_residual:e} above {tolerance:e}{}",
+        "no solution after {iterations} iterations: relative residual {relative_residual:.3e} above {tolerance:e}{}",
         would_need(*.factor_bytes)
     )]
     NotConverged {
@@ -108,4 +108,20 @@ fn would_need(factor_bytes: Option<usize>) -> String {
 
 fn at_unknown(unknown: Option<usize>) -> String {
     unknown.map_or_else(String::new, |unknown| format!(" at unknown {unknown}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::LinearSolverError;
+
+    /// GOAL: a residual is told with four digits. ORACLE: by hand.
+    #[test]
+    fn residuals_have_four_digits() {
+        let error = LinearSolverError::Inaccurate {
+            relative_residual: 7.061_818_181_818_181,
+            tolerance: 1e-6,
+        };
+        let told = "relative residual 7.062e0 above the tolerance 1e-6";
+        assert_eq!(error.to_string(), told);
+    }
 }

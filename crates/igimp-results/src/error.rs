@@ -61,6 +61,23 @@ pub enum ResultsError {
         /// Its title.
         title: String,
     },
+    /// The folder of a sweep holds tasks of another one, or a run of its own.
+    #[error(
+        "{} holds results of {}: `folder` in [output] of the sweep file chooses another folder{}",
+        path.display(),
+        whose(case, title),
+        if *are_tasks { ", --overwrite replaces them" } else { "" }
+    )]
+    OtherStudy {
+        /// The folder.
+        path: PathBuf,
+        /// Where these come from, as seen from the folder; empty if it is not known.
+        case: String,
+        /// The title of a case.
+        title: String,
+        /// Whether they are tasks, and not a run.
+        are_tasks: bool,
+    },
     /// The folder for results holds a run that was stopped and can go on.
     #[error(
         "{} holds a run that was stopped and can go on{} --overwrite begins afresh, --out chooses \

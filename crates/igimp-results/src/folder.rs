@@ -236,7 +236,7 @@ pub fn holds_checkpoints(root: &Path) -> bool {
 }
 
 /// Whether there are results of a run, or of a mesh.
-pub(super) fn holds_results(root: &Path) -> bool {
+pub fn holds_results(root: &Path) -> bool {
     holds_checkpoints(root)
         || with_meshes(root).any(|folder| {
             ["convergence.csv", SUMMARY]

@@ -531,6 +531,15 @@ impl SafetySummary {
         fails && self.moving_mass.is_some_and(|share| share < LOCAL)
     }
 
+    /// The factor that checks and tables take: the middle of the interval, and where nothing fails the largest that was tried.
+    pub fn factor(&self) -> Option<f64> {
+        match (self.stable, self.failed) {
+            (Some(stable), Some(failed)) => Some(0.5 * (stable + failed)),
+            (stable, None) => stable.filter(|_| self.needs_no_strength()),
+            (None, Some(_)) => None,
+        }
+    }
+
     /// Whether the ground stands with hardly any strength, as level ground between rollers does: its factor is no number to state.
     pub fn needs_no_strength(&self) -> bool {
         self.stable.is_some_and(|factor| factor > NEEDLESS)
@@ -667,6 +676,67 @@ pub struct CheckRow {
     pub check: Check,
     /// Whether the band is met.
     pub pass: bool,
+    /// What the value is worth.
+    #[serde(default)]
+    pub standing: Standing,
+}
+
+impl CheckRow {
+    /// A check that was held.
+    pub fn held(check: Check) -> Self {
+        let standing = Standing::Held;
+        Self {
+            pass: check.passes(),
+            check,
+            standing,
+        }
+    }
+
+    /// A check whose stage did not come to its end, or was not reached: it is not met, whatever the value is on the way.
+    pub fn not_reached(check: Check) -> Self {
+        let standing = Standing::NotReached;
+        Self {
+            pass: false,
+            check,
+            standing,
+        }
+    }
+
+    /// Whether the stage of the check was reached and came to its end.
+    pub fn is_reached(&self) -> bool {
+        self.standing != Standing::NotReached
+    }
+
+    /// The verdict in a word or two.
+    pub fn verdict(&self) -> &'static str {
+        match (self.standing, self.pass) {
+            (Standing::NotReached, _) => "not reached",
+            (_, true) => "met",
+            (_, false) => "missed",
+        }
+    }
+
+    /// The value as it is read.
+    pub fn measured(&self) -> String {
+        match self.standing {
+            Standing::NothingFails => format!("> {NEEDLESS}"),
+            Standing::NotReached if self.check.measured.is_nan() => "-".to_owned(),
+            _ => short(self.check.measured),
+        }
+    }
+}
+
+/// What the value of a check is worth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Standing {
+    /// It is that of the end, or of the peak, of the stage.
+    #[default]
+    Held,
+    /// The stage was not reached, or did not come to its end: the value is one on the way, or none.
+    NotReached,
+    /// A factor of safety of ground in which nothing fails: it is larger than any number to state.
+    NothingFails,
 }
 
 #[cfg(test)]

@@ -5,5 +5,5 @@ mod number;
 mod sanitize;
 
 pub use memory::{MemoryLimit, NoAmount};
-pub use number::{count, short};
+pub use number::{count, short, told_apart};
 pub use sanitize::{is_odd, on_a_line, on_lines};

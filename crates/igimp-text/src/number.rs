@@ -19,6 +19,21 @@ pub fn short(value: f64) -> String {
     }
 }
 
+/// Two numbers with three decimals, or with as many more as tell them apart.
+pub fn told_apart(low: f64, high: f64) -> [String; 2] {
+    let mut decimals = 3;
+    loop {
+        let both = [low, high].map(|value| format!("{value:.decimals$}"));
+        if both[0] != both[1] || decimals == MOST_DECIMALS {
+            return both;
+        }
+        decimals += 1;
+    }
+}
+
+/// Decimals of numbers that nothing tells apart.
+const MOST_DECIMALS: usize = 7;
+
 /// A count with thin gaps between thousands, as in `1 310`.
 pub fn count(number: usize) -> String {
     let digits = number.to_string();
@@ -43,6 +58,15 @@ mod tests {
         assert_eq!(short(1.4), "1.4");
         assert_eq!(short(1234.6), "1235");
         assert_eq!(short(0.0), "0");
+    }
+
+    /// GOAL: the ends of an interval are told apart, and three decimals are kept where they do. ORACLE: by hand.
+    #[test]
+    fn ends_of_intervals_are_told_apart() {
+        assert_eq!(told_apart(1.3, 1.302), ["1.300", "1.302"]);
+        assert_eq!(told_apart(1.31792, 1.31826), ["1.3179", "1.3183"]);
+        assert_eq!(told_apart(0.438_112, 0.438_124), ["0.43811", "0.43812"]);
+        assert_eq!(told_apart(1.0, 1.0), ["1.0000000"; 2]);
     }
 
     #[test]

@@ -234,3 +234,21 @@ fn files_that_contradict_each_other_are_refused() {
     let error = LinearSystem::read(&path).unwrap_err().to_string();
     assert!(error.contains("missing field"), "{error}");
 }
+
+/// GOAL: a search along the path of equilibria and a limit load have their systems written too.
+/// ORACLE: K x = b of the system of each stage, whose step is the last of the path.
+#[test]
+fn paths_of_equilibria_have_their_systems_written() {
+    let folder = folder("paths", MOHR_COULOMB);
+    let path = folder.join("case.toml");
+    let text = fs::read_to_string(&path).unwrap();
+    let load = "name = \"fill\"\ntype = \"load\"\nloads = [\"fill\"]\nsteps = 2\n";
+    let search = "name = \"safety\"\ntype = \"strength-reduction\"\n";
+    assert!(text.contains(load));
+    fs::write(&path, text.replace(load, search)).unwrap();
+    succeeds(&export(&folder, &[]));
+    let system = LinearSystem::read(&folder.join("systems/stage-02")).unwrap();
+    assert_eq!(system.about.stage, "safety");
+    assert!(system.about.step > 2, "{}", system.about.step);
+    hold(&system, false);
+}

@@ -147,6 +147,8 @@ fn sweeps_keep_apart_and_a_stopped_task_goes_on() {
     let output = igimp(&folder, &["sweep", "b.toml"]);
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
     assert!(said(&output).contains("out holds results of another input, ../a.toml"));
+    let advice = "`folder` in [output] of the sweep file chooses another folder";
+    assert!(said(&output).contains(advice), "{}", said(&output));
     let output = igimp(&folder, &["sweep", "a.toml"]);
     assert!(
         matches!(output.status.code(), Some(0 | 1)),
@@ -158,6 +160,30 @@ fn sweeps_keep_apart_and_a_stopped_task_goes_on() {
         now, kept,
         "the first stage of the stopped task was computed again"
     );
+}
+
+/// GOAL: results of a run and tasks of a sweep are never in one folder.
+/// ORACLE: the exit code, the message, and a folder without tasks.
+#[test]
+fn a_sweep_is_refused_where_a_run_has_its_results() {
+    let folder = Folder::new("sweep-over-run");
+    let (code, text) = folder.end("out", &[]);
+    assert_eq!(code, Some(0), "{text}");
+    fs::write(folder.0.join("a.toml"), SWEEP).unwrap();
+    for more in [&[][..], &["--overwrite"]] {
+        let output = igimp(&folder, &[&["sweep", "a.toml"][..], more].concat());
+        assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+        let text = said(&output);
+        assert!(
+            text.contains("out holds results of another input, ../slope.toml"),
+            "{text}"
+        );
+        assert!(
+            text.contains("`folder` in [output] of the sweep file"),
+            "{text}"
+        );
+    }
+    assert!(!folder.0.join("out/task-0001").exists());
 }
 
 /// Links in the places of files give way to files, and links in the places of folders are refused.

@@ -2,7 +2,7 @@
 
 use igimp_model::{Case, CheckValue, Curve, Quantity, StageKind, meshes};
 use igimp_results::mesh_study::{Computed, Convergence, ResultKind, StudyResult, estimate};
-use igimp_results::summary::{CheckRow, StageOutcome, StageSummary, Summary};
+use igimp_results::summary::{CheckRow, StageOutcome, StageSummary, Standing, Summary};
 use igimp_text::short;
 
 use super::known::{of_check, of_stage};
@@ -113,9 +113,14 @@ pub(crate) fn check_rows<const D: usize>(
             }
         }
         .unwrap_or(f64::NAN);
+        let standing = match row.standing {
+            Standing::NotReached if !check.measured.is_nan() => Standing::Held,
+            own => own,
+        };
         CheckRow {
             pass: check.passes(),
             check,
+            standing,
         }
     };
     of.checks.iter().enumerate().map(row).collect()

@@ -360,9 +360,10 @@ impl<const D: usize> Stages<D> {
             plastic_share: summary.plastic_share,
             energy: None,
         };
-        let rows = checks::at_end_of_stage(case, &session.records, &moment);
+        let is_reached = checks::is_reached(summary);
+        let rows = checks::at_end_of_stage(case, &session.records, &moment, is_reached);
         session.summary.checks.extend(rows);
-        let rows = checks::of_sections(case, number, &tables);
+        let rows = checks::of_sections(case, number, &tables, is_reached);
         session.summary.checks.extend(rows);
         if let Some(output) = &mut session.output {
             output.end_of_stage(session.model, number, state, summary, &tables)?;
@@ -380,8 +381,13 @@ impl<const D: usize> Stages<D> {
     ) -> Result<Run<D>, CaseError> {
         let case = session.model.case;
         if !session.summary.interrupted {
-            let rows = checks::of_curves(case, &session.records.curves);
-            session.summary.checks.extend(rows);
+            let of_curves =
+                checks::of_curves(case, &session.records.curves, &session.summary.stages);
+            for stage in session.summary.stages.len()..case.stages.len() {
+                let rows = checks::beyond(case, &session.records, stage);
+                session.summary.checks.extend(rows);
+            }
+            session.summary.checks.extend(of_curves);
         }
         let peak = memory::peak_mib();
         session.summary.peak_memory_mib = peak;

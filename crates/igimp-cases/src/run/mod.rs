@@ -85,7 +85,7 @@ pub enum Event<'a, const D: usize> {
         /// What failed.
         error: &'a StepError,
     },
-    /// A trial of a strength reduction ended.
+    /// A trial of a strength reduction by trials ended; a search along the path of equilibria tells [`Event::Path`].
     Trial {
         /// What it found.
         trial: &'a TrialSummary,
@@ -189,7 +189,7 @@ impl Failure {
 /// Where a run begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Start {
-    /// At the beginning; earlier results in the folder are replaced.
+    /// At the beginning; earlier results in the folder are replaced, as far as [`Target::replace`] allows.
     #[default]
     Afresh,
     /// At the newest checkpoint of the results folder.

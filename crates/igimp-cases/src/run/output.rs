@@ -369,10 +369,7 @@ impl<const D: usize> Output<D> {
                 .add(time, (number, &summary.name), &scene, &grid)?;
         }
         if let Some(safety) = &summary.safety {
-            self.factor_of_safety = match (safety.stable, safety.failed) {
-                (Some(stable), Some(failed)) => Some(0.5 * (stable + failed)),
-                _ => None,
-            };
+            self.factor_of_safety = safety.factor();
             if self.draws {
                 let (root, title) = (self.folder.root(), &case.title);
                 let picture = pictures::safety_picture(root, title, &summary.name, safety)?;

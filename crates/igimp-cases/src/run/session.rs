@@ -93,6 +93,20 @@ impl<const D: usize> Session<'_, D> {
         })
     }
 
+    /// A step was accepted: its system is the one that is written if the stage ends now.
+    pub(crate) fn keep_system(&mut self, conditions: &StepConditions<D>, stage: &StageSummary) {
+        if let Some(export) = &mut self.export {
+            export.accepted(conditions, &self.summary, stage);
+        }
+    }
+
+    /// What was solved since the last accepted step belongs to none.
+    pub(crate) fn drop_system(&mut self) {
+        if let Some(export) = &mut self.export {
+            export.not_accepted();
+        }
+    }
+
     /// Whether the user wants the run to end.
     pub(crate) fn interrupted(&self) -> bool {
         self.interrupt.load(Ordering::Relaxed)
@@ -487,9 +501,7 @@ impl<const D: usize> Watch<'_, '_, D> {
         let number = self.stage.steps + 1;
         self.session.tell(&Event::Equilibrium { number, accepted });
         self.session.tally(self.stage, report)?;
-        if let Some(export) = &mut self.session.export {
-            export.accepted(accepted.conditions, &self.session.summary, self.stage);
-        }
+        self.session.keep_system(accepted.conditions, self.stage);
         let model = self.session.model;
         if self.path.flow.is_some() && report.water.is_some() {
             let own = self.stage.consolidation.get_or_insert_default();
@@ -557,9 +569,7 @@ impl<const D: usize> Observer<D> for Watch<'_, '_, D> {
     }
 
     fn on_cut(&mut self, error: &StepError) {
-        if let Some(export) = &mut self.session.export {
-            export.not_accepted();
-        }
+        self.session.drop_system();
         let told = self.session.tally_cut(self.stage, error);
         if let (Ok(_), Err(error)) = (&self.stopped, told) {
             self.stopped = Err(error);

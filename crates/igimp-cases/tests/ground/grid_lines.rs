@@ -111,6 +111,12 @@ fn gaps_thin_layers_and_odd_stiffness_are_told() {
     let soft = ground("fit = \"layers\"").replace("young = \"6 MPa\"", "young = \"1 MPa\"");
     let warnings = file(&soft).warnings();
     assert!(
+        !warnings.contains("is soft"),
+        "the given geometry keeps its shape: {warnings}"
+    );
+    let moving = "type = \"gravity\"\ngeometry = \"moving\"";
+    let warnings = file(&soft.replace("type = \"gravity\"", moving)).warnings();
+    assert!(
         warnings.contains("`clay` is soft: unit_weight * height / young = 0.18"),
         "{warnings}"
     );

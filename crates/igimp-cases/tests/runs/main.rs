@@ -14,3 +14,4 @@ mod killed;
 mod mechanism;
 mod remarks;
 mod revolution;
+mod unmet;

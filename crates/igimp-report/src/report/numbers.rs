@@ -1,16 +1,15 @@
 //! Numbers as a report prints them.
 
 use igimp_results::summary::SafetySummary;
-use igimp_text::short;
+use igimp_text::{short, told_apart};
 
 /// The factor of safety in words.
 pub(crate) fn interval(safety: &SafetySummary) -> String {
     match (safety.stable, safety.failed) {
-        (Some(stable), Some(failed)) => format!(
-            "The factor of safety lies between {} and {}",
-            short(stable),
-            short(failed)
-        ),
+        (Some(stable), Some(failed)) => {
+            let [stable, failed] = told_apart(stable, failed);
+            format!("The factor of safety lies between {stable} and {failed}")
+        }
         (Some(stable), None) => format!(
             "The factor of safety is at least {}; no factor was found that fails",
             short(stable)

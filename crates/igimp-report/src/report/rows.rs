@@ -7,7 +7,7 @@ use igimp_results::summary::{
     ConsolidationSummary, MaterialShare, MemberSummary, NEEDLESS, PoreSummary, StageOutcome,
     StageSummary, Summary,
 };
-use igimp_text::short;
+use igimp_text::{short, told_apart};
 use serde::Serialize;
 
 use super::verdict::on_safety;
@@ -86,7 +86,10 @@ fn factors_of_safety(summary: &Summary, mesh_error: &str) -> Vec<Number> {
     let number = |stage: &StageSummary| {
         let safety = stage.safety.as_ref()?;
         let bound = |factor: Option<f64>| factor.map_or_else(|| "?".to_owned(), short);
-        let (from, to) = (bound(safety.stable), bound(safety.failed));
+        let (from, to) = match (safety.stable, safety.failed) {
+            (Some(stable), Some(failed)) => told_apart(stable, failed).into(),
+            (stable, failed) => (bound(stable), bound(failed)),
+        };
         let has_one = |stage: &StageSummary| stage.safety.is_some();
         let name = of_stage(summary, has_one, stage, "Factor of safety");
         if safety.needs_no_strength() {
@@ -283,6 +286,7 @@ pub(super) fn head(summary: &Summary) -> Vec<HeadView> {
 #[derive(Serialize)]
 pub(super) struct CheckView {
     pass: bool,
+    verdict: &'static str,
     quantity: String,
     about: String,
     measured: String,
@@ -302,9 +306,10 @@ pub(super) fn checks(summary: &Summary) -> Vec<CheckView> {
         };
         CheckView {
             pass: row.pass,
+            verdict: row.verdict(),
             quantity: check.quantity.clone(),
             about: check.variant.trim().to_owned(),
-            measured: short(check.measured),
+            measured: row.measured(),
             expected: short(check.expected),
             band: check.band.to_string(),
             deviation: deviation.replace('-', "−"),

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use igimp_results::ending::EndReason;
 use igimp_results::summary::{
     CheckRow, Kinematic, NEEDLESS, PathPoint, PathSummary, SafetySummary, StageOutcome,
     StageSummary, StrengthShares, Summary,
@@ -32,6 +33,8 @@ pub(super) fn verdict(summary: &Summary) -> Verdict {
         ("bad", "Reference missed")
     } else if summary.stages.is_empty() {
         ("fair", "Nothing ran")
+    } else if summary.stages.iter().any(still_moves) {
+        ("fair", "Still moving")
     } else {
         ("good", "Done")
     };
@@ -52,6 +55,12 @@ pub(super) fn verdict(summary: &Summary) -> Verdict {
         word,
         text: sentences.join(" "),
     }
+}
+
+/// Whether a run-out did not come to rest within its steps.
+fn still_moves(stage: &StageSummary) -> bool {
+    let steps = stage.steps;
+    stage.code == EndReason::StillMoving { steps }.code()
 }
 
 fn is_interrupted(summary: &Summary) -> bool {
@@ -90,6 +99,13 @@ fn ending(summary: &Summary) -> String {
         1 => format!("Stage “{}” was completed.", summary.stages[0].name),
         count => format!("All {count} stages were completed."),
     };
+    if let Some(stage) = summary.stages.iter().find(|stage| still_moves(stage)) {
+        return format!(
+            "Stage “{}” did not come to rest{}. More steps tell where it does.",
+            stage.name,
+            because(&stage.reason)
+        );
+    }
     match with(StageOutcome::Stopped) {
         None => whole,
         Some(stage) => format!(
@@ -109,29 +125,51 @@ fn because(reason: &str) -> String {
     }
 }
 
-fn on_checks(summary: &Summary, missed: &[&CheckRow]) -> Option<String> {
+fn on_checks(summary: &Summary, unmet: &[&CheckRow]) -> Option<String> {
     let count = summary.checks.len();
-    match (missed, count) {
-        (_, 0) => None,
-        ([], 1) => Some("The one check holds.".to_owned()),
-        ([], _) => Some(format!("All {count} checks hold.")),
-        ([first, rest @ ..], _) => {
-            let check = &first.check;
-            let others = match rest.len() {
-                0 => String::new(),
-                1 => ", and another one".to_owned(),
-                more => format!(", and {more} others"),
-            };
-            Some(format!(
-                "{} of {count} checks {}: {} is {}, expected {} ({}){others}.",
-                missed.len(),
-                if missed.len() == 1 { "fails" } else { "fail" },
-                check.quantity,
-                short(check.measured),
-                short(check.expected),
-                check.band
-            ))
-        }
+    let (missed, beyond): (Vec<&CheckRow>, Vec<&CheckRow>) =
+        unmet.iter().partition(|row| row.is_reached());
+    let (missed, beyond) = (on_missed(count, &missed), on_unreached(count, &beyond));
+    let told: Vec<String> = [missed, beyond].into_iter().flatten().collect();
+    match (told.is_empty(), count) {
+        (false, _) => Some(told.join(" ")),
+        (true, 0) => None,
+        (true, 1) => Some("The one check holds.".to_owned()),
+        (true, _) => Some(format!("All {count} checks hold.")),
+    }
+}
+
+/// The checks whose stages did not come to their end.
+fn on_unreached(count: usize, rows: &[&CheckRow]) -> Option<String> {
+    let first = &rows.first()?.check.quantity;
+    let verb = if rows.len() == 1 { "was" } else { "were" };
+    Some(format!(
+        "{} of {count} checks {verb} not reached: {first}{}.",
+        rows.len(),
+        and_others(rows.len() - 1)
+    ))
+}
+
+fn on_missed(count: usize, rows: &[&CheckRow]) -> Option<String> {
+    let first = rows.first()?;
+    let check = &first.check;
+    Some(format!(
+        "{} of {count} checks {}: {} is {}, expected {} ({}){}.",
+        rows.len(),
+        if rows.len() == 1 { "fails" } else { "fail" },
+        check.quantity,
+        first.measured(),
+        short(check.expected),
+        check.band,
+        and_others(rows.len() - 1)
+    ))
+}
+
+fn and_others(count: usize) -> String {
+    match count {
+        0 => String::new(),
+        1 => ", and another one".to_owned(),
+        more => format!(", and {more} others"),
     }
 }
 
@@ -224,6 +262,8 @@ fn list(names: &[String]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use igimp_model::check::{Band, Check};
+
     use super::*;
 
     // GOAL: several factors of safety are told apart by their stages, and one alone needs no name.
@@ -258,5 +298,48 @@ mod tests {
             level.contains("its strength is not needed, and F is above 1000"),
             "{level}"
         );
+    }
+
+    // GOAL: a run-out that still moves is no run that is done, and the sentence says so. ORACLE: by hand.
+    #[test]
+    fn a_run_out_that_still_moves_is_not_done() {
+        let reason = EndReason::StillMoving { steps: 2 };
+        let stage = StageSummary {
+            name: "run-out".to_owned(),
+            outcome: StageOutcome::Stopped,
+            code: reason.code().to_owned(),
+            reason: reason.to_string(),
+            reached: 1.0,
+            steps: 2,
+            ..StageSummary::default()
+        };
+        let told = verdict(&Summary {
+            stages: vec![stage],
+            ..Summary::default()
+        });
+        assert_eq!((told.class, told.word), ("fair", "Still moving"));
+        let sentence = "Stage “run-out” did not come to rest: still moving after 2 steps.";
+        assert!(told.text.starts_with(sentence), "{}", told.text);
+    }
+
+    // GOAL: a check that was not reached is told as that, and not as one that holds. ORACLE: by hand.
+    #[test]
+    fn a_check_that_was_not_reached_is_told() {
+        let check = Check {
+            case: String::new(),
+            variant: String::new(),
+            quantity: "settlement".to_owned(),
+            expected: 0.06,
+            source: String::new(),
+            band: Band::AtMost(0.06),
+            measured: 0.054,
+        };
+        let told = verdict(&Summary {
+            stages: vec![StageSummary::default()],
+            checks: vec![CheckRow::held(check.clone()), CheckRow::not_reached(check)],
+            ..Summary::default()
+        });
+        let sentence = "1 of 2 checks was not reached: settlement.";
+        assert!(told.text.contains(sentence), "{}", told.text);
     }
 }

@@ -57,6 +57,16 @@ pub enum ParameterError {
         /// The upper bound.
         high: String,
     },
+    /// A bound has no unit, or one of another kind.
+    #[error("the bound `{bound}` of `{key}` is not in a unit of the same kind as its {start}")]
+    Kind {
+        /// The key.
+        key: String,
+        /// The bound.
+        bound: String,
+        /// The start.
+        start: String,
+    },
     /// A start that is not positive has no scale without bounds.
     #[error("`{key}` begins at {start}, and nothing says how large it may be")]
     NoScale {
@@ -77,7 +87,7 @@ impl ParameterError {
     /// What helps.
     pub fn help(&self) -> &'static str {
         match self {
-            Self::Form { .. } | Self::Bound { .. } | Self::Outside { .. } => {
+            Self::Form { .. } | Self::Bound { .. } | Self::Outside { .. } | Self::Kind { .. } => {
                 "--vary friction, or with bounds --vary \"friction=20 deg..40 deg\", in units of the same kind"
             }
             Self::NoValue { .. } => {
@@ -217,17 +227,22 @@ fn bounds_in(
     let one = Quantity::parse(&format!("1 {unit}")).map_or(1.0, |own| own.value);
     let kind = Quantity::parse(&format!("1 {unit}")).map_or(None, |own| own.dimension);
     let mut own = [0.0; 2];
-    let mut is_same_kind = true;
     for (value, text) in own.iter_mut().zip(bounds) {
         let read = Quantity::parse(text).map_err(|source| ParameterError::Bound {
             key: key.to_owned(),
             source,
         })?;
-        is_same_kind &= read.dimension == kind;
+        if read.dimension != kind {
+            return Err(ParameterError::Kind {
+                key: key.to_owned(),
+                bound: text.clone(),
+                start: written(first, unit),
+            });
+        }
         *value = read.value / one;
     }
     let [low, high] = own;
-    if is_same_kind && low < high && (low..=high).contains(&first) {
+    if low < high && (low..=high).contains(&first) {
         return Ok(own);
     }
     let [low, high] = bounds.clone();

@@ -367,7 +367,11 @@ fn what_cannot_be_fitted_is_refused() {
         ),
         (
             "cu=10 deg..40 deg",
-            "`cu` begins at 20 kPa, which is not between 10 deg and 40 deg",
+            "the bound `10 deg` of `cu` is not in a unit of the same kind as its 20 kPa",
+        ),
+        (
+            "cu=10..40 kPa",
+            "the bound `10` of `cu` is not in a unit of the same kind as its 20 kPa",
         ),
     ] {
         assert_eq!(refused(&[vary], &test), words);

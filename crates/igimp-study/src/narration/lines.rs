@@ -10,7 +10,7 @@ use igimp_results::summary::{
     TrialSummary,
 };
 use igimp_solver::{StepError, StepReport};
-use igimp_text::{count, short};
+use igimp_text::{count, short, told_apart};
 
 const SEARCH: &str = "strength-reduction";
 
@@ -88,7 +88,8 @@ impl Lines {
         });
         let line = self.meshes[place].1.line(event)?;
         let is_step = matches!(event, Event::Step { .. } | Event::Cut { .. });
-        (!is_step).then(|| format!("{:<4} {line}", label(parts)))
+        let of_mesh = |line: &str| format!("{:<4} {line}", label(parts));
+        (!is_step).then(|| line.lines().map(of_mesh).collect::<Vec<_>>().join("\n"))
     }
 }
 
@@ -253,7 +254,10 @@ pub fn interval(safety: &SafetySummary) -> String {
         _ if safety.needs_no_strength() => {
             format!("F > {NEEDLESS}: nothing of this ground can fail, its strength is not needed")
         }
-        (Some(stable), Some(failed)) => format!("{} <= F < {}", three(stable), three(failed)),
+        (Some(stable), Some(failed)) => {
+            let [stable, failed] = told_apart(stable, failed);
+            format!("{stable} <= F < {failed}")
+        }
         (Some(stable), None) => format!("F >= {}", three(stable)),
         (None, Some(failed)) => format!("F < {}", three(failed)),
         (None, None) => "no factor of safety was found".to_owned(),
@@ -273,6 +277,7 @@ mod tests {
     use igimp_assembly::{ParticleSeed, Particles};
     use igimp_cases::run::{Controls, State};
     use igimp_linear::LinearEffort;
+    use igimp_results::summary::PathSummary;
     use igimp_solver::{Body, PhaseTimes, StepFailure};
 
     use super::*;
@@ -289,6 +294,7 @@ mod tests {
         };
         assert_eq!(told(Some(1.25), Some(1.5)), "1.250 <= F < 1.500");
         assert_eq!(told(Some(900.0), None), "F >= 900.000");
+        assert_eq!(told(Some(1.31792), Some(1.31826)), "1.3179 <= F < 1.3183");
         for failed in [None, Some(2e8)] {
             let text = told(Some(166_822_053.789), failed);
             assert!(
@@ -467,5 +473,28 @@ mod tests {
           SRF 1.5     fails   0.0213 m  5 steps  (no equilibrium)
           1.375 <= F < 1.500; 0 steps, 0 iterations, 0 cuts
         "#);
+    }
+
+    /// GOAL: every line of a mesh says of which it is, also the second one of a stage. ORACLE: by hand.
+    #[test]
+    fn all_lines_of_a_mesh_have_its_label() {
+        let path = PathSummary {
+            shares: Some(StrengthShares::default()),
+            ..PathSummary::default()
+        };
+        let ended = StageSummary {
+            safety: Some(SafetySummary {
+                path: Some(path),
+                ..SafetySummary::default()
+            }),
+            ..StageSummary::default()
+        };
+        let event: Event<'_, 2> = Event::OfMesh {
+            parts: 2,
+            event: &Event::StageEnded { summary: &ended },
+        };
+        let text = Lines::default().line(&event).unwrap();
+        assert!(text.lines().count() == 2, "{text}");
+        assert!(text.lines().all(|line| line.starts_with("h/2  ")), "{text}");
     }
 }

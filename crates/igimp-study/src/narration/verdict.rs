@@ -101,9 +101,12 @@ pub fn checks(rows: &[CheckRow]) -> String {
         .map(|row| {
             let check = &row.check;
             vec![
-                if row.pass { "met" } else { "MISSED" }.to_owned(),
+                match row.verdict() {
+                    "met" => "met".to_owned(),
+                    other => other.to_uppercase(),
+                },
                 on_a_line(&check.quantity).into_owned(),
-                short(check.measured),
+                row.measured(),
                 format!("expected {}", short(check.expected)),
                 check.band.to_string(),
                 format!("({})", on_a_line(&check.source)),
@@ -163,7 +166,7 @@ fn largest_share(shares: &StrengthShares) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use igimp_model::check::{Band, Check};
-    use igimp_results::summary::{StageOutcome, StageSummary};
+    use igimp_results::summary::{StageOutcome, StageSummary, Standing};
 
     use super::*;
 
@@ -207,6 +210,7 @@ mod tests {
                     measured: 1.371,
                 },
                 pass: true,
+                standing: Standing::Held,
             }],
             seconds: 12.34,
             ..Summary::default()
@@ -220,6 +224,37 @@ mod tests {
         checks
           met  F [-]  1.371  expected 1.38  ± 2 %  (Griffiths and Lane 1999)
         results in results/slope (12.3 s)
+        "#);
+    }
+
+    /// GOAL: a check that was not reached is told apart from one that is met or missed, and a factor beyond all numbers is no number.
+    /// ORACLE: by hand.
+    #[test]
+    fn checks_say_what_they_are_worth() {
+        let check = |measured: f64| Check {
+            case: String::new(),
+            variant: String::new(),
+            quantity: "F".into(),
+            expected: 1.5,
+            source: "s".into(),
+            band: Band::AtLeast(1.5),
+            measured,
+        };
+        let nothing_fails = CheckRow {
+            standing: Standing::NothingFails,
+            ..CheckRow::held(check(1.6e8))
+        };
+        let rows = [
+            CheckRow::held(check(1.4)),
+            CheckRow::not_reached(check(1.6)),
+            CheckRow::not_reached(check(f64::NAN)),
+            nothing_fails,
+        ];
+        insta::assert_snapshot!(checks(&rows), @r#"
+          MISSED       F  1.4     expected 1.5  ≥ 1.5  (s)
+          NOT REACHED  F  1.6     expected 1.5  ≥ 1.5  (s)
+          NOT REACHED  F  -       expected 1.5  ≥ 1.5  (s)
+          met          F  > 1000  expected 1.5  ≥ 1.5  (s)
         "#);
     }
 }

@@ -216,7 +216,7 @@ fn row(
 fn results(task: &Task, wanted: &[String]) -> Option<Vec<(String, f64)>> {
     let summary = summary(&task.folder)?;
     let mut found = safety(&summary);
-    for row in &summary.checks {
+    for row in summary.checks.iter().filter(|row| row.is_reached()) {
         found.push((row.check.quantity.clone(), row.check.measured));
     }
     found.extend(curve_ends(&task.folder.join("curves")));

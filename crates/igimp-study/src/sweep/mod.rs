@@ -216,11 +216,23 @@ impl Sweep {
     /// Enters the folder of all tasks: alone, for all of them, or together with those who run one each.
     ///
     /// # Errors
-    /// [`ResultsError::InUse`] when another program runs tasks there; [`ResultsError::OtherResults`] when they
-    /// are those of another sweep file and not to be replaced; [`ResultsError::Link`],
+    /// [`ResultsError::InUse`] when another program runs tasks there; [`ResultsError::OtherStudy`] when they
+    /// are those of another sweep file and not to be replaced, or where a run has its results; [`ResultsError::Link`],
     /// [`ResultsError::File`].
     pub fn enter(&self, alone: bool, replace: Replace) -> Result<Lock, CaseError> {
         let root = &self.folder;
+        // A run and tasks in one folder would pass for one study.
+        if folder::holds_results(root) {
+            let (case, title) = folder::owner(root)
+                .map_or_else(Default::default, |found| (found.case, found.title));
+            return Err(ResultsError::OtherStudy {
+                path: root.clone(),
+                case,
+                title,
+                are_tasks: false,
+            }
+            .into());
+        }
         let lock = if alone { Lock::alone } else { Lock::shared }(root)?;
         let claim = Claim {
             origin: Origin::File(self.file.clone()),
@@ -236,10 +248,11 @@ impl Sweep {
                     && replace != Replace::Everything
                     && self.holds_tasks() =>
             {
-                Err(ResultsError::OtherResults {
+                Err(ResultsError::OtherStudy {
                     path: root.clone(),
                     case: found.case,
                     title: String::new(),
+                    are_tasks: true,
                 }
                 .into())
             }

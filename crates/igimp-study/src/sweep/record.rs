@@ -89,7 +89,10 @@ pub(super) fn message(run: &Account) -> String {
     let missed: Vec<String> = missed
         .map(|row| {
             let check = &row.check;
-            let (measured, band) = (short(check.measured), check.band);
+            let (measured, band) = (row.measured(), check.band);
+            if !row.is_reached() {
+                return format!("{} was not reached", check.quantity);
+            }
             format!(
                 "{} is {measured}, expected {} {band}",
                 check.quantity,

@@ -2,7 +2,7 @@
 //! what is there.
 
 use igimp_model::check::{Band, Check};
-use igimp_results::summary::{CheckRow, SafetySummary, StageSummary, Summary};
+use igimp_results::summary::{CheckRow, SafetySummary, StageSummary, Standing, Summary};
 
 use super::*;
 
@@ -160,6 +160,7 @@ fn summary(fos: f64) -> Summary {
                 measured: 19.5,
             },
             pass: true,
+            standing: Standing::Held,
         }],
         ..Summary::default()
     }

@@ -1,52 +1,117 @@
 //! Holds what a run found against the references of its case.
 
 use igimp_model::check::{Band, Check};
-use igimp_model::{Case, CheckTime, Reference, ReferenceValues};
-use igimp_results::summary::CheckRow;
+use igimp_model::{Case, CaseCheck, CheckTime, Quantity, Reference, ReferenceValues};
+use igimp_results::summary::{CheckRow, NEEDLESS, StageOutcome, StageSummary, Standing};
 use igimp_results::tables::table::Table;
 
 use super::moment::Moment;
 use super::records::Records;
 use super::sections::before_fields;
 
-/// The checks that the case asks for at the end of a stage.
+/// The checks that the case asks for at the end of a stage. On a stage that did not come to its end none is held but
+/// those of a factor of safety that was found before.
 pub(crate) fn at_end_of_stage<const D: usize>(
     case: &Case<D>,
     records: &Records,
     moment: &Moment<'_, D>,
+    is_reached: bool,
+) -> Vec<CheckRow> {
+    let found = |k: usize, check: &CaseCheck| match check.at {
+        CheckTime::End => records.quantity(case, check.of, moment),
+        CheckTime::Peak => records.peaks[k],
+    };
+    of_stage(case, moment.stage, is_reached, &found)
+}
+
+/// The checks of a stage that the run did not come to.
+pub(crate) fn beyond<const D: usize>(
+    case: &Case<D>,
+    records: &Records,
+    stage: usize,
+) -> Vec<CheckRow> {
+    let found = |_: usize, check: &CaseCheck| match check.of {
+        Quantity::FactorOfSafety => records.factor_of_safety,
+        _ => f64::NAN,
+    };
+    let mut rows = of_stage(case, stage, false, &found);
+    let nothing = Table {
+        name: String::new(),
+        header: Vec::new(),
+        rows: Vec::new(),
+    };
+    let nothing = vec![nothing; case.sections.len()];
+    rows.extend(of_sections(case, stage, &nothing, false));
+    rows
+}
+
+/// The checks of a stage with the values that were found.
+fn of_stage<const D: usize>(
+    case: &Case<D>,
+    stage: usize,
+    is_reached: bool,
+    found: &dyn Fn(usize, &CaseCheck) -> f64,
 ) -> Vec<CheckRow> {
     let last = case.stages.len() - 1;
-    case.checks
-        .iter()
-        .enumerate()
-        .filter(|(_, check)| check.stage.unwrap_or(last) == moment.stage)
+    let asked = case.checks.iter().enumerate();
+    asked
+        .filter(|(_, check)| check.stage.unwrap_or(last) == stage)
         .map(|(k, check)| {
-            let found = match check.at {
-                CheckTime::End => records.quantity(case, check.of, moment),
-                CheckTime::Peak => records.peaks[k],
-            };
-            row(Check {
+            let value = found(k, check);
+            let is_factor = check.of == Quantity::FactorOfSafety;
+            let own = Check {
                 case: case.title.clone(),
                 variant: case.method.label(),
                 quantity: check.name.clone(),
                 expected: check.expected,
                 source: check.source.clone(),
                 band: check.band,
-                measured: found / check.divide_by,
-            })
+                measured: value / check.divide_by,
+            };
+            let is_known = is_factor && value.is_finite();
+            if !(is_reached || is_known) {
+                return CheckRow::not_reached(own);
+            }
+            let mut row = CheckRow::held(own);
+            if is_factor && value > NEEDLESS {
+                row.standing = Standing::NothingFails;
+            }
+            row
         })
         .collect()
 }
 
-/// The checks of curves against their references. A curve that was not recorded misses its own.
-pub(crate) fn of_curves<const D: usize>(case: &Case<D>, tables: &[Table]) -> Vec<CheckRow> {
+/// The checks of curves against their references. A curve that was not recorded misses its own, and the end of one whose
+/// stage did not come to its end is held against nothing.
+pub(crate) fn of_curves<const D: usize>(
+    case: &Case<D>,
+    tables: &[Table],
+    stages: &[StageSummary],
+) -> Vec<CheckRow> {
     let mut rows = Vec::new();
     for (curve, table) in case.curves.iter().zip(tables) {
-        if let Some(reference) = &curve.reference {
-            rows.extend(against(case, &curve.name, &table.points(0, 1), reference));
+        let Some(reference) = &curve.reference else {
+            continue;
+        };
+        let own = against(case, &curve.name, &table.points(0, 1), reference);
+        let ran = |stage: usize| stages.get(stage).is_some_and(is_reached);
+        let came_to_end = match curve.stage {
+            Some(stage) => ran(stage),
+            None => (0..case.stages.len()).all(ran),
+        };
+        let is_of_end = matches!(reference.values, ReferenceValues::Level { at: None, .. });
+        if is_of_end && !came_to_end {
+            rows.extend(own.into_iter().map(|row| CheckRow::not_reached(row.check)));
+        } else {
+            rows.extend(own);
         }
     }
     rows
+}
+
+/// Whether a stage came so far that its checks are held: it found equilibrium up to its end, or to one that its case plans.
+pub(crate) fn is_reached(stage: &StageSummary) -> bool {
+    stage.outcome != StageOutcome::NotConverged
 }
 
 /// The checks of fields along sections at the end of a stage; `tables` are those of the sections.
@@ -54,6 +119,7 @@ pub(crate) fn of_sections<const D: usize>(
     case: &Case<D>,
     stage: usize,
     tables: &[Table],
+    is_reached: bool,
 ) -> Vec<CheckRow> {
     let mut rows = Vec::new();
     for (section, table) in case.sections.iter().zip(tables) {
@@ -66,7 +132,11 @@ pub(crate) fn of_sections<const D: usize>(
             rows.extend(against(case, &name, &points, &held.reference));
         }
     }
-    rows
+    if is_reached {
+        return rows;
+    }
+    let rows = rows.into_iter();
+    rows.map(|row| CheckRow::not_reached(row.check)).collect()
 }
 
 /// Points held against a reference; nothing where it is drawn only.
@@ -80,7 +150,7 @@ fn against<const D: usize>(
         return Vec::new();
     };
     let check = |quantity: String, expected: f64, measured: f64| {
-        row(Check {
+        CheckRow::held(Check {
             case: case.title.clone(),
             variant: case.method.label(),
             quantity,
@@ -111,13 +181,6 @@ fn against<const D: usize>(
                 _ => rows,
             }
         }
-    }
-}
-
-fn row(check: Check) -> CheckRow {
-    CheckRow {
-        pass: check.passes(),
-        check,
     }
 }
 

@@ -206,6 +206,7 @@ impl<const D: usize> Watch<'_, '_, D> {
         let number = self.summary.steps + 1;
         self.session.tell(&Event::Equilibrium { number, accepted });
         self.session.tally(self.summary, report)?;
+        self.session.keep_system(accepted.conditions, self.summary);
         let tracks = rigid::tracks(self.session.model.case, &(self.at)(report.to), accepted);
         self.tracks.replace(tracks);
         let controls = (self.at)(report.to);
@@ -261,6 +262,7 @@ impl<const D: usize> Observer<D> for Watch<'_, '_, D> {
     }
 
     fn on_cut(&mut self, error: &StepError) {
+        self.session.drop_system();
         let told = self.session.tally_cut(self.summary, error);
         if let (Ok(_), Err(error)) = (&self.stopped, told) {
             self.stopped = Err(error);

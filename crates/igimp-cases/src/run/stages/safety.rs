@@ -431,10 +431,7 @@ impl<'a, const D: usize> Trials<'a, D> {
         for text in remarks.chain(slid).chain(tension) {
             session.warn_of_stage(self.number, &text);
         }
-        session.records.factor_of_safety = match (stable, failed) {
-            (Some(stable), Some(failed)) => 0.5 * (stable + failed),
-            _ => f64::NAN,
-        };
+        session.records.factor_of_safety = safety.factor().unwrap_or(f64::NAN);
         if let Some(output) = &mut session.output {
             output.keep_ends(self.stable, self.failed);
         }

@@ -1,8 +1,11 @@
 //! Warnings about how bodies sit on the grid and by each other: boundaries of layers within cells,
 //! gaps, bodies thinner than three cells, and stiffness out of proportion to the weight.
 
+use igimp_assembly::Geometry;
 use igimp_geometry::polygon::{bounding_box, contains};
-use igimp_model::{BodyPart, Drainage, Ground, Material, Stage, StageKind, Strength};
+use igimp_model::{
+    BodyPart, Drainage, Ground, Material, ReductionPath, Stage, StageKind, Strength,
+};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::bodies::Body;
@@ -331,6 +334,20 @@ fn check_thickness(
     }
 }
 
+/// Whether weight is raised on a geometry that moves and a factor of safety is looked for: it is then that of the shape
+/// under weight. On the given geometry the shape is that of the file, whatever the stiffness.
+fn searched_in_another_shape(stages: &[Option<Stage>]) -> bool {
+    let stages = || stages.iter().flatten();
+    let searches = |stage: &Stage| matches!(stage.kind, StageKind::StrengthReduction(_));
+    let raises = |stage: &Stage| match &stage.kind {
+        StageKind::Gravity { .. } | StageKind::Construction(_) => true,
+        StageKind::StrengthReduction(own) => own.path == ReductionPath::Gravity,
+        _ => false,
+    };
+    stages().any(searches)
+        && stages().any(|stage| raises(stage) && stage.geometry == Geometry::Moving)
+}
+
 /// Warns of materials whose stiffness is out of proportion to the weight.
 pub(crate) fn check_stiffness(
     layers: &Layers<'_>,
@@ -349,7 +366,7 @@ pub(crate) fn check_stiffness(
             StageKind::Gravity { .. } | StageKind::StrengthReduction(_)
         )
     });
-    let searches = kinds().any(|kind| matches!(kind, StageKind::StrengthReduction(_)));
+    let changes_shape = searched_in_another_shape(stages);
     if !raises || gravity.is_none_or(|gravity| gravity <= 0.0) {
         return;
     }
@@ -379,15 +396,17 @@ pub(crate) fn check_stiffness(
             .and_then(|own| own.young.as_ref().ok())
             .map(|own| own.place);
         let name = clip(&material.name, 40);
-        if ratio > SOFT && searches && material.strength != Strength::Elastic {
+        if ratio > SOFT && changes_shape && material.strength != Strength::Elastic {
             problems
                 .warning(
                     place,
                     format!("`{name}` is soft: unit_weight * height / young = {}", short(ratio)),
                 )
-                .help("its weight changes the shape of the ground, and the factor of safety is that of the new shape")
+                .help(
+                    "on a geometry that moves weight changes the shape of the ground, and the factor of safety is that of the new shape",
+                )
                 .help(format!(
-                    "a factor of safety hardly depends on young: from {} kPa on the shape stays",
+                    "geometry = \"given\" in the stages that raise weight keeps the shape; so does young from {} kPa on",
                     short(1e-3 * young * ratio / SOFT)
                 ));
         } else if ratio > 0.0 && ratio < STIFF {

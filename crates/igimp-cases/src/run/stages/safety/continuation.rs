@@ -272,6 +272,8 @@ impl Search<'_> {
             }
             _ => None,
         };
+        // Systems of shares are none of a step.
+        session.drop_system();
         let ended = match (stopped?, failure, limit::lost_past(&points)) {
             (Some(ended), ..) => ended,
             (None, Some(_), Some(largest)) => {
@@ -336,6 +338,7 @@ impl<'w, 's, const D: usize> Watch<'w, 's, D> {
         let number = self.summary.steps + 1;
         self.session.tell(&Event::Equilibrium { number, accepted });
         self.session.tally(self.summary, report)?;
+        self.session.keep_system(accepted.conditions, self.summary);
         let now = Arc::new(accepted.body.clone());
         self.before = Some(std::mem::replace(&mut self.last, now));
         let before = self.points.last().map_or(0.0, |point| point.work);
@@ -380,6 +383,7 @@ impl<const D: usize> Observer<D> for Watch<'_, '_, D> {
     }
 
     fn on_cut(&mut self, error: &StepError) {
+        self.session.drop_system();
         let told = self.session.tally_cut(self.summary, error);
         if let (Ok(_), Err(error)) = (&self.stopped, told) {
             self.stopped = Err(error);
@@ -444,10 +448,6 @@ fn finish<const D: usize>(
     let moving_mass = last
         .as_ref()
         .and_then(|end| super::remarks::moving_mass(&end.state));
-    session.records.factor_of_safety = match (stable, failed) {
-        (Some(stable), Some(failed)) => 0.5 * (stable + failed),
-        _ => f64::NAN,
-    };
     if let Some(output) = &mut session.output {
         output.keep_ends(last, None);
     }
@@ -462,6 +462,7 @@ fn finish<const D: usize>(
         trials: Vec::new(),
         path: Some(path),
     };
+    session.records.factor_of_safety = safety.factor().unwrap_or(f64::NAN);
     if let Some(text) = super::remarks::local(&safety) {
         session.warn_of_stage(number, &text);
     }

@@ -1,0 +1,125 @@
+//! GOAL: a check is held at the end of its stage and nowhere else: one whose stage found no equilibrium on its way, or was never
+//! reached, is told and not met, whatever its value is by then; a factor of safety beyond all numbers meets what it is at least.
+//! CASE: an upright face of clay, loaded beyond what it carries; the same with next to no weight.
+//! ORACLE: by hand: the bands hold any displacement, so that "met" would be the verdict on a value on the way.
+
+use igimp_cases::run::{Run, in_memory};
+use igimp_input::CaseFile;
+use igimp_results::ending::Ending;
+use igimp_results::summary::{CheckRow, Standing};
+
+const FACE: &str = r#"
+igimp = 1
+[case]
+title = "face"
+[grid]
+cell = "0.5 m"
+domain = { x = ["0 m", "6 m"], y = ["0 m", "3 m"] }
+[materials.clay]
+model = "tresca"
+unit_weight = "18 kN/m3"
+young = "10 MPa"
+poisson = 0.45
+cu = "20 kPa"
+[[bodies]]
+name = "face"
+material = "clay"
+polygon = [["0 m", "0 m"], ["3 m", "0 m"], ["3 m", "2 m"], ["0 m", "2 m"]]
+[boundaries]
+left = "roller"
+bottom = "fixed"
+[[loads]]
+name = "fill"
+type = "pressure"
+from = ["0 m", "2 m"]
+to = ["2 m", "2 m"]
+pressure = "400 kPa"
+[[stages]]
+name = "weight"
+type = "gravity"
+steps = 2
+[[stages]]
+name = "safety"
+type = "strength-reduction"
+[[stages]]
+name = "load"
+type = "load"
+start_from = "weight"
+loads = ["fill"]
+steps = 10
+[[stages]]
+name = "more weight"
+type = "gravity"
+factor = 1.1
+steps = 1
+[[curves]]
+name = "load"
+stage = "load"
+x = { of = "step", label = "step [-]" }
+y = { of = "largest_displacement", label = "displacement [m]" }
+reference = { label = "any", y = 1, tolerance = 1e9 }
+[[checks]]
+name = "at the end of the load"
+of = "largest_displacement"
+stage = "load"
+at_most = "100 m"
+source = "by hand"
+[[checks]]
+name = "after it"
+of = "largest_displacement"
+at_most = "100 m"
+source = "by hand"
+[[checks]]
+name = "stands"
+of = "factor_of_safety"
+at_least = 0.5
+source = "by hand"
+"#;
+
+fn face(set: &[&str]) -> Run<2> {
+    let set: Vec<String> = set.iter().map(|&own| own.to_owned()).collect();
+    let file = CaseFile::parse("face.toml", FACE, &set).unwrap_or_else(|error| panic!("{error}"));
+    in_memory(file.case()).unwrap()
+}
+
+fn row<'a>(run: &'a Run<2>, name: &str) -> &'a CheckRow {
+    let mut rows = run.summary.checks.iter();
+    rows.find(|row| row.check.quantity == name)
+        .unwrap_or_else(|| panic!("no check {name}: {:?}", run.summary.checks))
+}
+
+#[test]
+fn checks_of_stages_that_did_not_come_to_their_end_are_not_met() {
+    let run = face(&[]);
+    assert_eq!(run.summary.ending(), Ending::NotConverged);
+    let reached = run.summary.stages[2].reached;
+    assert!((0.05..0.95).contains(&reached), "{reached}");
+    for (name, is_known) in [
+        ("at the end of the load", true),
+        ("after it", false),
+        ("load, end", true),
+    ] {
+        let row = row(&run, name);
+        assert_eq!(row.standing, Standing::NotReached, "{name}");
+        assert!(!row.pass && row.verdict() == "not reached", "{name}");
+        assert_eq!(row.check.measured.is_finite(), is_known, "{name}");
+    }
+    // The factor was found before.
+    let factor = row(&run, "stands");
+    assert!(factor.pass && factor.standing == Standing::Held);
+}
+
+#[test]
+fn ground_in_which_nothing_fails_is_at_least_as_safe_as_is_asked() {
+    let light = [
+        "materials.clay.unit_weight=1 N/m3",
+        "loads.fill.pressure=1 Pa",
+    ];
+    let run = face(&light);
+    let factor = row(&run, "stands");
+    assert!(factor.pass, "{factor:?}");
+    assert_eq!(factor.standing, Standing::NothingFails);
+    assert_eq!(factor.measured(), "> 1000");
+    let run = face(&[&light[..], &["checks.stands.at_least=1.5"]].concat());
+    assert_eq!(run.summary.ending(), Ending::Done);
+}
