@@ -210,22 +210,3 @@ pub(crate) fn padded<const D: usize>(x: &[f64; D]) -> [f64; 3] {
     out[..D].copy_from_slice(x);
     out
 }
-
-#[cfg(test)]
-mod tests {
-    use super::AssemblyError;
-
-    /// GOAL: a determinant is told with four digits. ORACLE: by hand.
-    #[test]
-    fn determinants_have_four_digits() {
-        let error = AssemblyError::Inverted {
-            particle: 8072,
-            determinant: -0.204_181_711_961_970_46,
-        };
-        let told = error.to_string();
-        assert!(
-            told.contains("increment is -2.042e-1, but must be positive"),
-            "{told}"
-        );
-    }
-}

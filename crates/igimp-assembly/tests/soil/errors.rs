@@ -265,3 +265,17 @@ fn an_edge_load_keeps_resultant_and_moment() {
     let lever = 2.85 * expected[1] - 3.9 * expected[0];
     assert!((moment - lever).abs() < 1e-10);
 }
+
+/// GOAL: a determinant is told with four digits. ORACLE: by hand.
+#[test]
+fn determinants_have_four_digits() {
+    let error = AssemblyError::Inverted {
+        particle: 8072,
+        determinant: -0.204_181_711_961_970_46,
+    };
+    let told = error.to_string();
+    assert!(
+        told.contains("increment is -2.042e-1, but must be positive"),
+        "{told}"
+    );
+}
