@@ -155,7 +155,8 @@ fn breathing(study: &mut Study, cells: usize) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// A tamper of mass ρ c A τ that falls on a rod between smooth walls.
+/// A tamper of mass ρ c A τ that falls on a rod between smooth walls. On cells of 5 cm its way at 0.11 s is 1.1 % too long however short
+/// the steps are, on these 0.5 %.
 fn tamper(study: &mut Study) -> Result<(), CaseError> {
     let (gravity, density, young, fall, tau) = (9.81, 1800.0_f64, 20e6_f64, 0.05, 0.01);
     let area = PI * 0.25;
@@ -166,7 +167,7 @@ fn tamper(study: &mut Study) -> Result<(), CaseError> {
 title = \"a tamper on a rod\"
 analysis = \"axisymmetric\"
 [grid]
-cell = \"0.05 m\"
+cell = \"0.025 m\"
 domain = {{ x = [\"0 m\", \"0.5 m\"], y = [\"0 m\", \"10.5 m\"] }}
 [materials.rod]
 model = \"elastic\"
