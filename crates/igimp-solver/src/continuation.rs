@@ -20,6 +20,8 @@ use crate::workspace::Workspace;
 pub struct ContinuationSettings {
     /// First change of the load factor, as a share of it \[-\].
     pub first_change: f64,
+    /// Changes of the load factor that begin a path, before steps of work: so many that do work, or fewer where one fails.
+    pub direct_steps: usize,
     /// Most steps in all.
     pub most_steps: usize,
     /// How often a step may be halved in succession.
@@ -36,6 +38,7 @@ impl ContinuationSettings {
     pub fn new(newton: NewtonSettings) -> Self {
         Self {
             first_change: 0.05,
+            direct_steps: 2,
             most_steps: 200,
             halvings: 8,
             leaps: 4,
@@ -51,7 +54,9 @@ pub struct ContinuationState<const D: usize> {
     pub factor: f64,
     /// Change of the load factor in the next step, while such steps are made, as a share of it \[-\].
     pub change: f64,
-    /// Whether steps are steps of work: a change of the load factor failed after soil had yielded.
+    /// Changes of the load factor that did work so far.
+    pub working: usize,
+    /// Whether steps are steps of work.
     pub is_by_work: bool,
     /// Steps so far.
     pub steps: usize,
@@ -82,6 +87,11 @@ impl<const D: usize> LastStep<D> {
         does_work(step).then(|| Self::of_path(step, forces))
     }
 
+    /// Whether it moved the body as a mechanism.
+    fn is_mechanism(&self) -> bool {
+        self.dissipated >= MECHANISM
+    }
+
     /// An accepted step of a path.
     fn of_path(step: &StepReport, forces: &NodalForces<D>) -> Self {
         let work = step.gross_work;
@@ -106,6 +116,7 @@ impl<const D: usize> ContinuationState<D> {
         Self {
             factor,
             change: settings.first_change,
+            working: 0,
             is_by_work: false,
             steps: 0,
             work: 0.0,
@@ -126,13 +137,14 @@ impl<const D: usize> ContinuationState<D> {
                     guess: Guess {
                         u,
                         factor: self.factor + (by * last.change).clamp(-most, most),
-                        is_mechanism: last.dissipated >= MECHANISM,
+                        is_mechanism: last.is_mechanism(),
                     },
                 }
             }
-            _ => Target::Factor {
+            last => Target::Factor {
                 to: self.factor * (1.0 + self.change),
-                is_resolved: self.change > RESOLVED,
+                is_resolved: self.change > RESOLVED
+                    && !last.as_ref().is_some_and(LastStep::is_mechanism),
             },
         }
     }
@@ -156,7 +168,10 @@ impl<const D: usize> ContinuationState<D> {
             }
             Target::Factor { .. } => {
                 self.size = work;
-                self.change = self.change.min(settings.first_change);
+                self.working += 1;
+                self.is_by_work = self.working >= settings.direct_steps;
+                let grown = self.change * growth(step.iterations);
+                self.change = grown.min(settings.first_change);
             }
         }
         self.last = Some(LastStep::of_path(step, forces));
@@ -170,7 +185,7 @@ impl<const D: usize> ContinuationState<D> {
             None | Some(0) => 0.5 * self.size,
             Some(leaps) => first * 2.0_f64.powi(leaps as i32),
         };
-        // Steps of work alone go past a limit. Far from it corners that yield by themselves do most of the work.
+        // A limit that is nearer than the first change is approached by steps of work at once.
         self.is_by_work |= self.last.is_some();
     }
 

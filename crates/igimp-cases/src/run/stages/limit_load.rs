@@ -70,6 +70,7 @@ fn continuation_settings(
     let smallest = march.cut_factor.powi(march.cuts as i32) / stage.steps as f64;
     ContinuationSettings {
         first_change: FIRST_CHANGE * smallest / summary.reached,
+        direct_steps: usize::MAX,
         ..ContinuationSettings::new(march.newton)
     }
 }

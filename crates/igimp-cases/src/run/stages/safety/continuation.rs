@@ -32,9 +32,36 @@ const LEAST_FACTOR: f64 = 0.01;
 /// A path goes no further than this factor \[-\]: with a thousandth of its strength a body that stands is one that needs none.
 const MOST_FACTOR: f64 = 1000.0;
 
-/// First changes of the factor with which a path is followed, as a share of it \[-\]: each but the first where the path before
-/// was lost.
-const FIRST_CHANGES: [f64; 3] = [0.05, 0.035, 0.025];
+/// How a path is followed.
+#[derive(Clone, Copy, Debug)]
+struct Way {
+    /// First change of the factor, as a share of it \[-\].
+    first_change: f64,
+    /// How many changes of the factor do work before steps of work; none: all, until one fails.
+    direct_steps: Option<usize>,
+}
+
+impl Way {
+    /// Two changes, and steps of work from there.
+    const fn by_work(first_change: f64) -> Self {
+        Self {
+            first_change,
+            direct_steps: Some(2),
+        }
+    }
+}
+
+/// The ways of a path, each but the first where it was lost before. A corner that yields by itself takes all of the work of a step:
+/// changes of the factor go past it.
+const WAYS: [Way; 4] = [
+    Way::by_work(0.05),
+    Way {
+        first_change: 0.05,
+        direct_steps: None,
+    },
+    Way::by_work(0.035),
+    Way::by_work(0.025),
+];
 
 /// A mechanism whose factor lies this share below that of the limit is worth a remark \[-\].
 const APART: f64 = 5e-3;
@@ -189,19 +216,22 @@ impl Search<'_> {
         from: f64,
         summary: &mut StageSummary,
     ) -> Result<Followed<D>, CaseError> {
-        let [usual, others @ ..] = FIRST_CHANGES;
+        let [usual, others @ ..] = WAYS;
         let mut furthest = self.follow(session, start, (from, usual), summary)?;
-        for first_change in others {
+        for way in others {
             if !furthest.is_lost() || furthest.points.is_empty() {
                 break;
             }
+            let steps = match way.direct_steps {
+                None => "steps of the factor".to_owned(),
+                Some(_) => format!("first steps of {} %", short(100.0 * way.first_change)),
+            };
             session.warn(format!(
-                "the path of equilibria in stage \"{}\" was lost at {}, and is followed again with first steps of {} %",
+                "the path of equilibria in stage \"{}\" was lost at {}, and is followed again with {steps}",
                 self.stage.name,
                 short(furthest.reached()),
-                short(100.0 * first_change)
             ));
-            let again = self.follow(session, start, (from, first_change), summary)?;
+            let again = self.follow(session, start, (from, way), summary)?;
             if !again.is_lost() || again.reached() > furthest.reached() {
                 furthest = again;
             }
@@ -209,13 +239,12 @@ impl Search<'_> {
         Ok(furthest)
     }
 
-    /// Follows the path of a state from a strength reduction factor to its end, with first steps that change the factor by a
-    /// share of it.
+    /// Follows the path of a state from a strength reduction factor to its end, in one of the ways.
     fn follow<const D: usize>(
         &self,
         session: &mut Session<'_, D>,
         start: &State<D>,
-        (from, first_change): (f64, f64),
+        (from, way): (f64, Way),
         summary: &mut StageSummary,
     ) -> Result<Followed<D>, CaseError> {
         let model = session.model;
@@ -226,7 +255,8 @@ impl Search<'_> {
             model.conditions_on(model.grid(lowered), controls, 0.0)
         };
         let settings = ContinuationSettings {
-            first_change,
+            first_change: way.first_change,
+            direct_steps: way.direct_steps.unwrap_or(usize::MAX),
             ..ContinuationSettings::new(model.march_settings(1).newton)
         };
         let mut continuation = ContinuationState::start(from, None, &settings);
