@@ -139,11 +139,7 @@ pub(crate) fn follow_on<const D: usize>(
         (None, None) => StageEnd::Stopped(EndReason::StepsOfPathRanOut),
     };
     if let StageEnd::NotConverged(error) = &ended {
-        let cause = on_one_line(&*error.failure);
-        session.warn_of_stage(
-            number,
-            &format!("the path of equilibria was lost: {cause}; the load that it reached stands, and may not be the limit"),
-        );
+        session.warn_of_stage(number, &lost(error));
     }
     let path = PathSummary {
         end,
@@ -161,6 +157,14 @@ pub(crate) fn follow_on<const D: usize>(
     }
     summary.path = Some(path);
     Ok(ended)
+}
+
+/// What a reader has to know of a path that was lost.
+fn lost(error: &StepError) -> String {
+    let cause = on_one_line(&*error.failure);
+    format!(
+        "the path of equilibria was lost: {cause}; the load that it reached stands, and may not be the limit"
+    )
 }
 
 /// What a reader has to know of the path.
