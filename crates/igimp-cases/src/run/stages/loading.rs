@@ -106,7 +106,8 @@ pub(crate) fn release<const D: usize>(
         settings = flow::steps(model.case, own, settings, model.smallest_side()?);
     }
     let seeks_limit = limit_load::is_sought(stage);
-    settings.is_short_of_mechanism = seeks_limit;
+    // With water in its pores the work of loads is not that of effective stress.
+    settings.is_short_of_mechanism = seeks_limit && !model.case.has_pore_water();
     let mut last = None;
     let path = StagePath {
         flow: consolidation,
