@@ -44,8 +44,8 @@ pub use equations::system::{Reach, Structures, System};
 pub use equations::trial::Trial;
 pub use error::AssemblyError;
 pub use igimp_rigid::{
-    ContactNode, ContactState, Interface, Penalty, Penetration, Pose, RigidBody, RigidInertia,
-    Shear, Tension,
+    ContactChange, ContactNode, ContactState, Interface, Penalty, Penetration, Pose, RigidBody,
+    RigidInertia, Shear, Tension,
 };
 pub use igimp_surface::{CarryingTriangle, Surface, SurfaceError, SurfaceTriangle};
 pub use laws::SharedLaw;

@@ -26,7 +26,7 @@ pub use images::{Image, Images};
 pub use inertia::RigidInertia;
 pub use interface::{Interface, Penalty, Shear, Tension};
 pub use pose::Pose;
-pub use state::{ContactNode, ContactState};
+pub use state::{ContactChange, ContactNode, ContactState};
 pub use turn::Turn;
 
 /// Nodes that stand for the motion of a body behind the nodes of the grid: one for its displacement, one

@@ -37,3 +37,16 @@ pub struct ContactNode {
     /// Whether a bond was broken.
     pub is_broken: bool,
 }
+
+/// What a step in motion changes of the contact of a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactChange {
+    /// By how much pressure grows at knots that the motion before the step brings nearer to soil (theory, eq. 68c) \[force\].
+    pub force: f64,
+    /// Its work along that motion, for the duration of the step \[force·length\].
+    pub work: f64,
+    /// Friction at knots that slip, by magnitude (theory, eq. 68d) \[force\].
+    pub friction: f64,
+    /// Its work where it drives what it should hold back, for the duration of the step \[force·length\].
+    pub driven: f64,
+}

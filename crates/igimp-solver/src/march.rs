@@ -7,7 +7,7 @@ use igimp_assembly::{AssemblyError, Method, StepConditions};
 
 use crate::LoadPath;
 use crate::body::Body;
-use crate::newton::step_of_march;
+use crate::newton::{Stretch, step_of_march};
 use crate::report::{NodalForces, PhaseTimes, StepError, StepFailure, StepReport};
 use crate::settings::NewtonSettings;
 use crate::workspace::Workspace;
@@ -219,8 +219,13 @@ pub fn march_from<const D: usize>(
         stride.bound(&mut state, load_path.longest_step(at));
         let to = stride.next(at, state.size);
         let result = conditions_at(load_path, at, to).and_then(|conditions| {
-            let way = (at, to, settings.is_short_of_mechanism);
-            step_of_march(body, method, &conditions, way, &settings.newton, workspace)
+            let stretch = Stretch {
+                from: at,
+                to,
+                is_short_of_mechanism: settings.is_short_of_mechanism,
+            };
+            let newton = &settings.newton;
+            step_of_march(body, method, &conditions, stretch, newton, workspace)
                 .map(|(step, forces)| (conditions, step, forces))
         });
         match result {

@@ -47,20 +47,44 @@ pub fn step<const D: usize>(
     settings: &NewtonSettings,
     workspace: &mut Workspace<D>,
 ) -> Result<(StepReport, NodalForces<D>), StepError> {
-    let way = (from, to, false);
-    step_of_march(body, method, conditions, way, settings, workspace)
+    let stretch = Stretch {
+        from,
+        to,
+        is_short_of_mechanism: false,
+    };
+    step_of_march(body, method, conditions, stretch, settings, workspace)
 }
 
-/// The same, refused where the body moves as a mechanism in it if that is asked for.
+/// What a step of a march goes along.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stretch {
+    /// Load factor at the start \[-\].
+    pub(crate) from: f64,
+    /// Load factor at the end \[-\].
+    pub(crate) to: f64,
+    /// Whether the step is refused where the body moves as a mechanism in it.
+    pub(crate) is_short_of_mechanism: bool,
+}
+
+impl Stretch {
+    /// That of a body of its own, loaded at once.
+    const WHOLE: Self = Self {
+        from: 0.0,
+        to: 1.0,
+        is_short_of_mechanism: false,
+    };
+}
+
+/// A step along a stretch, as [`step`] makes it.
 pub(crate) fn step_of_march<const D: usize>(
     body: &mut Body<D>,
     method: &Method,
     conditions: &StepConditions<D>,
-    way: (f64, f64, bool),
+    stretch: Stretch,
     settings: &NewtonSettings,
     workspace: &mut Workspace<D>,
 ) -> Result<(StepReport, NodalForces<D>), StepError> {
-    let factors = (way.0, way.1);
+    let factors = (stretch.from, stretch.to);
     let of_column = |particles: Particles<D>, own: &StepConditions<D>| {
         let mut column = Body::new(particles);
         let mut workspace = Workspace::new(SolverKind::Auto.build());
@@ -68,7 +92,7 @@ pub(crate) fn step_of_march<const D: usize>(
             &mut column,
             method,
             own,
-            (0.0, 1.0, false),
+            Stretch::WHOLE,
             settings,
             &mut workspace,
         )
@@ -76,9 +100,9 @@ pub(crate) fn step_of_march<const D: usize>(
         .map_err(|error| *error.failure)
     };
     match free_field::go_ahead(&body.free_fields, method, conditions, factors, &of_column)? {
-        None => step_of_body(body, method, conditions, way, settings, workspace),
+        None => step_of_body(body, method, conditions, stretch, settings, workspace),
         Some((free_fields, conditions)) => {
-            let done = step_of_body(body, method, &conditions, way, settings, workspace)?;
+            let done = step_of_body(body, method, &conditions, stretch, settings, workspace)?;
             body.free_fields = free_fields;
             Ok(done)
         }
@@ -90,10 +114,15 @@ fn step_of_body<const D: usize>(
     body: &mut Body<D>,
     method: &Method,
     conditions: &StepConditions<D>,
-    (from, to, is_short_of_mechanism): (f64, f64, bool),
+    stretch: Stretch,
     settings: &NewtonSettings,
     workspace: &mut Workspace<D>,
 ) -> Result<(StepReport, NodalForces<D>), StepError> {
+    let Stretch {
+        from,
+        to,
+        is_short_of_mechanism,
+    } = stretch;
     let attempt = Attempt {
         method,
         conditions,
@@ -161,7 +190,8 @@ fn lies_on_nothing<const D: usize>(body: &Body<D>, conditions: &StepConditions<D
 /// it has none.
 fn has_no_stiffness<const D: usize>(failure: &StepFailure, trial: &Trial<D>) -> bool {
     let at_apex = || trial.particles.iter().any(|own| own.regime == Regime::Apex);
-    failure.is_singular() || failure.is_want_of_equilibrium() && at_apex()
+    let finds_none = failure.is_want_of_equilibrium() && *failure != StepFailure::MechanismAtOnce;
+    failure.is_singular() || finds_none && at_apex()
 }
 
 /// Advances a body by one step on its path, and measures the work of the step: to the load factor `to`, or by so much

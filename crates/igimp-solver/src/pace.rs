@@ -1,7 +1,7 @@
 //! How long the next step of a motion may be (theory, eqs. 68 to 68d): by the error of the time integration, by how far the body moves,
 //! by what contact changes, and by how hard equilibrium was to find; where water flows by the error of its pressures alone (eq. 104).
 
-use igimp_assembly::{Drive, RigidMotion, System, Trial};
+use igimp_assembly::{ContactChange, Drive, RigidMotion, System, Trial};
 use igimp_shape::Grid;
 
 use crate::body::Body;
@@ -117,9 +117,10 @@ fn by_contact<const D: usize>(system: &System<'_, D>, u: &[[f64; D]], body: &Bod
     let squared = conditions.duration().powi(2);
     let mass_of_soil: f64 = body.particles.mass.iter().sum();
     let changes = system.changes_of_contact(u).into_iter();
-    for (index, [[force, work], [friction, driven]]) in changes.enumerate() {
-        if friction > 0.0 {
-            largest[1] = largest[1].max(driven / friction);
+    for (index, change) in changes.enumerate() {
+        let ContactChange { force, work, .. } = change;
+        if change.friction > 0.0 {
+            largest[1] = largest[1].max(change.driven / change.friction);
         }
         if work <= 0.0 {
             continue;

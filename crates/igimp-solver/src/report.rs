@@ -91,7 +91,7 @@ pub enum StepFailure {
     },
     /// Converged, but the body moves as a mechanism in a step that hides where that begins.
     #[error(
-        "the body moves as a mechanism in the first steps of its path: a smaller one shows where that begins"
+        "the body moves as a mechanism in a step that hides where that begins: a shorter one shows it"
     )]
     MechanismAtOnce,
     /// A rigid body is free to move, and nothing holds it.

@@ -2,6 +2,7 @@
 
 pub(crate) mod fingerprint;
 pub(crate) mod free_field;
+pub(crate) mod last_step;
 pub(crate) mod reinforcement;
 pub(crate) mod rigid;
 
@@ -18,6 +19,7 @@ use serde::{Deserialize, Serialize};
 
 use super::state::{Controls, State};
 use free_field::SavedFreeField;
+use last_step::SavedStep;
 use reinforcement::SavedMember;
 use rigid::SavedBody;
 
@@ -37,6 +39,24 @@ pub(crate) struct Resumption {
     pub(crate) calm: Option<Calm>,
     /// Why the march ended with its last step, if its stage said so.
     pub(crate) end: Option<EndReason>,
+    /// Its last step, of a stage that goes on along its path.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) last_step: Option<SavedStep>,
+}
+
+impl Resumption {
+    /// A march without drag, resistance or end, from the controls at the beginning of its stage.
+    pub(crate) fn of(from: &Controls, march: MarchState) -> Self {
+        Self {
+            from: from.clone(),
+            march,
+            resistance: 0.0,
+            drag: 0.0,
+            calm: None,
+            end: None,
+            last_step: None,
+        }
+    }
 }
 
 /// Where a search for the factor of safety was left.

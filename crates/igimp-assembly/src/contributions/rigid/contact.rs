@@ -14,8 +14,8 @@ use crate::method::{Geometry, Method};
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
 use igimp_rigid::{
-    ALONG_THE_GRID, ContactNode, ContactState, Images, Interface, NODES_PER_BODY, Penalty,
-    Penetration, RigidBody, Tension, push_out, rotations, tents_within,
+    ALONG_THE_GRID, ContactChange, ContactNode, ContactState, Images, Interface, NODES_PER_BODY,
+    Penalty, Penetration, RigidBody, Tension, push_out, rotations, tents_within,
 };
 use igimp_surface::vectors::{minus, norm};
 
@@ -185,15 +185,14 @@ impl<'a, const D: usize> Contact<'a, D> {
             .fold(0.0, f64::max)
     }
 
-    /// By body, what a step by nodal displacements `u` \[length\] changes of contact: the force by which it grows where the motion that the
-    /// step begins with, `free` \[length\], brings soil nearer, and its work along that (theory, eq. 68c); and friction at knots that slip, and
-    /// its work where it pushes the soil along as that goes on by `next` \[length\] (eq. 68d) \[force, force·length\].
+    /// By body, what contact changes in a step by nodal displacements `u` \[length\] that would go on by `free` \[length\] without it, and goes on
+    /// by `next` \[length\].
     pub(crate) fn changes(
         &self,
         u: &[[f64; D]],
         (free, next): (&[[f64; D]], &[[f64; D]]),
-    ) -> Vec<[[f64; 2]; 2]> {
-        let mut changes = vec![[[0.0; 2]; 2]; self.bodies.len()];
+    ) -> Vec<ContactChange> {
+        let mut changes = vec![ContactChange::default(); self.bodies.len()];
         for (row, penalty) in std::iter::zip(&self.rows, &self.penalties) {
             let body = &self.bodies[row.body];
             let interface = &body.interfaces[body.surface.side_of(row.knot)];
@@ -201,13 +200,14 @@ impl<'a, const D: usize> Contact<'a, D> {
             let grown = row.area * (traction.pressure - row.before.pressure);
             let (way, slip) = (row.gap - row.gap_at(free), row.slip_at(next));
             let [first, second] = traction.shear;
-            let [blow, push] = &mut changes[row.body];
+            let change = &mut changes[row.body];
             if grown > 0.0 && way > 0.0 {
-                *blow = [blow[0] + grown, blow[1] + grown * way];
+                change.force += grown;
+                change.work += grown * way;
             }
             if traction.slips {
-                push[0] += row.area * first.hypot(second);
-                push[1] += row.area * (first * slip[0] + second * slip[1]).max(0.0);
+                change.friction += row.area * first.hypot(second);
+                change.driven += row.area * (first * slip[0] + second * slip[1]).max(0.0);
             }
         }
         changes

@@ -8,7 +8,7 @@ use crate::contributions::rigid::AcceptedContact;
 use crate::contributions::walls::TieForce;
 use crate::equations::kinematics::ParticleTrial;
 use crate::equations::trial::Trial;
-use igimp_rigid::Penetration;
+use igimp_rigid::{ContactChange, Penetration};
 
 /// The force of acceleration below which a body is at rest, over the round-off of forces \[-\].
 const AT_REST: f64 = 100.0;
@@ -150,10 +150,8 @@ impl<const D: usize> System<'_, D> {
         self.beside.contact.closing(u)
     }
 
-    /// By rigid body, what a step by nodal displacements `u` \[length\] changes of contact: the force by which it grows where body and soil
-    /// come nearer, and its work along the motion that the step begins with (theory, eq. 68c); and friction at knots that slip, and its
-    /// work where it drives what it should hold back (eq. 68d) \[force, force·length\]. Motion that is given counts as none; none in statics.
-    pub fn changes_of_contact(&self, u: &[[f64; D]]) -> Vec<[[f64; 2]; 2]> {
+    /// By rigid body, what contact changes in a step by nodal displacements `u` \[length\]. Motion that is given counts as none; none in statics.
+    pub fn changes_of_contact(&self, u: &[[f64; D]]) -> Vec<ContactChange> {
         let (Some(inertia), Some(free)) = (&self.inertia, self.predicted_motion()) else {
             return Vec::new();
         };

@@ -100,12 +100,10 @@ pub(crate) fn dynamic<const D: usize>(
             let share = energy.map_or(1.0, |own| own.kinetic / own.most_kinetic);
             let at_rest = at_rest(dynamic, &mut calm, (time, share));
             let resumption = Resumption {
-                from: from.clone(),
-                march: *taken.accepted.state,
                 resistance: taken.resistance,
-                drag: 0.0,
                 calm: Some(calm),
                 end: at_rest.or_else(|| reason_to_stop(session, stage, 0.0, taken)),
+                ..Resumption::of(&from, *taken.accepted.state)
             };
             if let Some(output) = &mut session.output {
                 let run = &session.summary;

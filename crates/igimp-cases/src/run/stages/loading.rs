@@ -13,6 +13,7 @@ use crate::error::CaseError;
 use crate::run::output::moment::{AcceptedStep, Moment};
 use crate::run::reinforcement;
 use crate::run::resume::Resumption;
+use crate::run::resume::last_step::SavedStep;
 use crate::run::session::{Session, StageEnd, StagePath, march_path};
 use crate::run::state::{Controls, State};
 use crate::run::water::flow;
@@ -108,7 +109,8 @@ pub(crate) fn release<const D: usize>(
     let seeks_limit = limit_load::is_sought(stage);
     // With water in its pores the work of loads is not that of effective stress.
     settings.is_short_of_mechanism = seeks_limit && !model.case.has_pore_water();
-    let mut last = None;
+    let left_step = resumption.and_then(|left| left.last_step.as_ref());
+    let mut last = left_step.map(SavedStep::step);
     let path = StagePath {
         flow: consolidation,
         held,
@@ -128,12 +130,10 @@ pub(crate) fn release<const D: usize>(
             let end = reason_to_stop(session, stage, resistance, taken);
             resistance = taken.resistance;
             let resumption = Resumption {
-                from: from.clone(),
-                march: *taken.accepted.state,
                 resistance,
-                drag: 0.0,
-                calm: None,
                 end,
+                last_step: last.as_ref().map(SavedStep::of),
+                ..Resumption::of(&from, *taken.accepted.state)
             };
             if let Some(output) = &mut session.output {
                 let run = &session.summary;

@@ -79,12 +79,10 @@ pub(crate) fn run_out<const D: usize>(
                 is_in_equilibrium: None,
             });
             let resumption = Resumption {
-                from: to.clone(),
-                march: *taken.accepted.state,
                 resistance: taken.resistance,
                 drag: drag.get(),
-                calm: None,
                 end: at_rest.or_else(|| reason_to_stop(session, stage, 0.0, taken)),
+                ..Resumption::of(&to, *taken.accepted.state)
             };
             if let Some(output) = &mut session.output {
                 let run = &session.summary;
