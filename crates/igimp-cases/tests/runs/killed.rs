@@ -5,11 +5,15 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use igimp_assembly::{ParticleSeed, Particles};
+use igimp_cases::run::{Event, Start, Target, run};
+use igimp_input::CaseFile;
 use igimp_results::checkpoint::{self, Checkpoint, Meta};
 use igimp_results::folder::write_atomically;
+use igimp_results::summary::Summary;
 use igimp_solver::Body;
 use serde_json::json;
 
@@ -97,4 +101,41 @@ fn whenever_it_is_killed_a_checkpoint_is_whole() {
         last = now;
     }
     println!("{last} checkpoints in 30 lives");
+}
+
+/// GOAL: a run that is killed between two stages leaves a summary that says that it can be resumed.
+/// ORACLE: the summary as the second stage begins, and at the end of the run.
+#[test]
+fn a_summary_between_stages_is_of_a_run_that_can_be_resumed() {
+    let text = igimp_input::shipped::find("slope").unwrap().text;
+    let settings = ["grid.cell = 2 m".to_owned()];
+    let file =
+        CaseFile::parse("slope.toml", text, &settings).unwrap_or_else(|error| panic!("{error}"));
+    let mut case = file.case().clone();
+    case.stages.truncate(2);
+    case.checks.clear();
+    let root = crate::resuming::folder("killed-between");
+    let is_left = || {
+        let bytes = fs::read(root.join("summary.json")).unwrap();
+        let summary: Summary = serde_json::from_slice(&bytes).unwrap();
+        (summary.interrupted, summary.stages.len())
+    };
+    let mut between = None;
+    let mut listener = |event: &Event<'_, 2>| {
+        if matches!(event, Event::StageStarted { stage: 1, .. }) {
+            between = Some(is_left());
+        }
+    };
+    let interrupt = AtomicBool::new(false);
+    let target = Target::of(&file, &root);
+    run(
+        &case,
+        Some(&target),
+        Start::Afresh,
+        &mut listener,
+        &interrupt,
+    )
+    .unwrap();
+    assert_eq!(between, Some((true, 1)));
+    assert_eq!(is_left(), (false, 2));
 }

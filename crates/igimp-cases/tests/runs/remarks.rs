@@ -222,3 +222,47 @@ fn memory_that_decides_on_the_solver_is_told() {
         moved(&roomy)
     );
 }
+
+/// GOAL: a search along the path of equilibria says that hardly any of the mass moves. CASE: a step of 1 m in a wide field of clay.
+/// ORACLE: the same of a field that is hardly wider than its step has no such remark.
+#[test]
+fn a_small_step_in_a_wide_field_may_fail_alone() {
+    let told = |width: f64| {
+        let text = format!(
+            r#"
+igimp = 1
+[case]
+title = "step"
+[grid]
+cell = "0.5 m"
+domain = {{ x = ["0 m", "{width} m"], y = ["0 m", "5 m"] }}
+[materials.clay]
+model = "tresca"
+unit_weight = "20 kN/m3"
+young = "20 MPa"
+poisson = 0.49
+cu = "8 kPa"
+[[bodies]]
+name = "field"
+material = "clay"
+polygon = [["0 m", "0 m"], ["{width} m", "0 m"], ["{width} m", "3 m"], ["3 m", "3 m"], ["3 m", "4 m"], ["0 m", "4 m"]]
+[[stages]]
+name = "weight"
+type = "gravity"
+[[stages]]
+name = "safety"
+type = "strength-reduction"
+"#
+        );
+        let file =
+            CaseFile::parse("step.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+        let run = in_memory(file.case()).unwrap();
+        let share = safety(&run).moving_mass.unwrap();
+        let told = !warnings_with(&run, "may be a local failure").is_empty();
+        println!("{width} m: {share}, {told}");
+        assert_eq!(told, share < 0.02);
+        told
+    };
+    assert!(told(80.0));
+    assert!(!told(5.0));
+}
