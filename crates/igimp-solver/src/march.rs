@@ -94,6 +94,9 @@ pub struct MarchSettings {
     pub pace: Option<Pace>,
     /// Whether a step is refused in which the body moves as a mechanism, so that it ends before one: a path of equilibria goes on.
     pub is_short_of_mechanism: bool,
+    /// Whether a step that finds no equilibrium is tried once more with guarded corrections (theory, eq. 25e), before it is cut: for soil
+    /// that flows.
+    pub guards_again: bool,
     /// The iteration of each step.
     pub newton: NewtonSettings,
 }
@@ -118,6 +121,7 @@ impl MarchSettings {
             growth: 1.5,
             pace: None,
             is_short_of_mechanism: false,
+            guards_again: false,
             newton: NewtonSettings::default(),
         }
     }
@@ -223,6 +227,7 @@ pub fn march_from<const D: usize>(
                 from: at,
                 to,
                 is_short_of_mechanism: settings.is_short_of_mechanism,
+                guards_again: settings.guards_again,
             };
             let newton = &settings.newton;
             step_of_march(body, method, &conditions, stretch, newton, workspace)

@@ -51,6 +51,7 @@ pub fn step<const D: usize>(
         from,
         to,
         is_short_of_mechanism: false,
+        guards_again: false,
     };
     step_of_march(body, method, conditions, stretch, settings, workspace)
 }
@@ -64,6 +65,8 @@ pub(crate) struct Stretch {
     pub(crate) to: f64,
     /// Whether the step is refused where the body moves as a mechanism in it.
     pub(crate) is_short_of_mechanism: bool,
+    /// Whether the step is tried once more with guarded corrections where it finds no equilibrium.
+    pub(crate) guards_again: bool,
 }
 
 impl Stretch {
@@ -72,6 +75,7 @@ impl Stretch {
         from: 0.0,
         to: 1.0,
         is_short_of_mechanism: false,
+        guards_again: false,
     };
 }
 
@@ -122,6 +126,7 @@ fn step_of_body<const D: usize>(
         from,
         to,
         is_short_of_mechanism,
+        guards_again,
     } = stretch;
     let attempt = Attempt {
         method,
@@ -155,7 +160,9 @@ fn step_of_body<const D: usize>(
             ghost_penalty: GHOST_PENALTY,
             ..attempt
         })
-    } else if method.geometry == Geometry::Given && has_no_stiffness(&failure, &workspace.trial) {
+    } else if guards_again && failure.is_want_of_equilibrium()
+        || method.geometry == Geometry::Given && has_no_stiffness(&failure, &workspace.trial)
+    {
         Some(Attempt {
             is_guarded: true,
             ..attempt
