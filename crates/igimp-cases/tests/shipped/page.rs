@@ -66,8 +66,8 @@ impl<const D: usize> Ran<D> {
     /// Slide of a rigid block on the ground that was shaken \[m\].
     fn slid(&self) -> f64 {
         let stages = self.run.summary.stages.iter();
-        let blocks = stages.filter_map(|stage| stage.newmark.as_ref());
-        blocks.last().unwrap().displacement
+        let mut blocks = stages.rev().filter_map(|stage| stage.newmark.as_ref());
+        blocks.next().unwrap().displacement
     }
 }
 

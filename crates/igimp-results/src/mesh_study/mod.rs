@@ -139,6 +139,7 @@ pub struct StudyResult {
 
 impl StudyResult {
     /// The result as it is told: its numbers in the unit of the case, and that unit in its name.
+    #[must_use]
     pub fn as_told(&self) -> Self {
         let Some(unit) = &self.unit else {
             return self.clone();
