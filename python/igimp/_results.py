@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import os
 import warnings
 import xml.etree.ElementTree as ElementTree
@@ -23,6 +24,8 @@ from ._errors import CLASSES, CaseWarning, Error, FileError, InputError
 if TYPE_CHECKING:
     from ._case import Case
 
+NO_UNIT: dict[str, Any] = {"name": "", "in_si": 1.0}
+
 
 @dataclass(frozen=True)
 class Check:
@@ -31,15 +34,22 @@ class Check:
     Attributes
     ----------
     name : str
-        What is measured, with its unit.
+        What is measured.
     value, reference : float
-        What was computed, and the outside value, in that unit.
+        What was computed, and the outside value, in SI units.
     band : str
-        What is accepted, such as ``± 2 %``.
+        What is accepted, such as ``± 2 %``, in the unit of the case.
     met : bool
-        Whether the band is met.
+        Whether the band is met; never where the check was not reached.
     source : str
         Where the outside value comes from.
+    standing : str
+        What the value is worth: ``held``, ``not-reached`` where the stage of the check did not come to its end (the value is
+        then one on the way, or none), or ``nothing-fails`` for a factor of safety above 1000.
+    unit : str
+        The unit in which the case states what is accepted; empty for plain numbers.
+    in_si : float
+        Its value in the SI unit.
     """
 
     name: str
@@ -48,22 +58,54 @@ class Check:
     band: str
     met: bool
     source: str
+    standing: str = "held"
+    unit: str = ""
+    in_si: float = 1.0
 
     @classmethod
     def of(cls, row: dict[str, Any]) -> Check:
         """A check of ``summary.json``."""
         own = row["check"]
         value = float("nan") if own["measured"] is None else own["measured"]
-        return cls(own["quantity"], value, own["expected"], _band(own["band"]), row["pass"], own["source"])
+        unit = own.get("unit") or NO_UNIT
+        return cls(
+            name=own["quantity"],
+            value=value,
+            reference=own["expected"],
+            band=_band(own["band"], unit),
+            met=row["pass"],
+            source=own["source"],
+            standing=row.get("standing", "held"),
+            unit=unit["name"],
+            in_si=unit["in_si"],
+        )
+
+    @property
+    def verdict(self) -> str:
+        """``met``, ``missed`` or ``not reached``, as the program says it."""
+        if self.standing == "not-reached":
+            return "not reached"
+        return "met" if self.met else "missed"
+
+    @property
+    def told(self) -> str:
+        """The value as the program tells it, in the unit of the case."""
+        return "> 1000" if self.standing == "nothing-fails" else self._told(self.value)
+
+    def _told(self, value: float) -> str:
+        return "-" if math.isnan(value) else f"{value / self.in_si:.4g} {self.unit}".rstrip()
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.told}, expected {self._told(self.reference)}, {self.band} ({self.source})"
 
 
-def _band(band: dict[str, Any]) -> str:
+def _band(band: dict[str, Any], unit: dict[str, Any]) -> str:
     ((kind, value),) = band.items()
     if kind == "relative":
         return f"± {100 * value:.4g} %"
-    if kind == "between":
-        return f"{value[0]:.4g} … {value[1]:.4g}"
-    return f"{'≤' if kind == 'at-most' else '≥'} {value:.4g}"
+    ends = [f"{one / unit['in_si']:.4g}" for one in (value if kind == "between" else [value])]
+    sign = {"between": "", "at-most": "≤ ", "at-least": "≥ "}[kind]
+    return f"{sign}{' … '.join(ends)} {unit['name']}".rstrip()
 
 
 @dataclass(frozen=True)
@@ -127,6 +169,10 @@ class MeshResult:
         By mesh, whether the run ended before it came to the value, which is then not extrapolated.
     extrapolated, uncertainty : float or None
         What the values say together, and how far that may be off.
+    unit : str
+        Of a check the unit in which the case states what is accepted; empty for plain numbers. Numbers are in SI units.
+    in_si : float
+        Its value in the SI unit.
     """
 
     name: str
@@ -136,6 +182,13 @@ class MeshResult:
     early: tuple[bool, ...]
     extrapolated: float | None
     uncertainty: float | None
+    unit: str = ""
+    in_si: float = 1.0
+
+    def _row(self) -> list[Any]:
+        name = f"{self.name} [{self.unit}]" if self.unit else self.name
+        numbers = (*self.values, self.extrapolated, self.uncertainty)
+        return [name, *(None if own is None else own / self.in_si for own in numbers)]
 
 
 @dataclass(frozen=True)
@@ -166,7 +219,18 @@ class MeshStudy:
         def result(one: dict[str, Any]) -> MeshResult:
             found = one["estimate"] or {"value": None, "uncertainty": None}
             values, widths, early = (tuple(one[key]) for key in ("values", "half_widths", "early"))
-            return MeshResult(one["name"], one["kind"], values, widths, early, found["value"], found["uncertainty"])
+            unit = one.get("unit") or NO_UNIT
+            return MeshResult(
+                one["name"],
+                one["kind"],
+                values,
+                widths,
+                early,
+                found["value"],
+                found["uncertainty"],
+                unit["name"],
+                unit["in_si"],
+            )
 
         parts = [mesh["parts"] for mesh in own["meshes"]]
         return cls(
@@ -177,7 +241,7 @@ class MeshStudy:
 
     def _repr_html_(self) -> str:
         header = ["result", *self.meshes, "extrapolated", "uncertainty"]
-        return _html.rows(header, [[own.name, *own.values, own.extrapolated, own.uncertainty] for own in self])
+        return _html.rows(header, [own._row() for own in self])
 
 
 @dataclass(frozen=True)
@@ -372,11 +436,11 @@ class Results:
         NotConverged
             If no equilibrium was found, or the run was interrupted.
         ReferenceMissed
-            If a check is missed.
+            If a check is missed, or was not reached.
         """
         if self.exit_code:
-            missed = "\n".join(f"missed: {own}" for own in self.checks if not own.met)
-            text = self.failure or "\n".join(self.lost) or missed or f"error: the run was {self.ending}"
+            unmet = "\n".join(f"{own.verdict}: {own}" for own in self.checks if not own.met)
+            text = self.failure or "\n".join(self.lost) or unmet or f"error: the run was {self.ending}"
             raise CLASSES.get(self.exit_code, Error)(text)
         return self
 

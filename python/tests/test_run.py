@@ -92,6 +92,31 @@ def test_want_of_equilibrium_is_a_result(column):
     assert found.exit_code == 3 and found.failure and found.ending == "not converged"
     with pytest.raises(igimp.NotConverged):
         found.raise_for_failure()
+    # A check of a stage that did not come to its end is told as the program tells it.
+    asked = {own.name: own for own in found.checks}["height over initial height"]
+    assert asked.verdict == "not reached" and asked.standing == "not-reached" and not asked.met
+    assert str(found).count("NOT REACHED") == sum(own.verdict == "not reached" for own in found.checks)
+    assert "NOT REACHED" in found._repr_html_()
+
+
+def test_a_check_is_told_in_the_unit_of_its_case():
+    # By hand: 1 kPa is 1000 Pa.
+    own = {"quantity": "q", "expected": 45e3, "source": "s", "unit": {"name": "kPa", "in_si": 1000.0}}
+
+    def check(measured, band, **row):
+        return igimp.Check.of({"check": {**own, "measured": measured, "band": band}, **row})
+
+    held = check(44e3, {"between": [40e3, 50e3]}, **{"pass": True}, standing="held")
+    assert (held.value, held.reference, held.verdict) == (44e3, 45e3, "met")
+    assert str(held) == "q: 44 kPa, expected 45 kPa, 40 … 50 kPa (s)"
+    lost = check(None, {"at-most": 50e3}, **{"pass": False}, standing="not-reached")
+    assert (lost.verdict, lost.told, lost.band) == ("not reached", "-", "≤ 50 kPa")
+    safe = check(1.6e8, {"at-least": 45e3}, **{"pass": True}, standing="nothing-fails")
+    assert (safe.verdict, safe.told) == ("met", "> 1000")
+    # Summaries of before say neither.
+    old = {"quantity": "q", "expected": 2.0, "source": "s", "measured": 3.0, "band": {"relative": 0.01}}
+    old = igimp.Check.of({"check": old, "pass": False})
+    assert (old.verdict, old.told, old.band, old.unit) == ("missed", "3", "± 1 %", "")
 
 
 def test_a_missed_reference_is_told(column):

@@ -20,6 +20,9 @@ const FALLEN: f64 = 0.03;
 /// The same where the path is lost behind it \[-\].
 const FALLEN_AND_LOST: f64 = 0.01;
 
+/// A factor that has gone back by this share is told as that \[-\]: less is not seen in four digits.
+const GONE_BACK: f64 = 1e-4;
+
 /// The way of a factor in its stage: where it begins, and to which side it goes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Course {
@@ -50,11 +53,6 @@ impl Course {
     /// How much further a factor is on the way than another \[-\].
     fn beyond(self, factor: f64, other: f64) -> f64 {
         self.side * (factor - other)
-    }
-
-    /// The factor that is further on the way.
-    fn further(self, a: f64, b: f64) -> f64 {
-        if self.beyond(a, b) > 0.0 { a } else { b }
     }
 
     /// What changes of the factor are shares of: its size, or its way so far where it passes zero \[-\].
@@ -233,6 +231,27 @@ pub(crate) fn knee(points: &[PathPoint], course: Course) -> Option<PathPoint> {
     Some(knee.1)
 }
 
+/// The furthest equilibrium of a path up to the one that tells the factor.
+fn furthest_up_to(path: &PathSummary, limit: &PathPoint) -> PathPoint {
+    let course = Course::of(path);
+    let up_to = path.points.iter().filter(|point| point.work <= limit.work);
+    up_to.fold(*limit, |most, point| {
+        if course.beyond(point.factor, most.factor) > 0.0 {
+            *point
+        } else {
+            most
+        }
+    })
+}
+
+/// The furthest equilibrium of a path up to the one that tells the factor, where the factor has gone back from it since.
+pub(crate) fn gone_back_from(path: &PathSummary, limit: &PathPoint) -> Option<PathPoint> {
+    let most = furthest_up_to(path, limit);
+    Course::of(path)
+        .is_behind(limit.factor, most.factor, GONE_BACK)
+        .then_some(most)
+}
+
 /// The interval of the factor that a path tells: from the furthest up to the equilibrium that tells it, to where it would
 /// go in another doubling of the work, both wider by what the residual leaves in doubt (theory, eq. 33f). Of a factor that
 /// falls the first is the larger one.
@@ -244,10 +263,7 @@ pub(crate) fn interval(path: &PathSummary) -> (Option<f64>, Option<f64>) {
         return (Some(last.factor), None);
     };
     let course = Course::of(path);
-    let up_to = path.points.iter().filter(|point| point.work <= limit.work);
-    let factor = up_to.fold(limit.factor, |most, point| {
-        course.further(most, point.factor)
-    });
+    let factor = furthest_up_to(path, &limit).factor;
     let doubts = path.points.iter().map(|point| point.in_doubt);
     let doubt = doubts.fold(0.0, f64::max);
     let rise = match path.end {

@@ -42,6 +42,22 @@ impl fmt::Display for Band {
     }
 }
 
+/// A unit in which numbers are told that are kept in SI units.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ToldUnit {
+    /// Its name, such as `kPa`.
+    pub name: String,
+    /// Its value in the SI unit, such as 1000.
+    pub in_si: f64,
+}
+
+impl ToldUnit {
+    /// A number in SI units as it is told: in this unit, with its name.
+    pub fn told(&self, value: f64) -> String {
+        format!("{} {}", short(value / self.in_si), self.name)
+    }
+}
+
 /// A computed quantity and the outside value it is held against.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Check {
@@ -60,12 +76,38 @@ pub struct Check {
     /// The computed value, in the same unit; NaN is `null` in JSON.
     #[serde(deserialize_with = "or_not_a_number")]
     pub measured: f64,
+    /// The unit in which the case states what is accepted; none: plain numbers. Numbers here are in SI units all the same.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<ToldUnit>,
 }
 
 impl Check {
     /// Whether the band is met.
     pub fn passes(&self) -> bool {
         self.band.holds(self.expected, self.measured)
+    }
+
+    /// A value of this check as it is told, in the unit of the case; a dash for one that is not a number.
+    pub fn told(&self, value: f64) -> String {
+        match &self.unit {
+            _ if value.is_nan() => "-".to_owned(),
+            Some(unit) => unit.told(value),
+            None => short(value),
+        }
+    }
+
+    /// The band as it is told, in the unit of the case.
+    pub fn told_band(&self) -> String {
+        let Some(ToldUnit { name, in_si }) = &self.unit else {
+            return self.band.to_string();
+        };
+        let band = match self.band {
+            Band::Relative(_) => return self.band.to_string(),
+            Band::Between(low, high) => Band::Between(low / in_si, high / in_si),
+            Band::AtMost(limit) => Band::AtMost(limit / in_si),
+            Band::AtLeast(limit) => Band::AtLeast(limit / in_si),
+        };
+        format!("{band} {name}")
     }
 }
 
@@ -80,6 +122,37 @@ pub fn or_not_a_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// GOAL: a check is told in the unit of its case, and a value that is not a number is no number of it.
+    /// ORACLE: by hand, with a pound-force per square foot of 47.88026 Pa (NIST SP 811).
+    #[test]
+    fn a_check_is_told_in_its_unit() {
+        let unit = Some(ToldUnit {
+            name: "psf".to_owned(),
+            in_si: 47.88026,
+        });
+        let mut check = Check {
+            case: String::new(),
+            variant: String::new(),
+            quantity: "q".to_owned(),
+            expected: 4788.026,
+            source: String::new(),
+            band: Band::Between(4309.2234, 5266.8286),
+            measured: f64::NAN,
+            unit,
+        };
+        assert_eq!(check.told(check.expected), "100 psf");
+        assert_eq!(check.told(check.measured), "-");
+        assert_eq!(check.told_band(), "90 … 110 psf");
+        check.band = Band::AtMost(5266.8286);
+        assert_eq!(check.told_band(), "≤ 110 psf");
+        check.band = Band::AtLeast(4309.2234);
+        assert_eq!(check.told_band(), "≥ 90 psf");
+        check.band = Band::Relative(0.05);
+        assert_eq!(check.told_band(), "± 5 %");
+        check.unit = None;
+        assert_eq!(check.told(check.expected), "4788");
+    }
 
     #[test]
     fn a_value_that_is_not_a_number_never_passes() {

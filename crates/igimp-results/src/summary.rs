@@ -720,8 +720,7 @@ impl CheckRow {
     pub fn measured(&self) -> String {
         match self.standing {
             Standing::NothingFails => format!("> {NEEDLESS}"),
-            Standing::NotReached if self.check.measured.is_nan() => "-".to_owned(),
-            _ => short(self.check.measured),
+            _ => self.check.told(self.check.measured),
         }
     }
 }

@@ -194,6 +194,13 @@ impl Display for Quantity {
     }
 }
 
+/// The unit of a quantity as text, with plain digits for powers, and its value in SI units; `None` for a plain number.
+pub fn unit_of(text: &str) -> Option<(&'static str, f64)> {
+    let (_, unit) = split(text.trim())?;
+    let found = Unit::find(unit)?;
+    Some((found.symbol, found.to_si(1.0)))
+}
+
 /// Text for a message, not longer than is readable.
 fn clip(text: &str) -> String {
     super::text::clip(text, 40)

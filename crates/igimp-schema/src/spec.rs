@@ -2,7 +2,7 @@
 //!
 //! One declaration drives the checks, the defaults, `explain`, the JSON Schema and the reference.
 
-use super::quantity::{Dimension, Quantity};
+use super::quantity::{Dimension, Quantity, unit_of};
 use super::tree::read::Read;
 use super::tree::{Node, Value, Wrong};
 
@@ -358,15 +358,24 @@ pub struct Measured {
     pub value: f64,
     /// What it measures; none: a plain number.
     pub dimension: Option<Dimension>,
+    /// The unit that it is written in, and its value in SI units; none: a plain number.
+    pub unit: Option<(&'static str, f64)>,
 }
 
 impl Read for Measured {
     fn read(node: &Node) -> Result<Self, Wrong> {
         let value = node.number().ok_or(Wrong)?;
-        let dimension = match &node.value {
-            Value::Quantity(_, text) => Quantity::parse(text).ok().and_then(|own| own.dimension),
-            _ => None,
+        let (dimension, unit) = match &node.value {
+            Value::Quantity(_, text) => (
+                Quantity::parse(text).ok().and_then(|own| own.dimension),
+                unit_of(text),
+            ),
+            _ => (None, None),
         };
-        Ok(Self { value, dimension })
+        Ok(Self {
+            value,
+            dimension,
+            unit,
+        })
     }
 }

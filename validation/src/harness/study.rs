@@ -271,6 +271,7 @@ impl Study {
             source: expected.oracle.source.to_owned(),
             band,
             measured,
+            unit: None,
         };
         self.rows.push(Row {
             oracle: expected.oracle.kind,

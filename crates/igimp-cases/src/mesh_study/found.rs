@@ -47,17 +47,18 @@ impl Found {
 pub fn study<const D: usize>(case: &Case<D>, runs: &[Option<&Summary>]) -> Vec<StudyResult> {
     let parts = meshes::refinements(case);
     let mut results = Vec::new();
-    let mut add = |name: String, kind, known, found: Vec<Option<Found>>| {
+    let mut add = |name: String, kind, known, found: Vec<Option<Found>>, unit| {
         let finite = |found: Option<Found>| found.filter(|found| found.value.is_finite());
         let found: Vec<Option<Found>> = found.into_iter().map(finite).collect();
         if found.iter().any(Option::is_some) {
-            results.push(result(name, kind, known, &found, &parts));
+            let result = result(name, kind, known, &found, &parts);
+            results.push(StudyResult { unit, ..result });
         }
     };
     for number in 0..case.stages.len() {
         if let Some((name, kind, known)) = of_stage(case, number) {
             let found = runs.iter().map(|run| at_stage(case, (*run)?, number));
-            add(name, kind, known, found.collect());
+            add(name, kind, known, found.collect(), None);
         }
     }
     let longest = runs.iter().flatten().max_by_key(|run| run.checks.len());
@@ -73,7 +74,8 @@ pub fn study<const D: usize>(case: &Case<D>, runs: &[Option<&Summary>]) -> Vec<S
             Some(at_check(case, run, row))
         });
         let known = of_check(case, name);
-        add(name.clone(), ResultKind::Check, known, found.collect());
+        let (name, unit) = (name.clone(), row.check.unit.clone());
+        add(name, ResultKind::Check, known, found.collect(), unit);
     }
     results
 }
@@ -132,7 +134,7 @@ pub(crate) fn remarks<const D: usize>(case: &Case<D>, results: &[StudyResult]) -
         .map(meshes::label)
         .collect();
     let mut remarks = Vec::new();
-    for result in results {
+    for result in results.iter().map(StudyResult::as_told) {
         for (mesh, label) in labels.iter().enumerate() {
             if let (Some(value), true) = (result.values[mesh], result.ended_early(mesh)) {
                 remarks.push(format!(
@@ -178,6 +180,7 @@ fn result(
             .map(|found| found.is_some_and(|found| found.ended_early))
             .collect(),
         estimate: estimate(&points, known),
+        unit: None,
     }
 }
 

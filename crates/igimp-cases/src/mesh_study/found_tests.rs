@@ -98,6 +98,7 @@ fn a_check_of_a_stage_that_was_given_up_is_not_extrapolated() {
                 source: String::new(),
                 band: Band::Relative(0.1),
                 measured,
+                unit: None,
             },
             pass: false,
             standing: Standing::Held,
@@ -127,6 +128,7 @@ fn row(quantity: &str, expected: f64, measured: f64) -> CheckRow {
         source: String::new(),
         band: Band::Relative(0.1),
         measured,
+        unit: None,
     };
     CheckRow::held(check)
 }

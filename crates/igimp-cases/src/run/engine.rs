@@ -296,7 +296,13 @@ impl<const D: usize> Stages<D> {
             }
         }
         if let Some(error) = step_error {
-            self.failure = Some(failure::describe(session, number, state, &summary, error));
+            let failure = failure::describe(session, number, state, &summary, error);
+            if failure.is_collapse() {
+                let cause = failure::COLLAPSE.to_owned();
+                let beyond = None;
+                summary.reason = EndReason::NoEquilibrium { beyond, cause }.to_string();
+            }
+            self.failure = Some(failure);
         }
         let goes_on = matches!(
             summary.outcome,

@@ -3,17 +3,22 @@
 pub(super) mod advice;
 pub(crate) mod message;
 
-use igimp_assembly::Particles;
+use igimp_linear::LinearSolverError;
 use igimp_material::Regime;
-use igimp_model::{Case, RigidMove, StageKind};
+use igimp_model::{Field, RigidMove, StageKind};
 use igimp_results::ending::PathEnd;
+use igimp_results::fields;
 use igimp_results::summary::StageSummary;
 use igimp_solver::{StepError, StepFailure};
 
-use super::Failure;
+use super::model::Model;
 use super::session::Session;
 use super::stages::dynamic::most_cuts;
 use super::state::State;
+use super::{Failure, NearWorst};
+
+/// Share of its shear strength from which on a particle counts as close to failure \[-\].
+const AT_STRENGTH: f64 = 0.9;
 
 /// Whether a stage that found no equilibrium ended in a way that tells no limit: its path was lost, its linear system
 /// could not be solved, or nothing but a motion was driven, which has an equilibrium at any load.
@@ -43,10 +48,9 @@ pub(crate) fn describe<const D: usize>(
 ) -> Failure {
     let case = session.model.case;
     let stage = &case.stages[number];
-    let particles = &state.body.particles;
     let around = error
         .worst
-        .map(|(x, _)| around(case, particles, std::array::from_fn(|axis| x[axis])));
+        .map(|(x, _)| around(session.model, state, std::array::from_fn(|axis| x[axis])));
     let near_worst = around.as_ref().map(|(counts, _)| *counts);
     Failure {
         stage: stage.name.clone(),
@@ -60,25 +64,43 @@ pub(crate) fn describe<const D: usize>(
         max_iterations: case.solver.max_iterations,
         near_worst,
         material: around.and_then(|(_, material)| material),
-        suggestions: advice::advice(case, number, &error, near_worst),
+        suggestions: advice::advice(case, number, &error, near_worst.as_ref()),
         saved: Vec::new(),
         error,
     }
 }
 
-/// Particles within a cell of a place: how many, how many yield, how many of them at an apex or a
-/// corner in tension; and the material of most of them.
+/// What a uniform collapse is, in words.
+pub(crate) const COLLAPSE: &str = "the soil comes to its strength all at once";
+
+/// Whether a linear system could not be solved because soil came to its strength: the system of the step's start was solved,
+/// and soil around the worst node was close to failure.
+pub(crate) fn is_loss_of_strength(error: &StepError, near: Option<&NearWorst>) -> bool {
+    let is_singular = matches!(
+        &*error.failure,
+        StepFailure::Linear(
+            LinearSolverError::Singular { .. }
+                | LinearSolverError::NotPositiveDefinite { .. }
+                | LinearSolverError::Inaccurate { .. }
+        )
+    );
+    is_singular && error.residuals.len() > 1 && near.is_some_and(NearWorst::is_at_strength)
+}
+
+/// Particles within a cell of a place, and the material of most of them.
 fn around<const D: usize>(
-    case: &Case<D>,
-    particles: &Particles<D>,
+    model: &Model<'_, D>,
+    state: &State<D>,
     place: [f64; D],
-) -> ([usize; 3], Option<String>) {
-    let mut counts = [0; 3];
+) -> (NearWorst, Option<String>) {
+    let (case, particles) = (model.case, &state.body.particles);
+    let laws = model.laws_reduced_by(&state.controls.srf);
+    let laws = laws.as_ref().map_or(&[][..], |laws| &laws[..]);
+    let mut near = NearWorst::default();
     let mut by_material = vec![0_usize; case.materials.len()];
     let reach = case.grid.cell_at(place);
     for (particle, x) in particles.x.iter().enumerate() {
-        let near = (0..D).all(|axis| (x[axis] - place[axis]).abs() <= reach[axis]);
-        if !near {
+        if !(0..D).all(|axis| (x[axis] - place[axis]).abs() <= reach[axis]) {
             continue;
         }
         let regime = particles.regime[particle];
@@ -86,9 +108,11 @@ fn around<const D: usize>(
             regime,
             Regime::Apex | Regime::TensionApex | Regime::TensionEdge | Regime::TensionCorner
         );
-        counts[0] += 1;
-        counts[1] += usize::from(regime.is_plastic());
-        counts[2] += usize::from(at_tip);
+        let used = fields::value(Field::Utilisation, particles, particle, laws);
+        near.points += 1;
+        near.yielding += usize::from(regime.is_plastic());
+        near.apex += usize::from(at_tip);
+        near.at_strength += usize::from(used >= AT_STRENGTH);
         by_material[case.number_of_material(particles.law[particle])] += 1;
     }
     let most = by_material
@@ -97,5 +121,5 @@ fn around<const D: usize>(
         .max_by_key(|(_, count)| **count)
         .filter(|(_, count)| **count > 0)
         .map(|(material, _)| case.materials[material].name.clone());
-    (counts, most)
+    (near, most)
 }

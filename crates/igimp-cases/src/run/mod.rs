@@ -291,6 +291,26 @@ impl<const D: usize> From<Run<D>> for Account {
     }
 }
 
+/// Particles within a cell of the node with the largest out-of-balance force, in the last equilibrium.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct NearWorst {
+    /// How many there are.
+    pub points: usize,
+    /// How many of them yield.
+    pub yielding: usize,
+    /// How many of those returned to an apex or to a corner in tension.
+    pub apex: usize,
+    /// How many carry nine tenths of their shear strength or more.
+    pub at_strength: usize,
+}
+
+impl NearWorst {
+    /// Whether most of them are close to failure, or yield.
+    pub fn is_at_strength(&self) -> bool {
+        2 * self.at_strength.max(self.yielding) >= self.points.max(1)
+    }
+}
+
 /// A step that found no equilibrium where the case wanted one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
@@ -308,13 +328,19 @@ pub struct Failure {
     pub max_iterations: usize,
     /// What failed.
     pub error: StepError,
-    /// Particles within a cell of the worst node, how many of them yield, and how many of those
-    /// returned to an apex or to a corner in tension.
-    pub near_worst: Option<[usize; 3]>,
+    /// Particles within a cell of the worst node.
+    pub near_worst: Option<NearWorst>,
     /// Material of most particles there.
     pub material: Option<String>,
     /// What may help, most promising first; in the words of the case file.
     pub suggestions: Vec<String>,
     /// Files and folders with what was computed.
     pub saved: Vec<PathBuf>,
+}
+
+impl Failure {
+    /// Whether the linear system could not be solved because soil came to its strength.
+    pub fn is_collapse(&self) -> bool {
+        failure::is_loss_of_strength(&self.error, self.near_worst.as_ref())
+    }
 }

@@ -2,6 +2,7 @@
 
 use igimp_input::shipped::SHIPPED;
 use igimp_input::{CaseFile, InputError};
+use igimp_model::check::Band;
 use igimp_schema::reference_markdown;
 
 use crate::edits::edited;
@@ -24,6 +25,39 @@ fn the_shipped_files_are_right_and_without_warning() {
         let file = CaseFile::parse(name, text, &[]).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(file.warnings(), "");
         assert_eq!(file.source(), text);
+    }
+}
+
+/// GOAL: a check is told in the unit in which the file writes what is accepted, of several in that of the first, and its numbers
+/// are in SI units. ORACLE: by hand: 1 cm is 0.01 m, 1 ft is 0.3048 m.
+#[test]
+fn a_check_keeps_the_unit_of_its_band() {
+    for (keys, unit, band) in [
+        ("at_most = \"3 cm\"", Some(("cm", 0.01)), Band::AtMost(0.03)),
+        (
+            "expected = \"2 m\"\nbetween = [\"1 ft\", \"50 cm\"]",
+            Some(("ft", 0.3048)),
+            Band::Between(0.3048, 0.5),
+        ),
+        (
+            "expected = \"2 m\"\ntolerance = 0.1",
+            Some(("m", 1.0)),
+            Band::Relative(0.1),
+        ),
+        (
+            "divide_by = [\"1 cm\"]\nat_least = 3",
+            None,
+            Band::AtLeast(3.0),
+        ),
+    ] {
+        let check = format!(
+            "[[checks]]\nname = \"c\"\nof = \"largest_displacement\"\nsource = \"s\"\n{keys}\n[output]"
+        );
+        let text = edited(SLOPE.1, &[("[output]", &check)]);
+        let file = CaseFile::parse(SLOPE.0, &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+        let own = file.case().checks.last().unwrap();
+        let found = own.unit.as_ref().map(|unit| (&unit.name[..], unit.in_si));
+        assert_eq!((found, own.band), (unit, band), "{keys}");
     }
 }
 

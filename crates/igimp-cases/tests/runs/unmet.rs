@@ -62,7 +62,7 @@ reference = { label = "any", y = 1, tolerance = 1e9 }
 name = "at the end of the load"
 of = "largest_displacement"
 stage = "load"
-at_most = "100 m"
+at_most = "1e4 cm"
 source = "by hand"
 [[checks]]
 name = "after it"
@@ -104,6 +104,16 @@ fn checks_of_stages_that_did_not_come_to_their_end_are_not_met() {
         assert!(!row.pass && row.verdict() == "not reached", "{name}");
         assert_eq!(row.check.measured.is_finite(), is_known, "{name}");
     }
+    // Numbers are kept in SI units, and told in those of the file.
+    let displaced = &row(&run, "at the end of the load").check;
+    assert!((displaced.expected - 100.0).abs() < 1e-12);
+    assert_eq!(displaced.told_band(), "≤ 1.000e4 cm");
+    let told = displaced.told(displaced.measured);
+    let number: f64 = told.strip_suffix(" cm").unwrap().parse().unwrap();
+    assert!(
+        (number / (100.0 * displaced.measured) - 1.0).abs() < 1e-3,
+        "{told}"
+    );
     // The factor was found before.
     let factor = row(&run, "stands");
     assert!(factor.pass && factor.standing == Standing::Held);
@@ -122,4 +132,83 @@ fn ground_in_which_nothing_fails_is_at_least_as_safe_as_is_asked() {
     assert_eq!(factor.measured(), "> 1000");
     let run = face(&[&light[..], &["checks.stands.at_least=1.5"]].concat());
     assert_eq!(run.summary.ending(), Ending::Done);
+}
+
+/// A block that is confined by nothing and pressed from above: all of it comes to its strength at once.
+const BLOCK: &str = r#"
+igimp = 1
+[case]
+title = "block"
+[grid]
+cell = "0.5 m"
+domain = { x = ["0 m", "4 m"], y = ["0 m", "4 m"] }
+[materials.clay]
+model = "mohr-coulomb"
+unit_weight = "0 kN/m3"
+young = "50 MPa"
+poisson = 0.3
+cohesion = "20 kPa"
+friction = "5 deg"
+dilation = "5 deg"
+[[bodies]]
+name = "block"
+material = "clay"
+polygon = [["0 m", "0 m"], ["2 m", "0 m"], ["2 m", "3 m"], ["0 m", "3 m"]]
+[boundaries]
+left = "roller"
+bottom = "roller"
+[[loads]]
+name = "crest"
+type = "pressure"
+from = ["0 m", "3 m"]
+to = ["2 m", "3 m"]
+pressure = "50 kPa"
+[[stages]]
+name = "press"
+type = "load"
+loads = ["crest"]
+steps = 2
+geometry = "given"
+"#;
+
+/// GOAL: a uniform collapse is told as that, with where it lies, and the advice leads to the limit load.
+/// ORACLE: the unconfined strength 2 c tan(45° + φ/2), 43.65 kPa: 0.873 of the load.
+#[test]
+fn a_uniform_collapse_is_told_as_one() {
+    let run = |set: &[&str]| {
+        let set: Vec<String> = set.iter().map(|&own| own.to_owned()).collect();
+        let file = CaseFile::parse("block.toml", BLOCK, &set);
+        in_memory(file.unwrap_or_else(|error| panic!("{error}")).case()).unwrap()
+    };
+    let exact = 40.0 * 47.5_f64.to_radians().tan() / 50.0;
+    let pressed = run(&[]);
+    let failure = pressed.failure.unwrap();
+    assert!(failure.error.from < exact && exact < failure.error.to);
+    let near = failure.near_worst.unwrap();
+    assert!(
+        near.points > 0 && near.at_strength == near.points,
+        "{near:?}"
+    );
+    let reason = &pressed.summary.stages[0].reason;
+    assert!(
+        reason.ends_with("the soil comes to its strength all at once"),
+        "{reason}"
+    );
+    let told = failure.to_string();
+    assert!(
+        told.contains(
+            "probably           collapse: the soil comes to its strength all at once, between"
+        ),
+        "{told}"
+    );
+    assert!(
+        !told.contains("small_cuts") && !told.contains("supports in"),
+        "{told}"
+    );
+    let advised = "stop_when = { no_equilibrium = true } in stage \"press\"";
+    assert!(failure.suggestions[1].starts_with(advised), "{told}");
+    let followed = run(&["stages.press.stop_when={ no_equilibrium = true }"]);
+    assert!(followed.failure.is_none());
+    let reached = followed.summary.stages[0].reached;
+    assert!((reached / exact - 1.0).abs() < 1e-3, "{reached} of {exact}");
 }

@@ -1,5 +1,5 @@
 //! GOAL: every case file that comes with the program runs to its planned end and makes physical
-//! sense, on meshes so coarse that all of them take less than a minute.
+//! sense, on meshes so coarse that all of them take less than a minute. `page.rs` runs most of them whole, in another.
 
 #[path = "../common/resuming.rs"]
 mod resuming;
@@ -9,6 +9,7 @@ mod contact;
 mod foundations;
 mod ground;
 mod motion;
+mod page;
 mod slopes;
 mod softening;
 mod space;

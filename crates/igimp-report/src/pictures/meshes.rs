@@ -7,7 +7,6 @@ use igimp_figures::{
 };
 use igimp_results::mesh_study::{ResultKind, StudyResult, StudySummary};
 use igimp_results::summary::{CheckRow, FigureNote, Summary};
-use igimp_text::short;
 
 use super::{file_name, titled, write};
 use crate::error::ReportError;
@@ -58,6 +57,8 @@ fn plot(
     result: &StudyResult,
     expected: Option<&&CheckRow>,
 ) -> CurvePlot {
+    let in_si = result.unit.as_ref().map_or(1.0, |unit| unit.in_si);
+    let result = &result.as_told();
     // What ended early is no value of its mesh.
     let arrived = (study.meshes.iter().enumerate()).filter(|(mesh, _)| !result.ended_early(*mesh));
     let computed: Vec<([f64; 2], f64)> = arrived
@@ -89,8 +90,8 @@ fn plot(
         series.push(mark.in_colour(Colour::BLACK));
     }
     let lines = expected.map(|row| ReferenceLine {
-        label: format!("expected {}", short(row.check.expected)),
-        at: ReferenceValue::Y(row.check.expected),
+        label: format!("expected {}", row.check.told(row.check.expected)),
+        at: ReferenceValue::Y(row.check.expected / in_si),
     });
     CurvePlot {
         title: titled(case_title, "mesh error"),
@@ -105,6 +106,7 @@ fn plot(
 }
 
 fn caption(study: &StudySummary, result: &StudyResult) -> String {
+    let result = result.as_told();
     let arrived = |mesh: usize| result.values[mesh].is_some() && !result.ended_early(mesh);
     let labels: Vec<String> = (study.meshes.iter().enumerate())
         .filter(|(number, _)| arrived(*number))

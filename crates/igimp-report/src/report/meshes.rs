@@ -48,7 +48,12 @@ struct ResultView {
 pub(super) fn view(study: &StudySummary) -> StudyView {
     StudyView {
         meshes: study.meshes.iter().map(mesh).collect(),
-        rows: study.results.iter().map(result).collect(),
+        rows: study
+            .results
+            .iter()
+            .map(StudyResult::as_told)
+            .map(result)
+            .collect(),
         shown: study.shown().map_or_else(String::new, MeshSummary::label),
     }
 }
@@ -128,7 +133,7 @@ fn mesh(mesh: &MeshSummary) -> MeshView {
     }
 }
 
-fn result(result: &StudyResult) -> ResultView {
+fn result(result: StudyResult) -> ResultView {
     let value = |value: Option<f64>| value.map_or_else(|| UNKNOWN.to_owned(), short);
     let found = result.estimate;
     let values = std::iter::zip(&result.values, &result.half_widths).enumerate();
@@ -142,12 +147,12 @@ fn result(result: &StudyResult) -> ResultView {
         }
     });
     ResultView {
-        name: result.name.clone(),
         values: values.collect(),
         extrapolated: value(found.map(|found| found.value)),
         uncertainty: found.map_or_else(String::new, |found| {
             format!("± {}", short(found.rounded_uncertainty()))
         }),
         order: found.map_or_else(String::new, |found| found.order.sentence()),
+        name: result.name,
     }
 }

@@ -159,8 +159,8 @@ fn on_missed(count: usize, rows: &[&CheckRow]) -> Option<String> {
         if rows.len() == 1 { "fails" } else { "fail" },
         check.quantity,
         first.measured(),
-        short(check.expected),
-        check.band,
+        check.told(check.expected),
+        check.told_band(),
         and_others(rows.len() - 1)
     ))
 }
@@ -333,6 +333,7 @@ mod tests {
             source: String::new(),
             band: Band::AtMost(0.06),
             measured: 0.054,
+            unit: None,
         };
         let told = verdict(&Summary {
             stages: vec![StageSummary::default()],

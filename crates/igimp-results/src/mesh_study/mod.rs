@@ -20,6 +20,7 @@ use crate::error::ResultsError;
 use crate::model_size::ModelSize;
 use crate::tables::cells::cell;
 pub use extrapolation::{Computed, Estimate, estimate};
+use igimp_model::check::ToldUnit;
 use igimp_text::short;
 pub use order::{Convergence, Order};
 
@@ -131,9 +132,33 @@ pub struct StudyResult {
     pub early: Vec<bool>,
     /// The extrapolation; `None` for fewer than two values.
     pub estimate: Option<Estimate>,
+    /// Of a check the unit in which the case states what is accepted; numbers here are in SI units all the same.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<ToldUnit>,
 }
 
 impl StudyResult {
+    /// The result as it is told: its numbers in the unit of the case, and that unit in its name.
+    #[must_use]
+    pub fn as_told(&self) -> Self {
+        let Some(unit) = &self.unit else {
+            return self.clone();
+        };
+        let told = |value: f64| value / unit.in_si;
+        Self {
+            name: format!("{} [{}]", self.name, unit.name),
+            values: self.values.iter().map(|own| own.map(told)).collect(),
+            half_widths: self.half_widths.iter().copied().map(told).collect(),
+            estimate: self.estimate.map(|found| Estimate {
+                value: told(found.value),
+                uncertainty: told(found.uncertainty),
+                ..found
+            }),
+            unit: None,
+            ..self.clone()
+        }
+    }
+
     /// Whether the run on a mesh ended before it came to the value.
     pub fn ended_early(&self, mesh: usize) -> bool {
         self.early.get(mesh).copied().unwrap_or_default()

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use igimp_results::mesh_study::{MeshSummary, StudySummary};
+use igimp_results::mesh_study::{MeshSummary, StudyResult, StudySummary};
 use igimp_results::summary::{CheckRow, PathPoint, SafetySummary, StrengthShares, Summary};
 use igimp_text::{count, on_a_line, short};
 
@@ -65,6 +65,7 @@ fn mesh_error(study: &StudySummary) -> String {
     let rows: Vec<Vec<String>> = study
         .results
         .iter()
+        .map(StudyResult::as_told)
         .map(|result| {
             let mut row = vec![on_a_line(&result.name).into_owned()];
             row.extend(study.meshes.iter().enumerate().map(|(number, mesh)| {
@@ -107,8 +108,8 @@ pub fn checks(rows: &[CheckRow]) -> String {
                 },
                 on_a_line(&check.quantity).into_owned(),
                 row.measured(),
-                format!("expected {}", short(check.expected)),
-                check.band.to_string(),
+                format!("expected {}", check.told(check.expected)),
+                check.told_band(),
                 format!("({})", on_a_line(&check.source)),
             ]
         })
@@ -165,7 +166,8 @@ fn largest_share(shares: &StrengthShares) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use igimp_model::check::{Band, Check};
+    use igimp_model::check::{Band, Check, ToldUnit};
+    use igimp_results::mesh_study::ResultKind;
     use igimp_results::summary::{StageOutcome, StageSummary, Standing};
 
     use super::*;
@@ -208,6 +210,7 @@ mod tests {
                     source: "Griffiths and Lane 1999".into(),
                     band: Band::Relative(0.02),
                     measured: 1.371,
+                    unit: None,
                 },
                 pass: true,
                 standing: Standing::Held,
@@ -239,6 +242,7 @@ mod tests {
             source: "s".into(),
             band: Band::AtLeast(1.5),
             measured,
+            unit: None,
         };
         let nothing_fails = CheckRow {
             standing: Standing::NothingFails,
@@ -256,5 +260,42 @@ mod tests {
           NOT REACHED  F  -       expected 1.5  ≥ 1.5  (s)
           met          F  > 1000  expected 1.5  ≥ 1.5  (s)
         "#);
+    }
+
+    /// GOAL: checks and their values on meshes are told in the unit of the case. ORACLE: by hand: 1 mm is 0.001 m.
+    #[test]
+    fn checks_are_told_in_the_unit_of_the_case() {
+        let unit = Some(ToldUnit {
+            name: "mm".into(),
+            in_si: 1e-3,
+        });
+        let own = Check {
+            case: String::new(),
+            variant: String::new(),
+            quantity: "settlement".into(),
+            expected: 0.0125,
+            source: "s".into(),
+            band: Band::AtMost(0.0125),
+            measured: 0.0123,
+            unit: unit.clone(),
+        };
+        insta::assert_snapshot!(checks(&[CheckRow::held(own)]), @"  met  settlement  12.3 mm  expected 12.5 mm  ≤ 12.5 mm  (s)");
+        let mesh = |parts: usize| MeshSummary {
+            parts,
+            ..MeshSummary::default()
+        };
+        let study = StudySummary {
+            meshes: vec![mesh(1), mesh(2)],
+            results: vec![StudyResult {
+                name: "settlement".into(),
+                kind: ResultKind::Check,
+                values: vec![Some(0.0123), Some(0.0121)],
+                half_widths: vec![0.0; 2],
+                early: vec![false, true],
+                estimate: None,
+                unit,
+            }],
+        };
+        insta::assert_snapshot!(mesh_error(&study), @"  settlement [mm]  h 12.3  h/2 12.1 (ended early)  nothing is extrapolated: the run on the mesh h/2 ended early");
     }
 }

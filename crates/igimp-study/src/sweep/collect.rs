@@ -217,7 +217,14 @@ fn results(task: &Task, wanted: &[String]) -> Option<Vec<(String, f64)>> {
     let summary = summary(&task.folder)?;
     let mut found = safety(&summary);
     for row in summary.checks.iter().filter(|row| row.is_reached()) {
-        found.push((row.check.quantity.clone(), row.check.measured));
+        let name = row.check.quantity.clone();
+        found.push(match &row.check.unit {
+            Some(unit) => (
+                format!("{name} [{}]", unit.name),
+                row.check.measured / unit.in_si,
+            ),
+            None => (name, row.check.measured),
+        });
     }
     found.extend(curve_ends(&task.folder.join("curves")));
     found.retain(|(name, _)| wanted.is_empty() || wanted.iter().any(|wanted| is(name, wanted)));

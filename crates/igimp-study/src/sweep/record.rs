@@ -9,7 +9,6 @@ use igimp_cases::run::Account;
 use igimp_input::CaseFile;
 use igimp_results::atomic::write_whole;
 use igimp_results::ending::Ending;
-use igimp_text::short;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -89,14 +88,15 @@ pub(super) fn message(run: &Account) -> String {
     let missed: Vec<String> = missed
         .map(|row| {
             let check = &row.check;
-            let (measured, band) = (row.measured(), check.band);
             if !row.is_reached() {
                 return format!("{} was not reached", check.quantity);
             }
             format!(
-                "{} is {measured}, expected {} {band}",
+                "{} is {}, expected {} {}",
                 check.quantity,
-                short(check.expected)
+                row.measured(),
+                check.told(check.expected),
+                check.told_band()
             )
         })
         .collect();

@@ -1,7 +1,7 @@
 //! GOAL: tasks are what the file says, problems are told with their place, and a table is made of
 //! what is there.
 
-use igimp_model::check::{Band, Check};
+use igimp_model::check::{Band, Check, ToldUnit};
 use igimp_results::summary::{CheckRow, SafetySummary, StageSummary, Standing, Summary};
 
 use super::*;
@@ -158,6 +158,10 @@ fn summary(fos: f64) -> Summary {
                 source: "by hand".into(),
                 band: Band::AtMost(21.0),
                 measured: 19.5,
+                unit: Some(ToldUnit {
+                    name: "cm".into(),
+                    in_si: 0.01,
+                }),
             },
             pass: true,
             standing: Standing::Held,
@@ -241,7 +245,11 @@ fn the_table_has_what_is_there() {
     assert!(scratch.0.join("results-factor_of_safety.svg").exists());
 
     sweep.collect.clear();
-    assert!(collect(&sweep).header.contains(&"top".to_owned()));
+    assert!(collect(&sweep).header.contains(&"top [cm]".to_owned()));
+    sweep.collect = vec!["top".into()];
+    let table = collect(&sweep);
+    assert!((table.rows[0][4].parse::<f64>().unwrap() - 1950.0).abs() < 1e-9);
+    assert!(table.unknown.is_empty());
 }
 
 #[test]

@@ -1,19 +1,19 @@
 //! Remedies for a step without equilibrium, in the words of the case file, most promising
 //! first. Every rule looks at the failure and at the case, and says nothing when it is of no use.
 
-use igimp_assembly::{AssemblyError, Locking, Penetration};
+use igimp_assembly::{AssemblyError, Geometry, Locking, Penetration};
 use igimp_linear::LinearSolverError;
 use igimp_model::{BodyPart, Case, Material, RigidMove, Side, Stage, StageKind, Strength};
 use igimp_results::fields::length;
 use igimp_solver::{Component, StepError, StepFailure};
 use igimp_text::short;
 
+use super::is_loss_of_strength;
 use crate::driven::Driven;
+use crate::run::NearWorst;
 
 /// Most suggestions that a reader will try.
 const MOST: usize = 4;
-/// Share of particles at the worst node that yield, from which on collapse is likely \[-\].
-const COLLAPSE: f64 = 0.5;
 /// Share of particles at the worst node that return to an apex, from which on tension is the
 /// likely cause \[-\].
 const APEX_RICH: f64 = 0.02;
@@ -22,19 +22,23 @@ const HARDLY_COVERED: usize = 4;
 /// Poisson's ratio from which on the bulk modulus dwarfs the shear modulus \[-\].
 const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
 
-/// Remedies, most promising first. `near_worst` counts the particles within a cell of the
-/// worst node, those that yield, and those that returned to an apex or a corner in tension.
+/// Remedies, most promising first.
 pub(crate) fn advice<const D: usize>(
     case: &Case<D>,
     number: usize,
     error: &StepError,
-    near_worst: Option<[usize; 3]>,
+    near_worst: Option<&NearWorst>,
 ) -> Vec<String> {
     let Some(stage) = case.stages.get(number) else {
         return Vec::new();
     };
-    let yielding = near_worst.is_some_and(|[all, yielding, _]| share(yielding, all) >= COLLAPSE);
+    let yielding = near_worst.is_some_and(|near| 2 * near.yielding >= near.points.max(1));
     let mut try_this = match &*error.failure {
+        _ if is_loss_of_strength(error, near_worst) && is_statics(stage) => {
+            let mut out = collapse(case, number, stage, error.from);
+            out.push(more_steps(stage));
+            out
+        }
         StepFailure::LeavesGrid { position, .. }
         | StepFailure::LoadPointLeavesGrid { position, .. }
         | StepFailure::ReinforcementLeavesGrid { position, .. } => off_grid(case, stage, *position),
@@ -102,8 +106,9 @@ pub(crate) fn advice<const D: usize>(
     try_this
 }
 
-fn share(count: usize, of: usize) -> f64 {
-    count as f64 / of.max(1) as f64
+/// Whether a stage looks for equilibria without inertia.
+fn is_statics(stage: &Stage) -> bool {
+    !matches!(stage.kind, StageKind::Dynamic(_))
 }
 
 /// The iteration ended without equilibrium.
@@ -111,24 +116,24 @@ fn no_equilibrium<const D: usize>(
     case: &Case<D>,
     (number, stage): (usize, &Stage),
     error: &StepError,
-    near_worst: Option<[usize; 3]>,
+    near_worst: Option<&NearWorst>,
 ) -> Vec<String> {
-    let yielding = near_worst.map_or(0.0, |[all, yielding, _]| share(yielding, all));
-    let apex = near_worst.map_or(0.0, |[all, _, apex]| share(apex, all));
+    let near = near_worst.copied().unwrap_or_default();
+    let apex = near.apex as f64 / near.points.max(1) as f64;
     let worst = error.worst.map_or([f64::NAN; 3], |(x, _)| x);
     let material = material_at(case, std::array::from_fn(|axis| worst[axis]));
     let mut out = Vec::new();
 
     out.extend(round_off(case, error));
     out.extend(still_falling(case, error));
-    if yielding >= COLLAPSE {
-        out.extend(collapse(case, number, stage));
+    if near.is_at_strength() {
+        out.extend(collapse(case, number, stage, error.from));
     }
     out.push(more_steps(stage));
     if apex >= APEX_RICH {
         out.extend(material.and_then(tension));
     }
-    if near_worst.is_some_and(|[all, ..]| all < HARDLY_COVERED) {
+    if near_worst.is_some_and(|near| near.points < HARDLY_COVERED) {
         out.push(ghost_penalty());
     }
     out.extend(material.and_then(|material| incompressible(case, material)));
@@ -321,9 +326,46 @@ fn still_falling<const D: usize>(case: &Case<D>, error: &StepError) -> Option<St
     })
 }
 
-/// Most soil at the worst node yields: there may be no equilibrium to find.
-fn collapse<const D: usize>(case: &Case<D>, number: usize, stage: &Stage) -> Vec<String> {
+/// Most soil at the worst node is at its strength: there may be no equilibrium to find. The stage `reached` a share of its way.
+fn collapse<const D: usize>(
+    case: &Case<D>,
+    number: usize,
+    stage: &Stage,
+    reached: f64,
+) -> Vec<String> {
     let driven = Driven::planned(case, number);
+    let mut out = less_than_collapses(case, number, stage, driven);
+    let is_load = match &stage.kind {
+        StageKind::Gravity { .. } | StageKind::Load { .. } => driven.is_some(),
+        StageKind::Rigid(moves) => !moves.iter().any(RigidMove::is_moved) && !out.is_empty(),
+        _ => false,
+    };
+    if is_load && !stage.stop_when.no_equilibrium && stage.consolidation.is_none() {
+        let geometry = match stage.geometry {
+            Geometry::Given => "",
+            Geometry::Moving => " and geometry = \"given\"",
+        };
+        out.push(format!(
+            "stop_when = {{ no_equilibrium = true }}{geometry} in stage \"{}\", which came to {} of its way: it ends at the limit load",
+            stage.name,
+            percent(reached)
+        ));
+    }
+    out
+}
+
+/// A share in percent.
+fn percent(share: f64) -> String {
+    format!("{} %", short(100.0 * share))
+}
+
+/// Less than what the soil collapses under.
+fn less_than_collapses<const D: usize>(
+    case: &Case<D>,
+    number: usize,
+    stage: &Stage,
+    driven: Option<Driven>,
+) -> Vec<String> {
     match &stage.kind {
         StageKind::Gravity {
             horizontal: Some(share),

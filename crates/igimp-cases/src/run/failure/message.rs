@@ -3,9 +3,10 @@
 use std::fmt::{self, Write as _};
 use std::path::Path;
 
-use igimp_solver::StepFailure;
+use igimp_solver::{StepError, StepFailure};
 use igimp_text::{count, short};
 
+use super::COLLAPSE;
 use crate::error::chain;
 use crate::run::Failure;
 
@@ -59,6 +60,9 @@ fn render(failure: &Failure) -> String {
         let because = because.trim_start_matches("error: ");
         row("because", &because.replace("\n  because: ", ": "));
     }
+    if failure.is_collapse() {
+        row("probably", &collapse(error));
+    }
     if !error.residuals.is_empty() {
         row("residual |r|/|f|", &history(&error.residuals, reason));
     }
@@ -73,6 +77,15 @@ fn render(failure: &Failure) -> String {
         row(std::mem::take(&mut name), &line);
     }
     text
+}
+
+/// What soil that comes to its strength in a step does, and where on the way of the stage.
+fn collapse(error: &StepError) -> String {
+    format!(
+        "collapse: {COLLAPSE}, between load factors {} and {}",
+        short(error.from),
+        short(error.to)
+    )
 }
 
 fn cuts(failure: &Failure) -> String {
@@ -127,7 +140,7 @@ fn history(residuals: &[f64], reason: Option<&str>) -> String {
 
 /// How the soil around the worst node is doing.
 fn near(failure: &Failure) -> String {
-    let Some([all, yielding, apex]) = failure.near_worst else {
+    let Some(near) = failure.near_worst else {
         return String::new();
     };
     let soil = failure
@@ -136,11 +149,18 @@ fn near(failure: &Failure) -> String {
         .map_or_else(String::new, |name| format!(" of \"{name}\""));
     let mut text = format!(
         ";  {} of {} points there{soil} yield",
-        count(yielding),
-        count(all)
+        count(near.yielding),
+        count(near.points)
     );
-    if apex > 0 {
-        let _ = write!(text, ", {} returned to the apex", count(apex));
+    if near.apex > 0 {
+        let _ = write!(text, ", {} returned to the apex", count(near.apex));
+    }
+    if near.at_strength > near.yielding {
+        let _ = write!(
+            text,
+            ", {} carry 90 % of their strength or more",
+            count(near.at_strength)
+        );
     }
     text
 }
@@ -187,9 +207,8 @@ fn suggestions(texts: &[String]) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use igimp_solver::StepError;
-
     use super::*;
+    use crate::run::NearWorst;
 
     fn failure() -> Failure {
         let mut residuals = vec![1.0, 0.4, 0.2, 0.09];
@@ -208,7 +227,12 @@ mod tests {
                 worst: Some(([31.5, 10.5, 0.0], 0)),
                 failure: Box::new(StepFailure::Stagnated),
             },
-            near_worst: Some([1310, 97, 42]),
+            near_worst: Some(NearWorst {
+                points: 1310,
+                yielding: 97,
+                apex: 42,
+                at_strength: 90,
+            }),
             material: Some("clay".into()),
             suggestions: vec![
                 "steps = 400 for this stage".into(),

@@ -67,6 +67,7 @@ fn of_stage<const D: usize>(
                 source: check.source.clone(),
                 band: check.band,
                 measured: value / check.divide_by,
+                unit: check.unit.clone(),
             };
             let is_known = is_factor && value.is_finite();
             if !(is_reached || is_known) {
@@ -158,6 +159,7 @@ fn against<const D: usize>(
             source: reference.label.clone(),
             band: Band::Relative(tolerance),
             measured,
+            unit: None,
         })
     };
     match &reference.values {

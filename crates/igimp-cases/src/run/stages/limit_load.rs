@@ -170,21 +170,32 @@ fn lost(error: &StepError) -> String {
 /// What a reader has to know of the path.
 fn remark(path: &PathSummary, stage: &str) -> Option<String> {
     let (mechanism, last) = (path.mechanism?, path.limit?);
-    let goes = if last.factor.abs() < path.from.abs() {
-        "falls"
-    } else {
-        "rises"
-    };
-    (path.end == PathEnd::StillRising).then(|| {
-        format!(
-            "stage \"{stage}\": the body moves as a mechanism from load factor {} at {} m on, and on the given geometry \
-             the load still {goes}, by {} % in the last doubling of the work",
-            short(mechanism.factor),
-            short(mechanism.displacement),
+    if path.end != PathEnd::StillRising {
+        return None;
+    }
+    let told =
+        |point: &PathPoint| format!("{} at {} m", short(point.factor), short(point.displacement));
+    let since = match limit::gone_back_from(path, &last) {
+        Some(furthest) => format!(
+            "has gone back since from {}, which is its limit, to {}",
+            told(&furthest),
+            told(&last)
+        ),
+        None => format!(
+            "still {}, by {} % in the last doubling of the work, to {}",
+            if last.factor.abs() < path.from.abs() {
+                "falls"
+            } else {
+                "rises"
+            },
             short(100.0 * path.rise.unwrap_or(0.0)),
-        )
-        + &format!(", to {} at {} m", short(last.factor), short(last.displacement))
-    })
+            told(&last)
+        ),
+    };
+    Some(format!(
+        "stage \"{stage}\": the body moves as a mechanism from load factor {} on, and on the given geometry the load {since}",
+        told(&mechanism)
+    ))
 }
 
 /// Follows a path for its stage.

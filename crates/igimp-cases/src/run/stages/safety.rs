@@ -4,6 +4,7 @@
 mod continuation;
 mod criterion;
 mod interval;
+mod path_remarks;
 mod remarks;
 mod shares;
 mod trial;

@@ -116,6 +116,7 @@ pub(crate) fn summary() -> Summary {
             source: "Griffiths & Lane (1999), Géotechnique 49(3), table 2".into(),
             band,
             measured,
+            unit: None,
         };
         CheckRow::held(check)
     };

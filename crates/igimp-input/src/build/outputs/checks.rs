@@ -1,6 +1,6 @@
 //! Results that are held against outside values.
 
-use igimp_model::check::Band;
+use igimp_model::check::{Band, ToldUnit};
 use igimp_model::{CaseCheck, CheckTime, CheckValue, Load, Quantity, Stage, StageKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::quantity::Powers;
@@ -58,7 +58,20 @@ pub(crate) fn check<const D: usize>(
         },
         expected,
         band,
+        unit: unit_of_band(own),
         source: own.source.value.clone(),
+    })
+}
+
+/// The unit in which what is accepted is written: that of the first of several.
+fn unit_of_band(own: &keys::Check) -> Option<ToldUnit> {
+    let between = own.between.as_ref().map(|own| own.value[0]);
+    let single = [&own.at_most, &own.at_least, &own.expected];
+    let single = single.into_iter().flatten().map(|own| own.value);
+    let (name, in_si) = between.into_iter().chain(single).next()?.unit?;
+    Some(ToldUnit {
+        name: name.to_owned(),
+        in_si,
     })
 }
 

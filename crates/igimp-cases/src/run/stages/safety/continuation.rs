@@ -14,6 +14,7 @@ use igimp_solver::{
 };
 use igimp_text::short;
 
+use super::path_remarks::{self, MOST_FACTOR};
 use super::shares::{LastStep, shares};
 use super::{names, undeformed_or_found, weight_drains};
 use crate::error::{CaseError, on_one_line};
@@ -28,9 +29,6 @@ use crate::run::state::{Controls, State};
 /// A path begins at no smaller factor than this \[-\]: with so many times its strength a body that falls is one that
 /// no strength holds.
 const LEAST_FACTOR: f64 = 0.01;
-
-/// A path goes no further than this factor \[-\]: with a thousandth of its strength a body that stands is one that needs none.
-const MOST_FACTOR: f64 = 1000.0;
 
 /// How a path is followed.
 #[derive(Clone, Copy, Debug)]
@@ -62,9 +60,6 @@ const WAYS: [Way; 4] = [
     Way::by_work(0.035),
     Way::by_work(0.025),
 ];
-
-/// A mechanism whose factor lies this share below that of the limit is worth a remark \[-\].
-const APART: f64 = 5e-3;
 
 /// Searches for the factor of safety of a state along a path of equilibria; the state is left as it was found.
 pub(super) fn search<const D: usize>(
@@ -463,7 +458,7 @@ fn finish<const D: usize>(
     let (stable, failed) = limit::interval(&path);
     let case = session.model.case;
     let tension = (last.as_ref()).and_then(|end| super::remarks::tension(case, &end.state));
-    for text in remarks(&path).into_iter().chain(tension) {
+    for text in path_remarks::of(&path).into_iter().chain(tension) {
         session.warn_of_stage(number, &text);
     }
     if let StageEnd::NotConverged(cause) = &ended {
@@ -513,50 +508,4 @@ fn criterion(reduction: &StrengthReduction, whose: &str) -> String {
         Some(displacement) => format!("{limit}, or {whose} exceeds {} m", short(displacement)),
         None => limit.to_owned(),
     }
-}
-
-/// What a reader has to know of a path.
-fn remarks(path: &PathSummary) -> Vec<String> {
-    let mut remarks = Vec::new();
-    let Some(last) = path.points.last() else {
-        remarks.push(
-            "no equilibrium was found, whatever the strength: this tells nothing of the factor of safety".to_owned(),
-        );
-        return remarks;
-    };
-    if last.factor < 1.0 {
-        remarks.push(
-            "the body does not stand at full strength: the factor of safety is below 1".to_owned(),
-        );
-    }
-    if last.factor >= MOST_FACTOR && path.limit.is_none() {
-        remarks.push(format!(
-            "nothing fails: the body still stands with a thousandth of its strength, at a factor of {}, and no larger one was tried; \
-             what `materials` names decides nothing here",
-            short(last.factor)
-        ));
-        return remarks;
-    }
-    let Some(mechanism) = path.mechanism else {
-        return remarks;
-    };
-    let told =
-        |point: &PathPoint| format!("{:.4} at {} m", point.factor, short(point.displacement));
-    let limit = path.limit.unwrap_or(*last);
-    if path.end == PathEnd::StillRising {
-        remarks.push(format!(
-            "the body moves as a mechanism from {} on, and the factor still rises on the given geometry: that told is the one \
-             after four times the work, {}, and the last doubling of it brought {} %",
-            told(&mechanism),
-            told(&limit),
-            short(100.0 * path.rise.unwrap_or(0.0)),
-        ));
-    } else if limit.factor > (1.0 + APART) * mechanism.factor {
-        remarks.push(format!(
-            "the body moves as a mechanism from {} on, and the factor rises no longer from {}",
-            told(&mechanism),
-            told(&limit)
-        ));
-    }
-    remarks
 }
