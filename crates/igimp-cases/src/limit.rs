@@ -252,6 +252,27 @@ pub(crate) fn gone_back_from(path: &PathSummary, limit: &PathPoint) -> Option<Pa
         .then_some(most)
 }
 
+/// By how much a peak between equilibria may lie above the largest of them, as a share of it \[-\]: a path that bends one way lies below
+/// the chords beside, carried on.
+fn above_peak(points: &[PathPoint], course: Course) -> f64 {
+    let order = |a: &usize, b: &usize| {
+        course
+            .beyond(points[*a].factor, points[*b].factor)
+            .total_cmp(&0.0)
+    };
+    let Some(at) = (0..points.len()).max_by(order) else {
+        return 0.0;
+    };
+    let (Some(before), Some(after)) = (at.checked_sub(1).map(|k| points[k]), points.get(at + 1))
+    else {
+        return 0.0;
+    };
+    let peak = points[at];
+    let [rise, fall] = [before, *after].map(|own| course.beyond(peak.factor, own.factor));
+    let (to, from) = (peak.work - before.work, after.work - peak.work);
+    (rise * from / to).max(fall * to / from) / course.scale(peak.factor)
+}
+
 /// The interval of the factor that a path tells: from the furthest up to the equilibrium that tells it, to where it would
 /// go in another doubling of the work, both wider by what the residual leaves in doubt (theory, eq. 33f). Of a factor that
 /// falls the first is the larger one.
@@ -267,7 +288,8 @@ pub(crate) fn interval(path: &PathSummary) -> (Option<f64>, Option<f64>) {
     let doubts = path.points.iter().map(|point| point.in_doubt);
     let doubt = doubts.fold(0.0, f64::max);
     let rise = match path.end {
-        PathEnd::Displacement | PathEnd::Fallen => 0.0,
+        PathEnd::Displacement => 0.0,
+        PathEnd::Fallen => above_peak(&path.points, course),
         _ => path.rise.unwrap_or(0.0).max(0.0),
     };
     let factor = if path.end == PathEnd::Displacement {

@@ -29,6 +29,9 @@ pub struct ContinuationSettings {
     /// How often a step that was halved so often may then be doubled in succession, from the size that failed first: the next
     /// equilibrium lies on another branch.
     pub leaps: u32,
+    /// Whether the largest factor of a path that falls is resolved: the path is followed again from the equilibrium before it, in
+    /// short steps.
+    pub resolves_peak: bool,
     /// The iteration of each step.
     pub newton: NewtonSettings,
 }
@@ -42,6 +45,7 @@ impl ContinuationSettings {
             most_steps: 200,
             halvings: 8,
             leaps: 4,
+            resolves_peak: false,
             newton,
         }
     }
@@ -64,6 +68,8 @@ pub struct ContinuationState<const D: usize> {
     pub work: f64,
     /// Gross work of the next step \[force·length\].
     pub size: f64,
+    /// The largest gross work of a step \[force·length\].
+    pub most_size: f64,
     /// The last step that did work.
     pub last: Option<LastStep<D>>,
 }
@@ -121,6 +127,7 @@ impl<const D: usize> ContinuationState<D> {
             steps: 0,
             work: 0.0,
             size: last.as_ref().map_or(0.0, |last| last.work),
+            most_size: f64::INFINITY,
             last,
         }
     }
@@ -161,7 +168,9 @@ impl<const D: usize> ContinuationState<D> {
         self.work += work;
         self.factor = step.to;
         match target {
-            Target::Work { .. } => self.size = work * growth(step.iterations),
+            Target::Work { .. } => {
+                self.size = (work * growth(step.iterations)).min(self.most_size);
+            }
             Target::Factor { .. } if !does_work(step) => {
                 self.change = (2.0 * self.change).min(LARGEST_CHANGE);
                 return;
@@ -230,6 +239,61 @@ fn patient(newton: NewtonSettings, failures: u32) -> NewtonSettings {
     }
 }
 
+/// A factor that lies this share below the largest one has fallen \[-\].
+const FALLEN: f64 = 1e-3;
+
+/// Steps between the equilibria beside the largest factor, where it is resolved.
+const STEPS_OF_PEAK: f64 = 16.0;
+
+/// The largest factor of a path so far, and what it takes to follow the path there once more.
+struct Peak<const D: usize> {
+    largest: f64,
+    /// The equilibrium before the last step.
+    last: (ContinuationState<D>, Body<D>),
+    /// That before the step to the largest factor; none where that was the first step that did work, and once it was resolved.
+    before: Option<(ContinuationState<D>, Body<D>)>,
+    is_resolved: bool,
+}
+
+impl<const D: usize> Peak<D> {
+    fn of(state: &ContinuationState<D>, body: &Body<D>) -> Self {
+        Self {
+            largest: f64::NEG_INFINITY,
+            last: (state.clone(), body.clone()),
+            before: None,
+            is_resolved: false,
+        }
+    }
+
+    /// Takes a step to a state in: the equilibrium before the largest factor, to follow the path from there in short steps, where the
+    /// factor has fallen for the first time. One that has fallen again grows its steps again.
+    fn after(
+        &mut self,
+        state: &mut ContinuationState<D>,
+        body: &Body<D>,
+    ) -> Option<(ContinuationState<D>, Body<D>)> {
+        let before = std::mem::replace(&mut self.last, (state.clone(), body.clone()));
+        if state.factor > self.largest {
+            self.largest = state.factor;
+            let does_work = !self.is_resolved && before.0.last.is_some();
+            self.before = does_work.then_some(before);
+            return None;
+        }
+        if state.factor > (1.0 - FALLEN) * self.largest {
+            return None;
+        }
+        state.most_size = f64::INFINITY;
+        let (mut from, body) = self.before.take()?;
+        from.size = (state.work - from.work) / STEPS_OF_PEAK;
+        from.most_size = from.size;
+        from.is_by_work = true;
+        self.is_resolved = true;
+        self.largest = from.factor;
+        self.last = (from.clone(), body.clone());
+        Some((from, body))
+    }
+}
+
 /// Follows a body along its path from a state, until the observer ends it; the failure of the last step where no step
 /// was found, however small.
 ///
@@ -246,6 +310,7 @@ pub fn follow<const D: usize>(
 ) -> Option<StepError> {
     let mut failures = 0;
     let mut first = state.size;
+    let mut peak = (settings.resolves_peak).then(|| Peak::of(state, body));
     while state.steps < settings.most_steps {
         let target = state.target(settings);
         let on_path = (state.factor, &target);
@@ -254,6 +319,12 @@ pub fn follow<const D: usize>(
             Ok((conditions, report, forces)) => {
                 failures = 0;
                 state.take((&report, &forces), &target, settings);
+                if let Some((from, before)) = peak.as_mut().and_then(|peak| peak.after(state, body))
+                {
+                    observer.on_return(&before, state.steps - 1 - from.steps);
+                    (*state, *body) = (from, before);
+                    continue;
+                }
                 let march = MarchState {
                     at: state.factor,
                     size: state.size,

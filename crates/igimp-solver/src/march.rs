@@ -68,6 +68,9 @@ pub trait Observer<const D: usize> {
 
     /// Called when a step was not accepted, before it is cut or given up.
     fn on_cut(&mut self, _error: &StepError) {}
+
+    /// Called when a path is followed again from a body that lies so many steps back, to resolve its largest factor.
+    fn on_return(&mut self, _body: &Body<D>, _steps: usize) {}
 }
 
 impl<const D: usize, F> Observer<D> for F

@@ -169,12 +169,19 @@ fn lost(error: &StepError) -> String {
 
 /// What a reader has to know of the path.
 fn remark(path: &PathSummary, stage: &str) -> Option<String> {
-    let (mechanism, last) = (path.mechanism?, path.limit?);
+    let last = path.limit?;
+    let told =
+        |point: &PathPoint| format!("{} at {} m", short(point.factor), short(point.displacement));
+    if path.end == PathEnd::Fallen {
+        return Some(format!(
+            "stage \"{stage}\": the limit of the load factor is the furthest, {}, from which it has gone back; checks take it with at = \"peak\"",
+            told(&last)
+        ));
+    }
     if path.end != PathEnd::StillRising {
         return None;
     }
-    let told =
-        |point: &PathPoint| format!("{} at {} m", short(point.factor), short(point.displacement));
+    let mechanism = path.mechanism?;
     let since = match limit::gone_back_from(path, &last) {
         Some(furthest) => format!(
             "has gone back since from {}, which is its limit, to {}",

@@ -252,6 +252,7 @@ impl Search<'_> {
         let settings = ContinuationSettings {
             first_change: way.first_change,
             direct_steps: way.direct_steps.unwrap_or(usize::MAX),
+            resolves_peak: (model.case.materials.iter()).any(|own| own.softening.is_some()),
             ..ContinuationSettings::new(model.march_settings(1).newton)
         };
         let mut continuation = ContinuationState::start(from, None, &settings);
@@ -405,6 +406,11 @@ impl<const D: usize> Observer<D> for Watch<'_, '_, D> {
             Ok(None) => ControlFlow::Continue(()),
             _ => ControlFlow::Break(()),
         }
+    }
+
+    fn on_return(&mut self, body: &Body<D>, steps: usize) {
+        self.points.truncate(self.points.len() - steps);
+        self.last = Arc::new(body.clone());
     }
 
     fn on_cut(&mut self, error: &StepError) {
