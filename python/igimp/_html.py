@@ -57,7 +57,14 @@ def results(results: Results) -> str:
         text += results.mesh_study._repr_html_()
     if results.checks:
         checks = [
-            ["met" if own.met else own.verdict.upper(), own.name, own.told, own._told(own.reference), own.band, own.source]
+            [
+                "met" if own.met else own.verdict.upper(),
+                own.name,
+                own.told,
+                own._told(own.reference),
+                own.band,
+                own.source,
+            ]
             for own in results.checks
         ]
         text += rows(["check", "", "value", "reference", "band", "source"], checks)

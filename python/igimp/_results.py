@@ -44,8 +44,8 @@ class Check:
     source : str
         Where the outside value comes from.
     standing : str
-        What the value is worth: ``held``, ``not-reached`` where the stage of the check did not come to its end (the value is
-        then one on the way, or none), or ``nothing-fails`` for a factor of safety above 1000.
+        What the value is worth: ``held``, ``not-reached`` where the stage of the check did not come to its end (the
+        value is then one on the way, or none), or ``nothing-fails`` for a factor of safety above 1000.
     unit : str
         The unit in which the case states what is accepted; empty for plain numbers.
     in_si : float
