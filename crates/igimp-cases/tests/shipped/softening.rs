@@ -43,6 +43,27 @@ fn a_slope_that_softens_lies_between_peak_and_residual() {
     assert!(softens[1] < 0.99 * peak[0] && softens[0] > 1.01 * residual[1]);
 }
 
+/// GOAL: the peak of a path of softening soil is resolved: it goes neither by the steps in which weight came nor by those of the path.
+/// CASE: the shipped slope of sensitive clay on cells of half a metre, its weight in 10, 12 and 15 steps, which come past the peak in other places.
+/// ORACLE: trials of strength, each of which marches to an equilibrium or finds none; and cells that see the weight alike.
+#[test]
+fn the_peak_of_a_path_is_that_of_trials() {
+    let factor = |steps: usize, search: &[&str]| {
+        let steps = format!("stages.0.steps={steps}");
+        let usual = ["grid.cell=0.5 m", "checks=[]", &steps];
+        let file = file("sensitive_slope", &[&usual, search].concat());
+        ran_case(file.case()).factor_of_safety(1)
+    };
+    let trials = factor(10, &["stages.1.search=trials", "stages.1.tolerance=0.001"]);
+    let paths = [10, 12, 15].map(|steps| factor(steps, &[]));
+    println!("F {trials:?} by trials, {paths:?} along paths");
+    for [from, to] in paths {
+        assert!(from < to && to < 1.003 * from, "{from} {to}");
+        let apart = (0.5 * (from + to) / (0.5 * (trials[0] + trials[1])) - 1.0).abs();
+        assert!(apart < 2e-3, "{from} {to} {trials:?}");
+    }
+}
+
 /// GOAL: what softening soil remembers is in checkpoints: a run-out that is taken up ends with the same files, and one on other threads with
 /// the same bits.
 #[test]
