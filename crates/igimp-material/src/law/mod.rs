@@ -144,9 +144,9 @@ pub trait ConstitutiveModel: Strength + Send + Sync + Debug {
     /// Whether consistent tangents are symmetric, which is so when the flow is associated.
     fn has_symmetric_tangent(&self) -> bool;
 
-    /// How much plastic flow dilates, ψ/φ of the law as it is given \[-\]: 1 where flow is associated, 0
-    /// where it keeps volume in spite of friction. The law at reduced strength has that of the law it was made
-    /// of. Locking control goes by it (theory, eq. 8c).
+    /// How near plastic flow is to associated flow, r of the law as it is given \[-\]: 1 where flow is associated, 0
+    /// where it keeps volume in spite of friction, as [`dilatancy`] has it. The law at reduced strength has that of the
+    /// law it was made of. Locking control goes by it (theory, eq. 8c).
     ///
     /// A law without ψ says by the symmetry of its tangent what its flow is.
     fn dilatancy(&self) -> f64 {
@@ -155,6 +155,21 @@ pub trait ConstitutiveModel: Strength + Send + Sync + Debug {
         } else {
             0.0
         }
+    }
+}
+
+/// Soil with less friction is taken for nearly associated, the nearer the less it has: without friction its flow is associated,
+/// whatever ψ. A choice: how far F of soil without dilation rises above that of associated flow (docs/src/comparisons.md)
+/// \[radians\].
+const LITTLE_FRICTION: f64 = 10.0 * std::f64::consts::PI / 180.0;
+
+/// How near flow of ψ at φ is to associated flow, $`r = 1 - (\varphi - \psi)/\max(\varphi, 10°)`$: ψ/φ where friction is not little,
+/// and continuous in φ down to none (theory, eq. 8c) \[-\].
+pub(crate) fn dilatancy(dilation_angle: f64, friction_angle: f64) -> f64 {
+    if friction_angle < LITTLE_FRICTION {
+        1.0 - (friction_angle - dilation_angle) / LITTLE_FRICTION
+    } else {
+        dilation_angle / friction_angle
     }
 }
 
