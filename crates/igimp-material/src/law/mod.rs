@@ -159,18 +159,20 @@ pub trait ConstitutiveModel: Strength + Send + Sync + Debug {
 }
 
 /// Soil with less friction is taken for nearly associated, the nearer the less it has: without friction its flow is associated,
-/// whatever ψ. A choice: how far F of soil without dilation rises above that of associated flow (docs/src/comparisons.md)
-/// \[radians\].
+/// whatever ψ. A choice: the slopes for which β was chosen have more (docs/src/comparisons.md) \[radians\].
 const LITTLE_FRICTION: f64 = 10.0 * std::f64::consts::PI / 180.0;
 
-/// How near flow of ψ at φ is to associated flow, $`r = 1 - (\varphi - \psi)/\max(\varphi, 10°)`$: ψ/φ where friction is not little,
-/// and continuous in φ down to none (theory, eq. 8c) \[-\].
+/// How near flow of ψ at φ is to associated flow, $`\sqrt r = 1 - (1 - \sqrt{\psi/\varphi}) \min(1, \varphi/10°)`$: r is ψ/φ where friction is
+/// not little, and continuous in φ down to none (theory, eq. 8c) \[-\].
 pub(crate) fn dilatancy(dilation_angle: f64, friction_angle: f64) -> f64 {
-    if friction_angle < LITTLE_FRICTION {
-        1.0 - (friction_angle - dilation_angle) / LITTLE_FRICTION
-    } else {
-        dilation_angle / friction_angle
+    if friction_angle >= LITTLE_FRICTION {
+        return dilation_angle / friction_angle;
     }
+    if friction_angle <= 0.0 {
+        return 1.0;
+    }
+    let short = 1.0 - (dilation_angle / friction_angle).sqrt();
+    (1.0 - short * friction_angle / LITTLE_FRICTION).powi(2)
 }
 
 /// A law that answers many points at once.
