@@ -23,6 +23,10 @@ const OUTERMOST: f64 = 0.95;
 /// Soil whose volume differs from that of a box by less than so much of its part is that box \[-\].
 const BOX: f64 = 1e-9;
 
+/// Volumes and distances whose ratio is so near to 1 are equal: round-off does not say which part counts, nor which particle takes
+/// its soil \[-\].
+const TIE: f64 = 1e-9;
+
 /// A region may reach off the grid by so much of the grid: lines are multiples of a rounded cell \[-\].
 const ROUND_OFF: f64 = 1e-9;
 
@@ -259,7 +263,7 @@ impl<const D: usize> Parts<D> {
                 } else {
                     within(number, part, from, to)
                 };
-                if own.volume >= SLIVER * size.iter().product::<f64>() {
+                if own.volume >= (1.0 - TIE) * SLIVER * size.iter().product::<f64>() {
                     kept.push((seeds.len(), keep));
                     let (x, half_length) = domain(from, size, &own);
                     seeds.push(ParticleSeed {
@@ -325,7 +329,10 @@ fn nearest_within<const D: usize>(
         let apart = std::iter::zip(x[particle], point);
         apart.map(|(a, b)| (a - b) * (a - b)).sum()
     };
-    particles.min_by(|&a, &b| square(a).total_cmp(&square(b)))
+    let least = particles.clone().map(square).reduce(f64::min)?;
+    particles
+        .into_iter()
+        .find(|&own| square(own) <= (1.0 + TIE) * least)
 }
 
 /// A centroid within a domain, from its middle, over half-lengths \[-\].
@@ -433,6 +440,52 @@ mod tests {
             let quarter = [0.25, 0.125][axis];
             assert!((seeds[0].x[axis] - quarter).abs() < 1e-15);
             assert!((seeds[0].half_length[axis] - quarter).abs() < 1e-15);
+        }
+    }
+
+    /// GOAL: a body and its mirror image hold mirrored particles, also where a part of it is a tenth of a whole one but for round-off.
+    /// ORACLE: the reflection, of slopes that rise by eight over ten from places all over a cell, and of others.
+    #[test]
+    fn mirrored_slopes_hold_mirrored_particles() {
+        let axes = [40, 14].map(|count| Axis::uniform(0.0, 1.0, count).unwrap());
+        let grid = Grid::<2>::new(axes);
+        let runs = [10.0, 8.0, 16.0, 12.0, 4.0, 20.0];
+        for (number, run) in (0..120).zip(runs.into_iter().cycle()) {
+            let toe = [
+                26.0 + 0.05 * f64::from(number),
+                4.0 + 0.1 * f64::from(number / 6 % 10),
+            ];
+            let crest = [toe[0] - run, toe[1] + 8.0];
+            let slope = [
+                [0.0, 0.0],
+                [40.0, 0.0],
+                [40.0, toe[1]],
+                toe,
+                crest,
+                [0.0, crest[1]],
+            ];
+            let mirrored: Vec<_> = slope.iter().rev().map(|[x, y]| [40.0 - x, *y]).collect();
+            for per_direction in [2, 3] {
+                let filled = |slope: &[[f64; 2]]| fill_polygon(&grid, slope, per_direction, 1.0, 0);
+                let own = filled(&slope).unwrap();
+                let other = filled(&mirrored).unwrap();
+                assert_eq!(own.len(), other.len(), "{toe:?} {run} {per_direction}");
+                for seed in &own {
+                    let image = [40.0 - seed.x[0], seed.x[1]];
+                    let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+                    let is_image = |found: &ParticleSeed<2>| {
+                        near(found.x[0], image[0])
+                            && near(found.x[1], image[1])
+                            && near(found.volume, seed.volume)
+                            && near(found.centroid[0], -seed.centroid[0])
+                            && near(found.centroid[1], seed.centroid[1])
+                    };
+                    assert!(
+                        other.iter().any(is_image),
+                        "{toe:?} {run} {per_direction}: {seed:?}"
+                    );
+                }
+            }
         }
     }
 

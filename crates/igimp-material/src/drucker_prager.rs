@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use crate::error::{positive, required};
 use crate::inertial_friction::{Sheared, SlowCone};
-use crate::law::{ON_SURFACE, mobilised, trial_stress};
+use crate::law::{ON_SURFACE, dilatancy, mobilised, trial_stress};
 use crate::spectral::principal::{deviator, deviator_norm, largest, mean};
 use crate::{
     ConstitutiveModel, Dissipation, Elasticity, History, InertialFriction, MaterialError,
@@ -61,7 +61,7 @@ pub struct DruckerPrager {
     strength: ShearStrength,
     dilation_angle: f64,
     cone: Cone,
-    /// ψ/φ as given, before any change of strength \[-\].
+    /// r of eq. 8c as given, before any change of strength \[-\].
     dilatancy: f64,
     /// M \[-\].
     slope: f64,
@@ -134,11 +134,7 @@ impl DruckerPrager {
             },
             dilation_angle,
             cone,
-            dilatancy: if friction_angle > 0.0 {
-                dilation_angle / friction_angle
-            } else {
-                1.0
-            },
+            dilatancy: dilatancy(dilation_angle, friction_angle),
             slope: factor * sin,
             shear: factor * cohesion * cos,
             flow,
@@ -171,7 +167,7 @@ impl DruckerPrager {
         self.cone
     }
 
-    /// The law at another strength: ψ stays but never exceeds φ, ψ/φ as given is kept, and tan φ of fast shear goes as that of slow
+    /// The law at another strength: ψ stays but never exceeds φ, r of eq. 8c as given is kept, and tan φ of fast shear goes as that of slow
     /// shear.
     fn at_strength(&self, cohesion: f64, friction_angle: f64) -> Result<Self, MaterialError> {
         let dilation_angle = self.dilation_angle.min(friction_angle);
@@ -298,7 +294,7 @@ impl ConstitutiveModel for DruckerPrager {
         self.dilation_angle == self.strength.friction_angle
     }
 
-    /// ψ/φ as given; 1 without friction.
+    /// r of eq. 8c as given.
     fn dilatancy(&self) -> f64 {
         self.dilatancy
     }

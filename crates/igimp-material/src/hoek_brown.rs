@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::circle::{Circle, Flow, Planes, mirrored, turned};
 use crate::error::{positive, required};
-use crate::law::{ON_SURFACE, mobilised, trial_stress};
+use crate::law::{ON_SURFACE, dilatancy, mobilised, trial_stress};
 use crate::spectral::principal::{Principal, descending, largest, mean, sorted, unsorted};
 use crate::{
     ConstitutiveModel, Elasticity, History, MaterialError, NonlocalRates, PointContext, Regime,
@@ -449,11 +449,11 @@ impl ConstitutiveModel for HoekBrown {
         false
     }
 
-    /// ψ over the friction angle at no confinement; none without dilation.
+    /// r of eq. 8c with the friction angle at no confinement; none without dilation.
     fn dilatancy(&self) -> f64 {
         let [_, share, _] = self.powers;
         let sine = self.touching(share).sin_friction;
-        (self.parameters.dilation_angle / sine.asin()).min(1.0)
+        dilatancy(self.parameters.dilation_angle, sine.asin()).min(1.0)
     }
 }
 

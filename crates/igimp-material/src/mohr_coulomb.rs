@@ -9,6 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use crate::error::{positive, required};
+use crate::law::dilatancy;
 use crate::pyramid::{PlaneStrength, Pyramid};
 use crate::{
     ConstitutiveModel, Elasticity, History, MaterialError, PointContext, Principal, ReturnMap,
@@ -46,7 +47,7 @@ use crate::{
 #[derive(Debug, Clone, PartialEq)]
 pub struct MohrCoulomb {
     given: Parameters,
-    /// ψ/φ as given, before any change of strength \[-\].
+    /// r of eq. 8c as given, before any change of strength \[-\].
     dilatancy: f64,
     /// The strength at yield: as given, or Davis's.
     strength: ShearStrength,
@@ -229,17 +230,17 @@ impl MohrCoulomb {
         let pyramid = pyramid(elasticity, &surface);
         Ok(Self {
             given,
-            dilatancy: if friction_angle > 0.0 && !is_davis {
-                dilation_angle / friction_angle
-            } else {
+            dilatancy: if is_davis {
                 1.0
+            } else {
+                dilatancy(dilation_angle, friction_angle)
             },
             strength,
             pyramid,
         })
     }
 
-    /// The law at another strength: ψ never exceeds φ, and ψ/φ as given is kept.
+    /// The law at another strength: ψ never exceeds φ, and r of eq. 8c as given is kept.
     fn at_strength(
         &self,
         given: Parameters,
@@ -291,7 +292,7 @@ impl ConstitutiveModel for MohrCoulomb {
         self.given.is_davis || self.given.dilation_angle == self.given.friction_angle
     }
 
-    /// ψ/φ as given; 1 without friction, and where flow is Davis's.
+    /// r of eq. 8c as given; 1 where flow is Davis's.
     fn dilatancy(&self) -> f64 {
         self.dilatancy
     }

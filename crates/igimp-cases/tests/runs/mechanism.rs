@@ -289,3 +289,94 @@ fn a_limit_load_is_taken_up_anywhere() {
         assert_equal(&everything(&whole), &everything(&stopped), &why);
     }
 }
+
+/// The interval of the factor of safety of a slope of 4 m, 1:1, in soil with c \[kPa\] and the angles φ and ψ \[degrees\], without
+/// friction by Tresca.
+fn barely_rubbing(cohesion: f64, [friction, dilation]: [f64; 2]) -> [f64; 2] {
+    let strength = if friction > 0.0 {
+        format!(
+            "model = \"mohr-coulomb\"\ncohesion = \"{cohesion} kPa\"\nfriction = \"{friction} deg\"\ndilation = \"{dilation} deg\""
+        )
+    } else {
+        format!("model = \"tresca\"\ncu = \"{cohesion} kPa\"")
+    };
+    let text = format!(
+        r#"
+igimp = 1
+[case]
+title = "soil with little friction"
+[grid]
+cell = "0.5 m"
+domain = {{ x = ["0 m", "18 m"], y = ["0 m", "8 m"] }}
+[materials.soil]
+unit_weight = "20 kN/m3"
+young = "50 MPa"
+poisson = 0.3
+{strength}
+[[bodies]]
+name = "slope"
+material = "soil"
+polygon = [["0 m","0 m"], ["18 m","0 m"], ["18 m","2 m"], ["10 m","2 m"], ["6 m","6 m"], ["0 m","6 m"]]
+[[stages]]
+name = "weight"
+type = "gravity"
+steps = 5
+[[stages]]
+name = "safety"
+type = "strength-reduction"
+[output]
+report = false
+figures = []
+"#
+    );
+    let file = CaseFile::parse("slope.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let run = in_memory(file.case()).unwrap();
+    let found = run.summary.stages[1].safety.as_ref().unwrap();
+    [found.stable.unwrap(), found.failed.unwrap()]
+}
+
+/// GOAL: the factor of safety does not jump as friction goes to none, and soil that keeps its volume stands no safer than soil that
+/// dilates.
+/// ORACLE: Mohr–Coulomb without friction is Tresca; flow that is not associated has no larger factor than flow that is (Radenković 1961).
+#[test]
+fn soil_with_little_friction_has_the_factor_of_soil_without() {
+    let [without, _] = barely_rubbing(16.0, [0.0, 0.0]);
+    let [hardly, _] = barely_rubbing(16.0, [0.001, 0.0]);
+    println!("{without} {hardly}");
+    assert!((hardly / without - 1.0).abs() < 1e-3, "{without} {hardly}");
+    for (cohesion, friction) in [(15.0, 1.0), (14.0, 2.0), (13.0, 5.0), (12.0, 7.5)] {
+        let [own, _] = barely_rubbing(cohesion, [friction, 0.0]);
+        let [most, _] = barely_rubbing(cohesion, [friction, friction]);
+        println!("{friction}: {own} {most}");
+        assert!(
+            own < 1.001 * most && own > 0.99 * most,
+            "{friction}: {own} {most}"
+        );
+    }
+}
+
+/// GOAL: what a search by trials says in weak rock without dilation is known (limits.md): it stops before the slope moves as a mechanism.
+/// CASE: the shipped slope in rock, of 1 MPa, GSI 30 and m_i 8.
+/// ORACLE: the path of equilibria, which goes on through equilibria beyond.
+#[test]
+fn trials_in_weak_rock_stop_before_the_slope_moves() {
+    let shipped = igimp_input::shipped::find("rock_slope").unwrap();
+    let found = |search: &str| {
+        let sets = ["sci=\"1 MPa\"", "gsi=30", "mi=8"].map(|own| format!("materials.rock.{own}"));
+        let text = shipped.text.replace(
+            "type = \"strength-reduction\"",
+            &format!("type = \"strength-reduction\"\nsearch = \"{search}\""),
+        );
+        let file =
+            CaseFile::parse("rock.toml", &text, &sets).unwrap_or_else(|error| panic!("{error}"));
+        let run = in_memory(file.case()).unwrap();
+        let found = run.summary.stages[1].safety.as_ref().unwrap();
+        [found.stable.unwrap(), found.failed.unwrap()]
+    };
+    let [path, trials] = ["continuation", "trials"].map(found);
+    println!("{path:?} {trials:?}");
+    assert!(
+        (1.005..1.03).contains(&(path[0] / trials[1])),
+        "{path:?} {trials:?}"
+    );
+}

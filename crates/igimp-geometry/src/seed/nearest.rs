@@ -3,7 +3,7 @@
 //! Blocks of 2^D cells, of 2^D of these and so on know whether they hold a particle. The search goes
 //! down from the largest into the nearest first, and leaves out what is further than what it has found.
 
-use super::{Parts, place_of};
+use super::{Parts, TIE, place_of};
 
 /// Blocks further than this much beyond the best are left out: round-off of their distance \[-\].
 const ROUND_OFF: f64 = 1e-9;
@@ -102,7 +102,8 @@ impl<'a, const D: usize> Nearest<'a, D> {
                     let apart = self.x[particle];
                     let distance =
                         length::<D>(std::array::from_fn(|axis| apart[axis] - point[axis]));
-                    if distance < best || distance <= best && particle < nearest {
+                    let is_nearer = distance < (1.0 - TIE) * best;
+                    if is_nearer || distance <= (1.0 + TIE) * best && particle < nearest {
                         (nearest, best) = (particle, distance);
                     }
                 }

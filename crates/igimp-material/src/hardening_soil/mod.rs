@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use crate::elasticity::Moduli;
 use crate::error::positive;
-use crate::law::mobilised;
+use crate::law::{dilatancy, mobilised};
 use crate::spectral::principal::{descending, largest, sorted, unsorted};
 use crate::{
     ConstitutiveModel, ElasticStiffness, Elasticity, History, InternalVariable, MaterialError,
@@ -88,7 +88,7 @@ pub struct HardeningSoil {
     reference: Elasticity,
     /// Whether hardening is over, as in a strength reduction: what yields is Mohr–Coulomb's surface.
     is_perfect: bool,
-    /// ψ/φ as given \[-\].
+    /// r of eq. 8c as given \[-\].
     dilatancy: f64,
 }
 
@@ -107,7 +107,7 @@ impl HardeningSoil {
             cap: parameters.cap(&hyperbola)?,
             reference: Elasticity::new(parameters.unloading, parameters.poisson)?,
             is_perfect: false,
-            dilatancy: parameters.dilation_angle / parameters.friction_angle,
+            dilatancy: dilatancy(parameters.dilation_angle, parameters.friction_angle),
         })
     }
 
@@ -308,7 +308,7 @@ impl ConstitutiveModel for HardeningSoil {
         false
     }
 
-    /// ψ/φ as given.
+    /// r of eq. 8c as given.
     fn dilatancy(&self) -> f64 {
         self.dilatancy
     }

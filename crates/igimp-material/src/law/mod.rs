@@ -144,9 +144,9 @@ pub trait ConstitutiveModel: Strength + Send + Sync + Debug {
     /// Whether consistent tangents are symmetric, which is so when the flow is associated.
     fn has_symmetric_tangent(&self) -> bool;
 
-    /// How much plastic flow dilates, ψ/φ of the law as it is given \[-\]: 1 where flow is associated, 0
-    /// where it keeps volume in spite of friction. The law at reduced strength has that of the law it was made
-    /// of. Locking control goes by it (theory, eq. 8c).
+    /// How near plastic flow is to associated flow, r of the law as it is given \[-\]: 1 where flow is associated, 0
+    /// where it keeps volume in spite of friction, as [`dilatancy`] has it. The law at reduced strength has that of the
+    /// law it was made of. Locking control goes by it (theory, eq. 8c).
     ///
     /// A law without ψ says by the symmetry of its tangent what its flow is.
     fn dilatancy(&self) -> f64 {
@@ -156,6 +156,23 @@ pub trait ConstitutiveModel: Strength + Send + Sync + Debug {
             0.0
         }
     }
+}
+
+/// Soil with less friction is taken for nearly associated, the nearer the less it has: without friction its flow is associated,
+/// whatever ψ. A choice: the slopes for which β was chosen have more (docs/src/comparisons.md) \[radians\].
+const LITTLE_FRICTION: f64 = 10.0 * std::f64::consts::PI / 180.0;
+
+/// How near flow of ψ at φ is to associated flow, $`\sqrt r = 1 - (1 - \sqrt{\psi/\varphi}) \min(1, \varphi/10°)`$: r is ψ/φ where friction is
+/// not little, and continuous in φ down to none (theory, eq. 8c) \[-\].
+pub(crate) fn dilatancy(dilation_angle: f64, friction_angle: f64) -> f64 {
+    if friction_angle >= LITTLE_FRICTION {
+        return dilation_angle / friction_angle;
+    }
+    if friction_angle <= 0.0 {
+        return 1.0;
+    }
+    let short = 1.0 - (dilation_angle / friction_angle).sqrt();
+    (1.0 - short * friction_angle / LITTLE_FRICTION).powi(2)
 }
 
 /// A law that answers many points at once.

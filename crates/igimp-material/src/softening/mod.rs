@@ -13,6 +13,7 @@ mod undrained;
 use std::sync::Arc;
 
 use crate::error::{positive, required};
+use crate::law::dilatancy;
 use crate::spectral::principal::largest;
 use crate::{
     ConstitutiveModel, Dissipation, Elasticity, History, InternalVariable, MaterialError,
@@ -90,7 +91,7 @@ pub struct Softening {
     kind: Kind,
     /// The law with the greater of initial and residual strength, without a change.
     strongest: Arc<dyn ConstitutiveModel>,
-    /// ψ/φ as given, before any change of strength \[-\].
+    /// r of eq. 8c as given, before any change of strength \[-\].
     dilatancy: f64,
     /// Strength by the direction of stress.
     directions: Option<Directions>,
@@ -154,12 +155,7 @@ impl Softening {
             dilation: dilation_angle.map(f64::tan),
             tension_cutoff,
         };
-        let dilatancy = if friction > 0.0 {
-            dilation / friction
-        } else {
-            1.0
-        };
-        Self::build(elasticity, kind, dilatancy)?.without_snap_back()
+        Self::build(elasticity, kind, dilatancy(dilation, friction))?.without_snap_back()
     }
 
     /// The law with a strength that goes with the direction of stress: its curve is that of active loading. The direction is that at
@@ -508,7 +504,7 @@ impl ConstitutiveModel for Softening {
         }
     }
 
-    /// Initial ψ/φ as given; 1 without friction.
+    /// r of eq. 8c of the initial angles as given.
     fn dilatancy(&self) -> f64 {
         self.dilatancy
     }

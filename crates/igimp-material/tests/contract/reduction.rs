@@ -171,6 +171,35 @@ fn a_cone_without_friction_is_von_mises() {
     }
 }
 
+/// GOAL: what says how near flow is to associated flow does not jump as friction goes to none.
+/// ORACLE: Tresca, whose flow is associated, is the limit of both laws; and ψ/φ where friction is not little.
+#[test]
+fn flow_without_dilation_becomes_associated_as_friction_ends() {
+    let associated = Tresca::new(elasticity(), 2.0).unwrap().dilatancy();
+    let of = |friction: f64, dilation: f64| {
+        let [friction, dilation] = [friction, dilation].map(f64::to_radians);
+        let plane = MohrCoulomb::new(elasticity(), 2.0, friction, dilation).unwrap();
+        let cone = Cone::PlaneStrain;
+        let cone = DruckerPrager::new(elasticity(), 2.0, friction, dilation, cone).unwrap();
+        assert!((plane.dilatancy() - cone.dilatancy()).abs() < 1e-15);
+        plane.dilatancy()
+    };
+    let mut before = associated;
+    for step in 0..=3000 {
+        let friction = 0.01 * f64::from(step);
+        let own = of(friction, 0.0);
+        assert!(
+            (before - 0.00201..=before).contains(&own),
+            "{friction}: {own}"
+        );
+        assert!((of(friction, friction) - associated).abs() < 1e-15);
+        before = own;
+    }
+    for (dilation, friction) in [(0.0, 10.0), (4.0, 20.0), (30.0, 40.0)] {
+        assert!((of(friction, dilation) - dilation / friction).abs() < 1e-15);
+    }
+}
+
 /// GOAL: flow by Davis is associated flow on the strengths that eq. 21a makes of the reduced angle of friction.
 /// ORACLE: tan φ* = sin φ cos ψ / (1 − sin φ sin ψ), Davis (1968), and c* that leaves the apex c cot φ where it was.
 #[test]
