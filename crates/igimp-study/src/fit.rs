@@ -9,6 +9,9 @@ mod said;
 mod statistics;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod wall_tests;
+mod walls;
 
 use std::path::Path;
 
@@ -205,12 +208,17 @@ pub fn fit(source: &dyn Source, request: &FitRequest) -> Result<Fitted, FitError
             .join(", "),
     };
     let solved = problem.solved(start);
-    let Solved { at, why, effort } = solved;
+    let Solved {
+        at,
+        ranges,
+        why,
+        effort,
+    } = solved;
     if let Some(why) = why {
         return Err(not_converged(&at, &why));
     }
     let residuals = problem.residuals(&at)?;
-    let Some(jacobian) = problem.jacobian(&at) else {
+    let Some(jacobian) = problem.jacobian(&at, &ranges) else {
         return Err(not_converged(
             &at,
             "the law refuses values beside those found",
@@ -221,7 +229,7 @@ pub fn fit(source: &dyn Source, request: &FitRequest) -> Result<Fitted, FitError
         correlation,
         deviation,
         step,
-    } = statistics(&parameters, &at, &residuals, &jacobian);
+    } = statistics((&parameters, &ranges), &at, &residuals, &jacobian);
     let has_kink = problem
         .is_minimum(&at, &residuals, &jacobian, &step)
         .map_err(|why| not_converged(&at, why))?;

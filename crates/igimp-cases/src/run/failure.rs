@@ -14,6 +14,7 @@ use super::Failure;
 use super::session::Session;
 use super::stages::dynamic::most_cuts;
 use super::state::State;
+use advice::Seen;
 
 /// Whether a stage that found no equilibrium ended in a way that tells no limit: its path was lost, its linear system
 /// could not be solved, or nothing but a motion was driven, which has an equilibrium at any load.
@@ -48,6 +49,11 @@ pub(crate) fn describe<const D: usize>(
         .worst
         .map(|(x, _)| around(case, particles, std::array::from_fn(|axis| x[axis])));
     let near_worst = around.as_ref().map(|(counts, _)| *counts);
+    let peak = summary.peak_resistance.filter(|peak| *peak > 0.0);
+    let seen = Seen {
+        near_worst,
+        fallen: peak.map_or(0.0, |peak| 1.0 - session.last_resistance / peak),
+    };
     Failure {
         stage: stage.name.clone(),
         step: match stage.kind {
@@ -60,7 +66,7 @@ pub(crate) fn describe<const D: usize>(
         max_iterations: case.solver.max_iterations,
         near_worst,
         material: around.and_then(|(_, material)| material),
-        suggestions: advice::advice(case, number, &error, near_worst),
+        suggestions: advice::advice(case, number, &error, seen),
         saved: Vec::new(),
         error,
     }

@@ -14,4 +14,5 @@ mod killed;
 mod mechanism;
 mod remarks;
 mod revolution;
+mod swapped;
 mod unmet;

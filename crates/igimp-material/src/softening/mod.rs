@@ -16,8 +16,8 @@ use crate::error::{positive, required};
 use crate::spectral::principal::largest;
 use crate::{
     ConstitutiveModel, Dissipation, Elasticity, History, InternalVariable, MaterialError,
-    MohrCoulomb, Nonlocal, PointContext, Principal, ReturnMap, Scaling, ShearStrength, Strength,
-    Tensor, Tresca, VonMises,
+    MohrCoulomb, Nonlocal, PointContext, Principal, Remembered, ReturnMap, Scaling, ShearStrength,
+    Strength, Tensor, Tresca, VonMises,
 };
 
 pub use curve::{Curve, Decay};
@@ -30,6 +30,7 @@ const PLASTIC: InternalVariable = InternalVariable {
     name: "softening strain",
     unit: "-",
     scaling: Scaling::Constant,
+    follows_stress: false,
 };
 
 /// The direction of stress.
@@ -37,6 +38,7 @@ const ANGLE: InternalVariable = InternalVariable {
     name: "angle of compression",
     unit: "rad",
     scaling: Scaling::Constant,
+    follows_stress: false,
 };
 
 /// The plastic strain of the ground around.
@@ -44,6 +46,7 @@ const AROUND: InternalVariable = InternalVariable {
     name: "nonlocal strain",
     unit: "-",
     scaling: Scaling::Constant,
+    follows_stress: false,
 };
 
 /// The internal variables of a law whose strength is that of a point, and of one that sees the ground around.
@@ -456,6 +459,15 @@ impl ConstitutiveModel for Softening {
         let mut history = History::default();
         if let Some(place) = self.place_of_angle() {
             history.internal[place] = NO_DIRECTION;
+        }
+        history
+    }
+
+    /// Soil whose law saw nothing around begins with its own plastic strain as that of the ground around: its strength stays.
+    fn remembering(&self, begun: History, before: &Remembered<'_>) -> History {
+        let mut history = begun.remembering(self.internal_variables(), before);
+        if let (Some(place), None) = (self.place_of_nonlocal(), before.value_of(&AROUND)) {
+            history.internal[place] = before.value_of(&PLASTIC).unwrap_or_default();
         }
         history
     }

@@ -19,20 +19,33 @@ const COLLAPSE: f64 = 0.5;
 const APEX_RICH: f64 = 0.02;
 /// A worst node with fewer particles within a cell of it is hardly covered by soil.
 const HARDLY_COVERED: usize = 4;
+/// Share of its peak that the load of a push has lost, from which on it is past the limit load \[-\].
+const PAST_PEAK: f64 = 0.02;
+/// Greatest denominator of a length that is written as a fraction.
+const DENOMINATORS: u32 = 1000;
 /// Poisson's ratio from which on the bulk modulus dwarfs the shear modulus \[-\].
 const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
 
-/// Remedies, most promising first. `near_worst` counts the particles within a cell of the
-/// worst node, those that yield, and those that returned to an apex or a corner in tension.
+/// What was seen of a stage beside the step that failed.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Seen {
+    /// Particles within a cell of the worst node, those that yield, and those that returned to an apex or a corner in tension.
+    pub(crate) near_worst: Option<[usize; 3]>,
+    /// Share of its peak that the load of a push has lost \[-\].
+    pub(crate) fallen: f64,
+}
+
+/// Remedies, most promising first.
 pub(crate) fn advice<const D: usize>(
     case: &Case<D>,
     number: usize,
     error: &StepError,
-    near_worst: Option<[usize; 3]>,
+    seen: Seen,
 ) -> Vec<String> {
     let Some(stage) = case.stages.get(number) else {
         return Vec::new();
     };
+    let near_worst = seen.near_worst;
     let yielding = near_worst.is_some_and(|[all, yielding, _]| share(yielding, all) >= COLLAPSE);
     let mut try_this = match &*error.failure {
         StepFailure::LeavesGrid { position, .. }
@@ -48,7 +61,7 @@ pub(crate) fn advice<const D: usize>(
             LinearSolverError::Singular { .. }
             | LinearSolverError::NotPositiveDefinite { .. }
             | LinearSolverError::Inaccurate { .. },
-        ) if yielding => no_equilibrium(case, (number, stage), error, near_worst),
+        ) if yielding => no_equilibrium(case, (number, stage), error, seen),
         StepFailure::Assembly(assembly) => unformed(case, stage, assembly),
         StepFailure::Linear(linear) => unsolved(case, stage, linear),
         StepFailure::TooDeep { body, .. } => too_deep(case, stage, body),
@@ -95,7 +108,7 @@ pub(crate) fn advice<const D: usize>(
         | StepFailure::Diverged
         | StepFailure::Stagnated
         | StepFailure::MechanismAtOnce => {
-            no_equilibrium(case, (number, stage), error, near_worst)
+            no_equilibrium(case, (number, stage), error, seen)
         }
     };
     try_this.truncate(MOST);
@@ -111,8 +124,9 @@ fn no_equilibrium<const D: usize>(
     case: &Case<D>,
     (number, stage): (usize, &Stage),
     error: &StepError,
-    near_worst: Option<[usize; 3]>,
+    seen: Seen,
 ) -> Vec<String> {
+    let near_worst = seen.near_worst;
     let yielding = near_worst.map_or(0.0, |[all, yielding, _]| share(yielding, all));
     let apex = near_worst.map_or(0.0, |[all, _, apex]| share(apex, all));
     let worst = error.worst.map_or([f64::NAN; 3], |(x, _)| x);
@@ -121,7 +135,14 @@ fn no_equilibrium<const D: usize>(
 
     out.extend(round_off(case, error));
     out.extend(still_falling(case, error));
-    if yielding >= COLLAPSE {
+    let is_push = matches!(stage.kind, StageKind::Displacement { .. });
+    if is_push && seen.fallen > PAST_PEAK {
+        out.push(format!(
+            "a smaller settlement in stage \"{}\": its load is {} % below its peak, the limit load, which it passed before",
+            stage.name,
+            short((100.0 * seen.fallen).round())
+        ));
+    } else if yielding >= COLLAPSE {
         out.extend(collapse(case, number, stage));
     }
     out.push(more_steps(stage));
@@ -487,8 +508,19 @@ fn finer_cell<const D: usize>(case: &Case<D>) -> String {
     format!("cell = {{ {} }}", each.join(", "))
 }
 
+/// A length as it can be written in a case file: in few digits where that is exact, else as a fraction, so that cells divide what they
+/// divided.
 fn metres(length: f64) -> String {
-    format!("{} m", short(length))
+    let is_length = |own: f64| (own - length).abs() <= 1e-12 * length.abs();
+    let text = short(length);
+    if text.parse().is_ok_and(is_length) {
+        return format!("{text} m");
+    }
+    let fraction = (1..=DENOMINATORS).find_map(|denominator| {
+        let count = (length * f64::from(denominator)).round();
+        is_length(count / f64::from(denominator)).then(|| format!("{count}/{denominator} m"))
+    });
+    fraction.unwrap_or_else(|| format!("{length} m"))
 }
 
 /// The material at a place in the undeformed bodies; beside all bodies, that of the nearest body.
