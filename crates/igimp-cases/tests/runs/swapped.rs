@@ -95,8 +95,7 @@ fn soil_that_comes_to_a_material_like_its_own_goes_on_as_it_was() {
 #[test]
 fn what_a_swap_forgets_is_told() {
     let told = |soil: &str, other: &str| -> String {
-        let own = file(&text(soil, other, &stages(&swap())));
-        own.warnings().to_string()
+        file(&text(soil, other, &stages(&swap()))).warnings()
     };
     let lost = "stage `swap` makes `b` of `m2`: ";
     for (soil, other, words) in [

@@ -116,6 +116,7 @@ pub(super) fn line(own: &Found, all: &[Found]) -> String {
         }
     }
     .replace(" ,", ",")
+    .replace(" :", ":")
     .trim_end()
     .to_owned()
 }

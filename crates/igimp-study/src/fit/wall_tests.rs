@@ -10,21 +10,25 @@ const HARDENING: &str = "model = \"hardening-soil\"\ncohesion = \"5 kPa\"\ndilat
     k0_normal = 0.4\n";
 const CLAY: &str = "model = \"modified-cam-clay\"\ncritical_ratio = 1.0\nshear = \"5 MPa\"\n";
 
-/// A triaxial test at small strain whose data are q of a law, at thirty strains.
+/// A triaxial test, the undrained one at natural strain, whose data are q of a law, at thirty strains.
 fn measured(law: &str, of: StandardTest, stress: f64) -> Request {
     let source = soil(law);
     let mut own = Request {
         drive: Drive::Standard(of, 0.1),
         stress: [stress; 2],
         steps: 400,
-        kinematics: Kinematics::Small,
+        kinematics: if of == StandardTest::TriaxialUndrained {
+            Kinematics::Finite
+        } else {
+            Kinematics::Small
+        },
         duration: 0.0,
         data: None,
     };
     let tested = test(&source.material(&[]).unwrap(), &own).unwrap();
     let state = |k: usize| -> &ElementState { &tested.run.states[10 + 13 * k] };
-    let rows = (0..30).map(|k| Row {
-        line: k + 2,
+    let rows = (0..30_usize).map(|k| Row {
+        line: k as u64 + 2,
         at: -state(k).strain[1],
         values: vec![state(k).q()],
     });

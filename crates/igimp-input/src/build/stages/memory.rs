@@ -4,6 +4,7 @@ use igimp_material::InternalVariable;
 use igimp_model::{Case, Material, StageKind, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
+use igimp_schema::schema::stages::Construction;
 use igimp_schema::text::clip;
 use igimp_schema::tree::Node;
 
@@ -18,7 +19,7 @@ pub(crate) fn check<const D: usize>(tree: &Node, case: &Case<D>, problems: &mut 
         let (StageKind::Construction(kind), Some(stated)) = (&own.kind, stated) else {
             continue;
         };
-        let Some(changes) = stated.construction().map(|own| own.changes()) else {
+        let Some(changes) = stated.construction().map(Construction::changes) else {
             continue;
         };
         for (change, &(body, material)) in std::iter::zip(changes.iter().flatten(), &kind.materials)
@@ -43,7 +44,7 @@ pub(crate) fn check<const D: usize>(tree: &Node, case: &Case<D>, problems: &mut 
                     .help("that is right of soil that is taken out or treated; a material of the same model keeps what soil remembers");
             }
             if let (Some(stayed), Some(stated)) = (ocr_of(before), ocr_of(after))
-                && stayed != stated
+                && (stayed / stated - 1.0).abs() > 1e-12
             {
                 let message = format!(
                     "`ocr` of `{to}` has no effect on `{shown}`, which keeps its preconsolidation pressure"
