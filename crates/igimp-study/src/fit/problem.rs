@@ -4,8 +4,7 @@ use igimp_input::InputError;
 use igimp_model::Material;
 use rmpfit::{MPConfig, MPError, MPFitter, MPPar, MPResult, MPSide, MPSuccess};
 
-use super::parameter::Parameter;
-use super::walls::Range;
+use super::parameter::{Parameter, Range};
 use super::{FitRequest, Source};
 use crate::element::{Data, Measure, Request, TestError, driven};
 

@@ -2,8 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::parameter::Parameter;
-use super::walls::Range;
+use super::parameter::{Parameter, Range};
 
 /// A combination of parameters whose effect is less than this share of the largest one is not determined \[-\]: ten times what
 /// differences and the tolerance of a step leave.

@@ -1,44 +1,10 @@
 //! Walls: values beyond which a law or a test is refused, or residuals leap: the sum of squares ends there, and has no derivative.
 
-use super::parameter::Parameter;
+use super::parameter::{AT_END, Parameter, Range};
 use super::problem::{DIFFERENCE, Problem};
-
-/// A place in the search as near to an end is at it.
-pub(super) const AT_END: f64 = 1e-9;
 
 /// Halvings of the step that leads across a wall.
 const HALVINGS: usize = 30;
-
-/// Between which places a parameter is sought.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Range {
-    /// The lower and the upper end; infinite where there is none.
-    pub(super) ends: [f64; 2],
-    /// Which of the ends are walls that the search met; the others are bounds that were stated.
-    pub(super) is_wall: [bool; 2],
-}
-
-impl Range {
-    /// The bounds that were stated.
-    pub(super) fn stated(own: &Parameter) -> Self {
-        Self {
-            ends: own.limits().unwrap_or([f64::NEG_INFINITY, f64::INFINITY]),
-            is_wall: [false; 2],
-        }
-    }
-
-    /// The end that a place is at: 0 the lower one, 1 the upper one.
-    pub(super) fn end_at(&self, x: f64) -> Option<usize> {
-        let [low, high] = self.ends;
-        if x <= low + AT_END {
-            Some(0)
-        } else if x >= high - AT_END {
-            Some(1)
-        } else {
-            None
-        }
-    }
-}
 
 impl Problem<'_> {
     /// The ranges of the parameters as a search that ended within some of them finds them: with the walls next to it, and without those that
