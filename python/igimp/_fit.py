@@ -29,7 +29,8 @@ class Parameter:
     start, value : float
         Where the search began and ended; ``value`` is NaN where nothing determines it.
     known : str
-        ``standard error``, ``at its lower bound``, ``at its upper bound`` or ``not determined``.
+        ``standard error``, ``at its lower bound``, ``at its upper bound``, ``least that is accepted``, ``greatest that is accepted``
+        (by its law and the tests, beside the others) or ``not determined``.
     error : float or None
         Standard error by linear theory about the best values.
     interval : tuple of float or None

@@ -65,6 +65,12 @@ impl Fit {
                 ),
                 Known::AtBound { upper: true } => ("at its upper bound", None, None, Vec::new()),
                 Known::AtBound { upper: false } => ("at its lower bound", None, None, Vec::new()),
+                Known::AtWall { upper: true } => {
+                    ("greatest that is accepted", None, None, Vec::new())
+                }
+                Known::AtWall { upper: false } => {
+                    ("least that is accepted", None, None, Vec::new())
+                }
                 Known::NotDetermined { with } => {
                     let with = with.iter().map(key).collect();
                     ("not determined", None, None, with)

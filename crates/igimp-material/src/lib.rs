@@ -7,7 +7,7 @@
 //! | module story | types |
 //! |---|---|
 //! | linear Hencky elasticity | [`Elasticity`] |
-//! | the seam | [`ConstitutiveModel`], [`PointContext`], [`ReturnMap`], [`History`], [`Regime`] |
+//! | the seam | [`ConstitutiveModel`], [`PointContext`], [`ReturnMap`], [`History`], [`Remembered`], [`Regime`] |
 //! | strength and its reduction | [`Strength`], [`ShearStrength`], [`Dissipation`] |
 //! | laws | [`HenckyElastic`], [`VonMises`], [`Tresca`], [`MohrCoulomb`], [`DruckerPrager`], [`HoekBrown`], [`ModifiedCamClay`], [`HardeningSoil`] |
 //! | laws whose strength goes with plastic strain, the direction of stress, the rate of strain | [`Softening`], [`Curve`], [`Directions`], [`RateEffect`]; [`InertialFriction`] |
@@ -85,8 +85,8 @@ pub use hoek_brown::{HoekBrown, HoekBrownParameters};
 pub use inertial_friction::InertialFriction;
 pub use law::{
     Batches, ConstitutiveModel, Dissipation, ElasticStiffness, History, INTERNAL_VARIABLES,
-    InternalVariable, Nonlocal, NonlocalRates, PointContext, Regime, ReturnMap, Scaling,
-    ShearStrength, Strength,
+    InternalVariable, Nonlocal, NonlocalRates, PointContext, Regime, Remembered, ReturnMap,
+    Scaling, ShearStrength, Strength,
 };
 pub use mohr_coulomb::MohrCoulomb;
 pub use scaled::{Ratios, ScaledLaw};

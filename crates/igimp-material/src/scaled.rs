@@ -7,8 +7,8 @@ use std::sync::Arc;
 use crate::spectral::principal::{Principal, Tensor};
 use crate::{
     ConstitutiveModel, Dissipation, ElasticStiffness, Elasticity, History, INTERNAL_VARIABLES,
-    InternalVariable, MaterialError, Nonlocal, NonlocalRates, PointContext, ReturnMap, Scaling,
-    ShearStrength, Strength,
+    InternalVariable, MaterialError, Nonlocal, NonlocalRates, PointContext, Remembered, ReturnMap,
+    Scaling, ShearStrength, Strength,
 };
 
 /// Strength, friction and stiffness of a piece of soil over those of its material.
@@ -262,6 +262,11 @@ where
             eps_p_eq: history.eps_p_eq / self.strain_ratio(),
             internal: self.scaled_internal(history.internal, |value, scale| value * scale),
         }
+    }
+
+    /// That of the other law: a memory is that of the piece of soil, whatever the ratios.
+    fn remembering(&self, begun: History, before: &Remembered<'_>) -> History {
+        self.law.remembering(begun, before)
     }
 
     fn has_symmetric_tangent(&self) -> bool {

@@ -61,6 +61,15 @@ impl PartialEq for GivenLaw {
 const LEAST_COHESION: f64 = 1.0 / 400.0;
 
 impl Material {
+    /// Whether it is the same in all but its name.
+    pub fn is_same_soil(&self, other: &Self) -> bool {
+        let renamed = Self {
+            name: other.name.clone(),
+            ..self.clone()
+        };
+        renamed == *other
+    }
+
     /// Constrained modulus, 1/m_v \[Pa\].
     pub fn constrained_modulus(&self) -> f64 {
         let (young, poisson) = (self.young, self.poisson);

@@ -336,8 +336,11 @@ impl Tested {
         let undrained = is_undrained.then(|| said::UNDRAINED.to_owned());
         let given = given_in_words(&self.material);
         let given = given.map(|words| format!("{} {words}", said::GIVEN));
+        let is_timed = self.request.duration > 0.0 && self.material.given.is_none();
+        let is_timeless = is_timed && !self.material.goes_with_rate();
+        let timeless = is_timeless.then(|| said::TIMELESS.to_owned());
         let notes = given.into_iter().chain(by_stress).chain(varies);
-        notes.chain(undrained).collect()
+        notes.chain(undrained).chain(timeless).collect()
     }
 }
 
@@ -471,6 +474,43 @@ mod tests {
             assert!(text.starts_with("the duration is "), "{text}");
         }
         assert!(test(sand, &sheared(0.1)).is_ok());
+    }
+
+    /// GOAL: a duration without effect is told, and one with effect is not; so is strength that snaps back where a test ends early.
+    /// ORACLE: the laws; soil with these curves is followed where all strains but one are driven.
+    #[test]
+    fn a_duration_without_effect_and_brittle_soil_are_told() {
+        let clay = "igimp = 1\n[materials.clay]\nmodel = \"tresca\"\nunit_weight = \"18 kN/m3\"\nyoung = \"30 MPa\"\n\
+            poisson = 0.49\ncu = \"50 kPa\"\n";
+        let rate = format!("{clay}rate = {{ per_log_cycle = 0.1, reference = \"1 %/h\" }}\n");
+        let told = |text: &str| -> String {
+            let file = MaterialsFile::parse("clay.toml", text, &[]).unwrap();
+            let request = Request {
+                duration: 10.0,
+                ..sheared(0.05)
+            };
+            test(&file.materials[0], &request).unwrap().text
+        };
+        assert!(told(clay).contains("the duration has no effect"));
+        assert!(!told(&rate).contains("no effect"), "{}", told(&rate));
+        let brittle = "igimp = 1\n[materials.sand]\nmodel = \"mohr-coulomb\"\nunit_weight = \"18 kN/m3\"\nyoung = \"20 MPa\"\n\
+            poisson = 0.3\ncohesion = \"20 kPa\"\nfriction = \"30 deg\"\nsoftening = { cohesion = { residual = 0.1, strain = 0.002 } }\n";
+        let sand = &MaterialsFile::parse("sand.toml", brittle, &[])
+            .unwrap()
+            .materials[0];
+        for (standard, is_told) in [
+            (StandardTest::TriaxialDrained, true),
+            (StandardTest::SimpleShearDrained, false),
+        ] {
+            let request = Request {
+                drive: Drive::Standard(standard, 0.05),
+                steps: 200,
+                ..sheared(0.05)
+            };
+            let own = test(sand, &request).unwrap();
+            assert_eq!(own.run.failure.is_some(), is_told, "{}", own.text);
+            assert_eq!(own.text.contains("can snap back"), is_told, "{}", own.text);
+        }
     }
 
     /// GOAL: of a law that takes the place of that of the file its name and its words are told, and no formula of the other.

@@ -9,6 +9,9 @@ mod said;
 mod statistics;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod wall_tests;
+mod walls;
 
 use std::path::Path;
 
@@ -192,25 +195,18 @@ pub fn fit(source: &dyn Source, request: &FitRequest) -> Result<Fitted, FitError
     }
     let start = vec![START; parameters.len()];
     problem.residuals(&start)?;
-    let values = |at: &[f64]| -> Vec<f64> {
-        (parameters.iter().zip(at))
-            .map(|(own, x)| own.value(*x))
-            .collect()
-    };
-    let not_converged = |at: &[f64], why: &str| FitError::NotConverged {
-        why: why.to_owned(),
-        at: (parameters.iter().zip(values(at)))
-            .map(|(own, value)| format!("{} = {}", own.key, own.text(value)))
-            .collect::<Vec<_>>()
-            .join(", "),
-    };
-    let solved = problem.solved(start);
-    let Solved { at, why, effort } = solved;
+    let not_converged = |at: &[f64], why: &str| not_converged(&parameters, at, why);
+    let Solved {
+        at,
+        ranges,
+        why,
+        effort,
+    } = problem.solved(start);
     if let Some(why) = why {
         return Err(not_converged(&at, &why));
     }
     let residuals = problem.residuals(&at)?;
-    let Some(jacobian) = problem.jacobian(&at) else {
+    let Some(jacobian) = problem.jacobian(&at, &ranges) else {
         return Err(not_converged(
             &at,
             "the law refuses values beside those found",
@@ -221,16 +217,16 @@ pub fn fit(source: &dyn Source, request: &FitRequest) -> Result<Fitted, FitError
         correlation,
         deviation,
         step,
-    } = statistics(&parameters, &at, &residuals, &jacobian);
+    } = statistics((&parameters, &ranges), &at, &residuals, &jacobian);
     let has_kink = problem
         .is_minimum(&at, &residuals, &jacobian, &step)
         .map_err(|why| not_converged(&at, why))?;
-    let found: Vec<Found> = (parameters.iter().zip(values(&at)).zip(known))
-        .map(|((own, value), known)| Found {
+    let found: Vec<Found> = (parameters.iter().zip(&at).zip(known))
+        .map(|((own, x), known)| Found {
             key: own.key.clone(),
             unit: own.unit.clone(),
             start: own.first,
-            value,
+            value: own.value(*x),
             known,
         })
         .collect();
@@ -253,6 +249,18 @@ pub fn fit(source: &dyn Source, request: &FitRequest) -> Result<Fitted, FitError
     };
     fitted.text = said::said(&fitted);
     Ok(fitted)
+}
+
+/// A search that ended at a place without a minimum.
+fn not_converged(parameters: &[Parameter], at: &[f64], why: &str) -> FitError {
+    let values = parameters.iter().zip(at);
+    FitError::NotConverged {
+        why: why.to_owned(),
+        at: values
+            .map(|(own, x)| format!("{} = {}", own.key, own.text(own.value(*x))))
+            .collect::<Vec<_>>()
+            .join(", "),
+    }
 }
 
 /// The parameters of a request, each of which stands there once.

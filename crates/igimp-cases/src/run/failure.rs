@@ -16,6 +16,7 @@ use super::session::Session;
 use super::stages::dynamic::most_cuts;
 use super::state::State;
 use super::{Failure, NearWorst};
+use advice::Seen;
 
 /// Share of its shear strength from which on a particle counts as close to failure \[-\].
 const AT_STRENGTH: f64 = 0.9;
@@ -52,6 +53,11 @@ pub(crate) fn describe<const D: usize>(
         .worst
         .map(|(x, _)| around(session.model, state, std::array::from_fn(|axis| x[axis])));
     let near_worst = around.as_ref().map(|(counts, _)| *counts);
+    let peak = summary.peak_resistance.filter(|peak| *peak > 0.0);
+    let seen = Seen {
+        near_worst,
+        fallen: peak.map_or(0.0, |peak| 1.0 - session.last_resistance / peak),
+    };
     Failure {
         stage: stage.name.clone(),
         step: match stage.kind {
@@ -64,7 +70,7 @@ pub(crate) fn describe<const D: usize>(
         max_iterations: case.solver.max_iterations,
         near_worst,
         material: around.and_then(|(_, material)| material),
-        suggestions: advice::advice(case, number, &error, near_worst.as_ref()),
+        suggestions: advice::advice(case, number, &error, seen),
         saved: Vec::new(),
         error,
     }

@@ -274,14 +274,15 @@ impl<const D: usize> GroundWater<D> {
         }
     }
 
-    /// Vertical stress that the law of a particle speaks of under level ground, tension positive \[Pa\].
-    pub(crate) fn effective_weight(
+    /// What the law of a particle under level ground speaks of, tension positive \[Pa\]: the vertical stress by the weight of the
+    /// ground, and the pressure of a pond above it, which acts in all directions alike on soil of total stress (theory, eq. 36c).
+    pub(crate) fn at_rest(
         &self,
         ground: &Ground<D>,
         number: usize,
         material: &Material,
         x: &[f64; D],
-    ) -> f64 {
+    ) -> [f64; 2] {
         let own = self.own[self.seeded.body[number]].as_ref();
         let table = match own.unwrap_or(&self.reference) {
             source @ Source::Table { .. } => source.top(x),
@@ -290,12 +291,11 @@ impl<const D: usize> GroundWater<D> {
         };
         let surface = ground.surface(x).unwrap_or(x[D - 1]);
         let pond = self.reference.at(&at_level(x, surface));
-        let total = ground.weight_above(x) + ground.added_above(x, table) + pond;
-        let pores = match material.drainage {
-            Drainage::Total => 0.0,
-            _ => own.unwrap_or(&self.reference).at(x),
-        };
-        pores - total
+        let weight = ground.weight_above(x) + ground.added_above(x, table);
+        match material.drainage {
+            Drainage::Total => [-weight, -pond],
+            _ => [own.unwrap_or(&self.reference).at(x) - (weight + pond), 0.0],
+        }
     }
 }
 

@@ -15,4 +15,5 @@ mod mechanism;
 mod remarks;
 mod revolution;
 mod run_out;
+mod swapped;
 mod unmet;

@@ -432,3 +432,60 @@ fn construction_that_makes_no_sense() {
         ),],
     ]));
 }
+
+const POND: &str = r#"
+igimp = 1
+[case]
+title = "clay under a pond"
+[grid]
+cell = "1 m"
+domain = { x = ["0 m", "3 m"], y = ["0 m", "10 m"] }
+[materials.clay]
+model = "tresca"
+cu = "100 kPa"
+unit_weight = "17 kN/m3"
+saturated_unit_weight = "19 kN/m3"
+young = "10 MPa"
+poisson = 0.3
+k0 = 0.8
+drainage = "total"
+[[water]]
+name = "pond"
+level = "15 m"
+[[bodies]]
+name = "bed"
+material = "clay"
+polygon = [["0 m","0 m"], ["3 m","0 m"], ["3 m","8 m"], ["0 m","8 m"]]
+[[stages]]
+name = "rest"
+type = "k0"
+"#;
+
+/// GOAL: a pond loads level ground by the same in all directions, also soil of total stress, which `k0` is stated of; weak clay of a deep sea
+/// bed begins. CASE: 8 m of clay under water up to 15 m and 108 m, and with c_u = 20 kPa. ORACLE: σ_v = γ z + γ_w h, σ_h = K_0 γ z + γ_w h (eq. 36c);
+/// drained soil of the same, σ_h = u + K_0 (σ_v - u), whose deviator does not know h either. BAND: 1e-6 of γ z.
+#[test]
+fn a_pond_loads_soil_of_total_stress_in_all_directions_alike() {
+    let deep = [
+        ("level = \"15 m\"", "level = \"108 m\""),
+        ("\"100 kPa\"", "\"20 kPa\""),
+    ];
+    for (edits, water) in [(&[][..], 7.0), (&deep[..], 100.0)] {
+        let case = edited(POND, edits);
+        let file =
+            CaseFile::parse("pond.toml", &case, &[]).unwrap_or_else(|error| panic!("{error}"));
+        let run = igimp_cases::run::in_memory(file.case()).unwrap();
+        assert!(run.failure.is_none());
+        let particles = &run.body.particles;
+        for particle in 0..particles.len() {
+            let soil = 19e3 * (8.0 - particles.x[particle][1]);
+            let pond = 9.81e3 * water;
+            let sigma = &particles.sigma[particle];
+            assert!((sigma[1][1] + soil + pond).abs() < 1e-6 * soil, "{sigma:?}");
+            for axis in [0, 2] {
+                let off = sigma[axis][axis] + 0.8 * soil + pond;
+                assert!(off.abs() < 1e-6 * soil, "{sigma:?} {soil} {pond}");
+            }
+        }
+    }
+}

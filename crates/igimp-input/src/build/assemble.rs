@@ -169,5 +169,6 @@ pub(super) fn assemble<const D: usize>(
     materials::check_lengths(&case, problems);
     materials::check_rates(&case, problems);
     materials::check_unused(tree, &case, problems);
+    stages::memory::check(tree, &case, problems);
     Some(case)
 }

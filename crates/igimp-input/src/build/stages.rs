@@ -5,6 +5,7 @@ mod consolidation;
 pub(crate) mod construction;
 pub(crate) mod dynamic;
 pub(crate) mod ground_motion;
+pub(crate) mod memory;
 pub(crate) mod safety;
 
 use igimp_model::{LoadKind, Stage, StageKind, StopWhen, Strength};

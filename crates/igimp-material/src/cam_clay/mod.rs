@@ -19,6 +19,7 @@ const VARIABLES: [InternalVariable; 1] = [InternalVariable {
     name: "preconsolidation pressure",
     unit: "Pa",
     scaling: Scaling::Stress,
+    follows_stress: false,
 }];
 
 /// How the shear modulus of [`ModifiedCamClay`] goes with pressure.

@@ -30,16 +30,19 @@ const VARIABLES: [InternalVariable; 3] = [
         name: "plastic shear strain",
         unit: "-",
         scaling: Scaling::Strain,
+        follows_stress: false,
     },
     InternalVariable {
         name: "preconsolidation pressure",
         unit: "Pa",
         scaling: Scaling::Stress,
+        follows_stress: false,
     },
     InternalVariable {
         name: "stiffness ratio",
         unit: "-",
         scaling: Scaling::Constant,
+        follows_stress: true,
     },
 ];
 

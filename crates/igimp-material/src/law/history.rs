@@ -25,6 +25,19 @@ impl History {
         }
     }
 
+    /// This history of a law with the variables `of` with what soil remembers that was of another law: each memory of the same name
+    /// is as it was, the others stay.
+    #[must_use]
+    pub fn remembering(mut self, of: &[InternalVariable], before: &Remembered<'_>) -> Self {
+        self.eps_p_eq = before.history.eps_p_eq;
+        for (place, variable) in of.iter().enumerate() {
+            if let Some(value) = before.value_of(variable) {
+                self.internal[place] = value;
+            }
+        }
+        self
+    }
+
     /// The history after a further plastic strain increment; internal variables stay.
     #[must_use]
     pub fn after(&self, delta_eps_p: &Principal) -> Self {
@@ -33,6 +46,24 @@ impl History {
             eps_p_eq: self.eps_p_eq + (2.0 / 3.0 * dot(&deviatoric, &deviatoric)).sqrt(),
             internal: self.internal,
         }
+    }
+}
+
+/// What soil remembers as it comes to another law.
+#[derive(Clone, Copy, Debug)]
+pub struct Remembered<'a> {
+    /// The variables of the law that it was of.
+    pub variables: &'a [InternalVariable],
+    /// Its history by that law.
+    pub history: &'a History,
+}
+
+impl Remembered<'_> {
+    /// The value that a variable of another law takes over; none: there is no memory of it.
+    pub fn value_of(&self, variable: &InternalVariable) -> Option<f64> {
+        let mut known = self.variables.iter();
+        let place = known.position(|own| own.is_remembered_as(variable))?;
+        Some(self.history.internal[place])
     }
 }
 
@@ -45,6 +76,16 @@ pub struct InternalVariable {
     pub unit: &'static str,
     /// How it goes with the ratios of soil that varies in space.
     pub scaling: Scaling,
+    /// Whether it is found anew from the stress after every step, and is no memory of what was before.
+    pub follows_stress: bool,
+}
+
+impl InternalVariable {
+    /// Whether soil that comes to another law keeps it: a memory of the same name and unit, whatever its law.
+    pub fn is_remembered_as(&self, other: &Self) -> bool {
+        let is_memory = !self.follows_stress && !other.follows_stress;
+        is_memory && self.name == other.name && self.unit == other.unit
+    }
 }
 
 /// How a number of a law goes with the ratios of strength s and of stiffness e of a piece of soil ([`Ratios`](crate::Ratios)).

@@ -11,7 +11,7 @@ mod strength;
 use std::fmt::Debug;
 
 pub use answer::{Nonlocal, NonlocalRates, PointContext, Regime, ReturnMap};
-pub use history::{History, INTERNAL_VARIABLES, InternalVariable, Scaling};
+pub use history::{History, INTERNAL_VARIABLES, InternalVariable, Remembered, Scaling};
 pub use strength::{Dissipation, ShearStrength, Strength};
 pub(crate) use strength::{ON_SURFACE, mobilised};
 
@@ -139,6 +139,12 @@ pub trait ConstitutiveModel: Strength + Send + Sync + Debug {
     fn initial_history(&self, sigma: &Principal) -> History {
         let _ = sigma;
         History::default()
+    }
+
+    /// The history of soil that was of another law, `begun` being what [`initial_history`](Self::initial_history) says of its stress:
+    /// memories of the same name are as they were.
+    fn remembering(&self, begun: History, before: &Remembered<'_>) -> History {
+        begun.remembering(self.internal_variables(), before)
     }
 
     /// Whether consistent tangents are symmetric, which is so when the flow is associated.

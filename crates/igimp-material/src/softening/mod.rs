@@ -17,8 +17,8 @@ use crate::law::dilatancy;
 use crate::spectral::principal::largest;
 use crate::{
     ConstitutiveModel, Dissipation, Elasticity, History, InternalVariable, MaterialError,
-    MohrCoulomb, Nonlocal, PointContext, Principal, ReturnMap, Scaling, ShearStrength, Strength,
-    Tensor, Tresca, VonMises,
+    MohrCoulomb, Nonlocal, PointContext, Principal, Remembered, ReturnMap, Scaling, ShearStrength,
+    Strength, Tensor, Tresca, VonMises,
 };
 
 pub use curve::{Curve, Decay};
@@ -31,6 +31,7 @@ const PLASTIC: InternalVariable = InternalVariable {
     name: "softening strain",
     unit: "-",
     scaling: Scaling::Constant,
+    follows_stress: false,
 };
 
 /// The direction of stress.
@@ -38,6 +39,7 @@ const ANGLE: InternalVariable = InternalVariable {
     name: "angle of compression",
     unit: "rad",
     scaling: Scaling::Constant,
+    follows_stress: false,
 };
 
 /// The plastic strain of the ground around.
@@ -45,6 +47,7 @@ const AROUND: InternalVariable = InternalVariable {
     name: "nonlocal strain",
     unit: "-",
     scaling: Scaling::Constant,
+    follows_stress: false,
 };
 
 /// The internal variables of a law whose strength is that of a point, and of one that sees the ground around.
@@ -452,6 +455,15 @@ impl ConstitutiveModel for Softening {
         let mut history = History::default();
         if let Some(place) = self.place_of_angle() {
             history.internal[place] = NO_DIRECTION;
+        }
+        history
+    }
+
+    /// Soil whose law saw nothing around begins with its own plastic strain as that of the ground around: its strength stays.
+    fn remembering(&self, begun: History, before: &Remembered<'_>) -> History {
+        let mut history = begun.remembering(self.internal_variables(), before);
+        if let (Some(place), None) = (self.place_of_nonlocal(), before.value_of(&AROUND)) {
+            history.internal[place] = before.value_of(&PLASTIC).unwrap_or_default();
         }
         history
     }

@@ -27,11 +27,13 @@ pub(crate) const VARIABLES: [InternalVariable; 2] = [
         name: "hardening strain",
         unit: "-",
         scaling: Scaling::Strain,
+        follows_stress: false,
     },
     InternalVariable {
         name: "yield stress",
         unit: "Pa",
         scaling: Scaling::Stress,
+        follows_stress: false,
     },
 ];
 

@@ -238,7 +238,7 @@ table! {
     friction: quantity(Angle, Positive), required "\"35 deg\"", "friction angle, 1 deg to 80 deg";
     dilation: quantity(Angle, NotNegative), default "\"0 deg\"", "dilation angle at failure, nowhere above the friction angle or 30 deg";
     e50: quantity(Stress, Positive), required "\"30 MPa\"",
-        "secant modulus at half the strength in drained triaxial compression, at a cell pressure of `reference_pressure`";
+        "secant modulus at half the strength in drained triaxial compression, at a cell pressure of `reference_pressure`, where the cap does not yield; with `ocr` = 1 soil is softer";
     eur: quantity(Stress, Positive), optional "three times `e50`", "Young's modulus of unloading and reloading there";
     eoed: quantity(Stress, Positive), optional "as `e50`",
         "tangent modulus of first compression in the oedometer, at an axial stress of `reference_pressure`";

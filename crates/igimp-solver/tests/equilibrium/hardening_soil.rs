@@ -1,7 +1,9 @@
 //! Hardening Soil along the paths of the laboratory.
 
 use igimp_material::{HardeningSoil, HardeningSoilParameters};
-use igimp_solver::element::{ElementPath, ElementState, ElementTest, Kinematics, StandardTest};
+use igimp_solver::element::{
+    Control, ElementPath, ElementState, ElementTest, Kinematics, StandardTest,
+};
 
 const P0: f64 = 100e3;
 
@@ -131,6 +133,51 @@ fn drained_compression_follows_the_hyperbola() {
                 "Eur",
             );
         }
+    }
+}
+
+/// GOAL: soil on its cap is softer than E_50 in the standard test, as the page tells by `ocr`.
+/// ORACLE: the first slope from an isotropic stress on the cap, 1/E_i + (1/K_i - 1/K)/9, with K_i the modulus of isotropic first compression
+/// and K that of unloading: shear and the cap add. The parameter, where the cap is away. BAND: 0.1 %; 0.5 % of the figures of the page.
+#[test]
+fn soil_on_its_cap_is_softer_than_the_hyperbola() {
+    let loose = HardeningSoilParameters::loose_hostun_sand();
+    for (own, secants) in [
+        (loose, [16.4e6, 18.5e6, 20.0e6, 20.0e6]),
+        (dense(), [26.4e6, 27.7e6, 29.4e6, 30.0e6]),
+    ] {
+        let sin = own.friction_angle.sin();
+        let half = P0 * sin / (1.0 - sin);
+        for (overconsolidation, expected) in std::iter::zip([1.0, 1.5, 2.0, 4.0], secants) {
+            let law = law(HardeningSoilParameters {
+                overconsolidation,
+                ..own
+            });
+            let states = driven(&law, P0, StandardTest::TriaxialDrained, 0.02, 2000);
+            let at = states.iter().position(|own| own.q() > half).unwrap();
+            let (before, after) = (&states[at - 1], &states[at]);
+            let share = (half - before.q()) / (after.q() - before.q());
+            let strain = before.strain[1] + share * (after.strain[1] - before.strain[1]);
+            close(-half / strain, expected, 5e-3, "E50 of the page");
+        }
+        let on_cap = law(HardeningSoilParameters {
+            overconsolidation: 1.0,
+            ..own
+        });
+        let step = 1e-7;
+        let sheared = driven(&on_cap, P0, StandardTest::TriaxialDrained, step, 1);
+        let isotropic = ElementPath {
+            controls: [Control::Strain; 4],
+            legs: vec![[-step, -step, -step, 0.0]],
+        };
+        let pressed = along(&on_cap, [-P0; 3], isotropic, 1);
+        let last = pressed.last().unwrap();
+        let volume = -(last.strain[0] + last.strain[1] + last.strain[2]);
+        let modulus = (last.p() - P0) / volume;
+        let unloading = own.unloading / (3.0 * (1.0 - 2.0 * own.poisson));
+        let initial = 2.0 * own.secant / (2.0 - own.failure_ratio);
+        let compliance = 1.0 / initial + (1.0 / modulus - 1.0 / unloading) / 9.0;
+        close(sheared[1].q() / step, 1.0 / compliance, 1e-3, "first slope");
     }
 }
 

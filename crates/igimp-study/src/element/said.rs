@@ -18,6 +18,13 @@ pub(super) const GIVEN: &str = "the law takes the place of that of the file:";
 /// Of a material that is undrained in its case.
 pub(super) const UNDRAINED: &str = "stresses are effective ones; an undrained test keeps the volume, whatever the water's stiffness";
 
+/// Of a duration that the law does not know.
+pub(super) const TIMELESS: &str =
+    "the duration has no effect: this strength does not go with the rate of strain";
+/// Of strength that falls with plastic strain, in a test that ended early.
+const BRITTLE: &str = "strength that falls fast over plastic strain can snap back in a test that holds stresses: state a longer strain, \
+    or shear it with --test simple-shear-drained";
+
 /// The lines of a test, ready to print.
 pub(super) fn said(tested: &Tested) -> String {
     let (request, states) = (&tested.request, &tested.run.states);
@@ -47,9 +54,12 @@ pub(super) fn ending(tested: &Tested) -> Vec<String> {
         return Vec::new();
     };
     let because = lost.law.as_ref().map(|law| format!("because: {law}"));
+    let curves = tested.material.softening;
+    let is_brittle = curves.is_some_and(|own| own.goes_with_strain()) && because.is_none();
     [format!("ended early: {lost}")]
         .into_iter()
         .chain(because)
+        .chain(is_brittle.then(|| BRITTLE.to_owned()))
         .collect()
 }
 

@@ -103,11 +103,12 @@ fn row(own: &Found) -> Vec<String> {
             let [low, high] = ends;
             ([digits(own.value), short(*error), low, high], "these data")
         }
-        Known::AtBound { upper } => {
-            let by = if *upper {
-                "its upper bound"
-            } else {
-                "its lower bound"
+        Known::AtBound { .. } | Known::AtWall { .. } => {
+            let by = match own.known {
+                Known::AtBound { upper: true } => "its upper bound",
+                Known::AtBound { .. } => "its lower bound",
+                Known::AtWall { upper: true } => "the greatest value that is accepted",
+                _ => "the least value that is accepted",
             };
             ([short(own.value), none(), none(), none()], by)
         }

@@ -128,6 +128,9 @@ impl std::str::FromStr for Vary {
 /// Where the search of every parameter begins.
 pub(super) const START: f64 = 1.0;
 
+/// A place in the search as near to an end is at it.
+pub(super) const AT_END: f64 = 1e-9;
+
 /// How a parameter is scaled in the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Scale {
@@ -206,6 +209,37 @@ impl Parameter {
     /// A value as it is written in a file.
     pub(super) fn text(&self, value: f64) -> String {
         written(value, &self.unit)
+    }
+}
+
+/// Between which places a parameter is sought.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Range {
+    /// The lower and the upper end; infinite where there is none.
+    pub(super) ends: [f64; 2],
+    /// Which of the ends are walls that the search met; the others are bounds that were stated.
+    pub(super) is_wall: [bool; 2],
+}
+
+impl Range {
+    /// The bounds that were stated.
+    pub(super) fn stated(own: &Parameter) -> Self {
+        Self {
+            ends: own.limits().unwrap_or([f64::NEG_INFINITY, f64::INFINITY]),
+            is_wall: [false; 2],
+        }
+    }
+
+    /// The end that a place is at: 0 the lower one, 1 the upper one.
+    pub(super) fn end_at(&self, x: f64) -> Option<usize> {
+        let [low, high] = self.ends;
+        if x <= low + AT_END {
+            Some(0)
+        } else if x >= high - AT_END {
+            Some(1)
+        } else {
+            None
+        }
     }
 }
 

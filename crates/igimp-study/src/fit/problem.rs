@@ -4,14 +4,14 @@ use igimp_input::InputError;
 use igimp_model::Material;
 use rmpfit::{MPConfig, MPError, MPFitter, MPPar, MPResult, MPSide, MPSuccess};
 
-use super::parameter::Parameter;
+use super::parameter::{Parameter, Range};
 use super::{FitRequest, Source};
 use crate::element::{Data, Measure, Request, TestError, driven};
 
 /// Step of the differences, of parameters of order one: an error of 1e-8 by curvature, and as much by the tolerance of a step.
-const DIFFERENCE: f64 = 1e-4;
+pub(super) const DIFFERENCE: f64 = 1e-4;
 
-/// Residual of a trial that the law refuses, far above any that is one: the search turns back.
+/// Residual of a trial that the law or a test refuses, far above any that is one: the search turns back.
 const REFUSED: f64 = 1e8;
 
 /// First step of the search, over the parameters: beyond it a law may be one of another kind.
@@ -19,6 +19,9 @@ const FIRST_STEP: f64 = 0.3;
 
 /// Share of the sum of squares that a further correction may still take away.
 const LEFT: f64 = 1e-6;
+
+/// Most searches one after the other, each of which holds parameters at the walls that the one before met.
+const MOST_SEARCHES: usize = 30;
 
 /// A residual of round-off, over the largest value that was measured.
 const ROUND_OFF: f64 = 1e-9;
@@ -39,11 +42,15 @@ pub(super) struct Problem<'a> {
     /// What a residual is divided by: of each column of each test, in SI.
     scales: Vec<Vec<f64>>,
     values: usize,
+    /// Root of the sum of squares of what was measured, over the scales.
+    size: f64,
 }
 
 /// Where a search ended, and why it is none; iterations and evaluations.
 pub(super) struct Solved {
     pub(super) at: Vec<f64>,
+    /// The ranges of the parameters, with the walls that it ended beside.
+    pub(super) ranges: Vec<Range>,
     pub(super) why: Option<String>,
     pub(super) effort: [usize; 2],
 }
@@ -63,6 +70,15 @@ impl<'a> Problem<'a> {
             let values = data.rows.iter().flat_map(|row| &row.values);
             values.filter(|value| value.is_finite()).count()
         };
+        let over_scales = |data: &Data| -> f64 {
+            let scales: Vec<f64> = data.columns.iter().map(scale).collect();
+            let rows = data
+                .rows
+                .iter()
+                .flat_map(|row| row.values.iter().zip(&scales));
+            let shares = rows.filter(|(value, _)| value.is_finite());
+            shares.map(|(value, scale)| (value / scale).powi(2)).sum()
+        };
         Self {
             source,
             parameters,
@@ -74,12 +90,18 @@ impl<'a> Problem<'a> {
                 })
                 .collect(),
             values: data().map(measured).sum(),
+            size: data().map(over_scales).sum::<f64>().sqrt().max(1.0),
         }
     }
 
     /// What a residual is divided by: of each column of each test, in SI.
     pub(super) fn scales(&self) -> &[Vec<f64>] {
         &self.scales
+    }
+
+    /// The parameters.
+    pub(super) fn parameters(&self) -> &[Parameter] {
+        self.parameters
     }
 
     /// How many values were measured.
@@ -127,17 +149,26 @@ impl<'a> Problem<'a> {
         Ok(residuals)
     }
 
-    /// The derivative of the residuals, a column a parameter, by central differences; one-sided where one side is out of bounds or
+    /// The residuals a difference from a place; none where the law or a test is refused there, or where they leap by more than all that was
+    /// measured: no soil is so sensitive, and a return has found another root.
+    pub(super) fn beside(&self, moved: &[f64], here: &[f64]) -> Option<Vec<f64>> {
+        let there = self.residuals(moved).ok()?;
+        let changes = there.iter().zip(here).map(|(there, here)| there - here);
+        let leap: f64 = changes.map(|own| own * own).sum();
+        (leap.sqrt() <= self.size).then_some(there)
+    }
+
+    /// The derivative of the residuals, a column a parameter, by central differences; one-sided where one side is out of range or
     /// refused. None where both are.
-    pub(super) fn jacobian(&self, at: &[f64]) -> Option<Vec<Vec<f64>>> {
+    pub(super) fn jacobian(&self, at: &[f64], ranges: &[Range]) -> Option<Vec<Vec<f64>>> {
         let here = self.residuals(at).ok()?;
-        let column = |(place, own): (usize, &Parameter)| {
-            let [low, high] = own.limits().unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        let column = |(place, own): (usize, &Range)| {
+            let [low, high] = own.ends;
             let beside = |by: f64| {
                 let mut moved = at.to_vec();
                 moved[place] += by;
                 let is_within = (low..=high).contains(&moved[place]);
-                is_within.then(|| self.residuals(&moved).ok()).flatten()
+                is_within.then(|| self.beside(&moved, &here)).flatten()
             };
             let quotient = |plus: &[f64], minus: &[f64], by: f64| -> Vec<f64> {
                 plus.iter().zip(minus).map(|(p, m)| (p - m) / by).collect()
@@ -149,18 +180,54 @@ impl<'a> Problem<'a> {
                 (None, None) => None,
             }
         };
-        self.parameters.iter().enumerate().map(column).collect()
+        ranges.iter().enumerate().map(column).collect()
     }
 
-    /// The search, from a start at which all tests can be followed.
+    /// The search, from a start at which all tests can be followed. Where it ends beside walls, it goes on with its parameters held there,
+    /// and lets them go again where the sum of squares falls away from the wall.
     pub(super) fn solved(&self, start: Vec<f64>) -> Solved {
+        let mut solved = Solved {
+            at: start,
+            ranges: self.parameters.iter().map(Range::stated).collect(),
+            why: None,
+            effort: [0; 2],
+        };
+        for _ in 0..MOST_SEARCHES {
+            let own = self.searched(solved.at, &solved.ranges);
+            solved.at = own.at;
+            solved.why = own.why;
+            for (sum, more) in solved.effort.iter_mut().zip(own.effort) {
+                *sum += more;
+            }
+            let Ok(here) = self.residuals(&solved.at) else {
+                return solved;
+            };
+            let ranges = self.ranges_beside((&solved.at, &here), &solved.ranges);
+            let is_new = |(own, known): (&Range, &Range)| own.is_wall != known.is_wall;
+            let mut pairs = ranges.iter().zip(&solved.ranges);
+            let is_last = solved.why.is_some() || !pairs.any(is_new);
+            solved.ranges = ranges;
+            if is_last {
+                return solved;
+            }
+        }
+        let why = "it runs along values that the law or a test refuses";
+        solved.why = Some(why.to_owned());
+        solved
+    }
+
+    /// A search within ranges.
+    fn searched(&self, start: Vec<f64>, ranges: &[Range]) -> Solved {
         let mut at = start;
-        let limits = |own: &Parameter| {
+        let limits = |own: &Range| {
             let mut par = MPPar::new();
             par.side = MPSide::User;
-            if let Some([low, high]) = own.limits() {
-                (par.limited_low, par.limited_up) = (true, true);
-                (par.limit_low, par.limit_up) = (low, high);
+            let [low, high] = own.ends;
+            if low.is_finite() {
+                (par.limited_low, par.limit_low) = (true, low);
+            }
+            if high.is_finite() {
+                (par.limited_up, par.limit_up) = (true, high);
             }
             par
         };
@@ -168,23 +235,24 @@ impl<'a> Problem<'a> {
             step_factor: FIRST_STEP,
             ..MPConfig::new()
         };
-        let parameters = self.parameters.iter().map(limits).collect();
         let mut search = Search {
             problem: self,
             config,
-            parameters,
+            parameters: ranges.iter().map(limits).collect(),
+            ranges,
         };
-        match search.mpfit(&mut at) {
-            Ok(status) => Solved {
-                why: unfinished(&status.success).map(str::to_owned),
-                effort: [status.n_iter, status.n_fev],
-                at,
-            },
-            Err(error) => Solved {
-                why: Some(refused(&error).to_owned()),
-                effort: [0; 2],
-                at,
-            },
+        let (why, effort) = match search.mpfit(&mut at) {
+            Ok(status) => (
+                unfinished(&status.success).map(str::to_owned),
+                [status.n_iter, status.n_fev],
+            ),
+            Err(error) => (Some(refused(&error).to_owned()), [0; 2]),
+        };
+        Solved {
+            at,
+            ranges: ranges.to_vec(),
+            why,
+            effort,
         }
     }
 
@@ -210,17 +278,23 @@ impl<'a> Problem<'a> {
         if gain <= LEFT * sum + floor {
             return Ok(false);
         }
+        let mut is_told = false;
         for share in [1.0, 0.25, 0.0625, 0.015_625] {
             let moved: Vec<f64> = at.iter().zip(step).map(|(x, by)| x + share * by).collect();
-            let less = self.residuals(&moved).is_ok_and(|own| {
-                let there: f64 = own.iter().map(|own| own * own).sum();
-                there < (1.0 - LEFT) * sum - floor
-            });
-            if less {
+            let Ok(own) = self.residuals(&moved) else {
+                continue;
+            };
+            is_told = true;
+            let there: f64 = own.iter().map(|own| own * own).sum();
+            if there < (1.0 - LEFT) * sum - floor {
                 return Err("the sum of squares still falls where it ended");
             }
         }
-        Ok(true)
+        if is_told {
+            Ok(true)
+        } else {
+            Err("the law or a test refuses the correction that is left")
+        }
     }
 }
 
@@ -244,6 +318,7 @@ struct Search<'a> {
     problem: &'a Problem<'a>,
     config: MPConfig,
     parameters: Vec<MPPar>,
+    ranges: &'a [Range],
 }
 
 impl MPFitter for Search<'_> {
@@ -274,7 +349,7 @@ impl MPFitter for Search<'_> {
         derivs: &mut [Option<Vec<f64>>],
     ) -> MPResult<()> {
         self.eval(params, deviates)?;
-        let columns = self.problem.jacobian(params).ok_or(MPError::Eval)?;
+        let columns = (self.problem.jacobian(params, self.ranges)).ok_or(MPError::Eval)?;
         for (own, column) in derivs.iter_mut().zip(columns) {
             if let Some(own) = own {
                 *own = column;

@@ -101,6 +101,11 @@ pub(super) fn line(own: &Found, all: &[Found]) -> String {
             short(*value),
             if *upper { "upper" } else { "lower" },
         ),
+        Known::AtWall { upper } => format!(
+            "{key} = {} {unit}: the {} value that its law and the tests accept beside the others, which decides on it and not the data",
+            short(*value),
+            if *upper { "greatest" } else { "least" },
+        ),
         Known::NotDetermined { with } if with.is_empty() => {
             format!("{key}: not determined, these data do not depend on it")
         }
@@ -111,6 +116,7 @@ pub(super) fn line(own: &Found, all: &[Found]) -> String {
         }
     }
     .replace(" ,", ",")
+    .replace(" :", ":")
     .trim_end()
     .to_owned()
 }
@@ -144,11 +150,12 @@ pub(super) fn row(own: &Found) -> Vec<String> {
             [own.value, *error, *low, *high].map(number),
             "standard error",
         ),
-        Known::AtBound { upper } => {
-            let known = if *upper {
-                "at its upper bound"
-            } else {
-                "at its lower bound"
+        Known::AtBound { .. } | Known::AtWall { .. } => {
+            let known = match own.known {
+                Known::AtBound { upper: true } => "at its upper bound",
+                Known::AtBound { .. } => "at its lower bound",
+                Known::AtWall { upper: true } => "greatest that is accepted",
+                _ => "least that is accepted",
             };
             let none = String::new;
             ([number(own.value), none(), none(), none()], known)
@@ -171,7 +178,7 @@ pub(super) fn block(material: &str, found: &[Found]) -> String {
                 continue;
             }
             Known::Well { error, .. } => digits(own.value, error / 100.0),
-            Known::AtBound { .. } => own.value.to_string(),
+            Known::AtBound { .. } | Known::AtWall { .. } => own.value.to_string(),
         };
         let number = value.parse().unwrap_or(own.value);
         let value = written(number, &own.unit);

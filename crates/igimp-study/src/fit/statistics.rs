@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::parameter::Parameter;
+use super::parameter::{Parameter, Range};
 
 /// A combination of parameters whose effect is less than this share of the largest one is not determined \[-\]: ten times what
 /// differences and the tolerance of a step leave.
@@ -13,9 +13,6 @@ const UNTOUCHED: f64 = 1e-7;
 
 /// A parameter with more than this share in a combination belongs to it \[-\].
 const SHARE: f64 = 0.01;
-
-/// A place in the search as near to a bound is at it.
-const AT_BOUND: f64 = 1e-9;
 
 /// How well a parameter is known.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +27,12 @@ pub enum Known {
     /// It is at a bound, which decides on it and not the data.
     AtBound {
         /// Whether at the upper one.
+        upper: bool,
+    },
+    /// It is at a wall: the last value with which, beside the others, its law and the tests are not refused. The wall decides on it
+    /// and not the data.
+    AtWall {
+        /// Whether at the greatest value.
         upper: bool,
     },
     /// The data do not determine it: alone where the others, by their places, are none.
@@ -52,14 +55,14 @@ pub(super) struct Statistics {
 
 /// From residuals and their derivative, a column a parameter.
 pub(super) fn statistics(
-    parameters: &[Parameter],
+    (parameters, ranges): (&[Parameter], &[Range]),
     at: &[f64],
     residuals: &[f64],
     jacobian: &[Vec<f64>],
 ) -> Statistics {
     let rows = residuals.len();
     let norms: Vec<f64> = jacobian.iter().map(|column| norm(column)).collect();
-    let (known, free) = held(parameters, at, &norms, rows);
+    let (known, free) = held(ranges, at, &norms, rows);
     let mut statistics = Statistics {
         known,
         correlation: vec![vec![f64::NAN; at.len()]; at.len()],
@@ -122,18 +125,18 @@ pub(super) fn statistics(
     statistics
 }
 
-/// What is known before any inverse: parameters at bounds, and those that no residual depends on; and the places of the others.
-fn held(
-    parameters: &[Parameter],
-    at: &[f64],
-    norms: &[f64],
-    rows: usize,
-) -> (Vec<Known>, Vec<usize>) {
+/// What is known before any inverse: parameters at bounds or walls, and those that no residual depends on; and the places of the others.
+fn held(ranges: &[Range], at: &[f64], norms: &[f64], rows: usize) -> (Vec<Known>, Vec<usize>) {
     let mut known = vec![Known::NotDetermined { with: Vec::new() }; at.len()];
     let mut free = Vec::new();
-    for (place, own) in parameters.iter().enumerate() {
-        if let Some(upper) = bound(own, at[place]) {
-            known[place] = Known::AtBound { upper };
+    for (place, own) in ranges.iter().enumerate() {
+        if let Some(end) = own.end_at(at[place]) {
+            let upper = end == 1;
+            known[place] = if own.is_wall[end] {
+                Known::AtWall { upper }
+            } else {
+                Known::AtBound { upper }
+            };
         } else if norms[place] > UNTOUCHED * (rows as f64).sqrt() {
             free.push(place);
         }
@@ -154,18 +157,6 @@ fn correlate(statistics: &mut Statistics, free: &[usize], covariance: &DMatrix<f
                 covariance[(i, j)] / size
             };
         }
-    }
-}
-
-/// Whether a place is at its upper or its lower bound, if at one.
-fn bound(own: &Parameter, x: f64) -> Option<bool> {
-    let [low, high] = own.limits()?;
-    if x <= low + AT_BOUND {
-        Some(false)
-    } else if x >= high - AT_BOUND {
-        Some(true)
-    } else {
-        None
     }
 }
 

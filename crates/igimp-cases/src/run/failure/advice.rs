@@ -19,19 +19,33 @@ const MOST: usize = 4;
 const APEX_RICH: f64 = 0.02;
 /// A worst node with fewer particles within a cell of it is hardly covered by soil.
 const HARDLY_COVERED: usize = 4;
+/// Share of its peak that the load of a push has lost, from which on it is past the limit load \[-\].
+const PAST_PEAK: f64 = 0.02;
+/// Greatest denominator of a length that is written as a fraction.
+const DENOMINATORS: u32 = 1000;
 /// Poisson's ratio from which on the bulk modulus dwarfs the shear modulus \[-\].
 const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
+
+/// What was seen of a stage beside the step that failed.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Seen {
+    /// Particles within a cell of the worst node.
+    pub(crate) near_worst: Option<NearWorst>,
+    /// Share of its peak that the load of a push has lost \[-\].
+    pub(crate) fallen: f64,
+}
 
 /// Remedies, most promising first.
 pub(crate) fn advice<const D: usize>(
     case: &Case<D>,
     number: usize,
     error: &StepError,
-    near_worst: Option<&NearWorst>,
+    seen: Seen,
 ) -> Vec<String> {
     let Some(stage) = case.stages.get(number) else {
         return Vec::new();
     };
+    let near_worst = seen.near_worst.as_ref();
     let yielding = near_worst.is_some_and(|near| 2 * near.yielding >= near.points.max(1));
     let mut try_this = match &*error.failure {
         _ if is_loss_of_strength(error, near_worst) && is_statics(stage) => {
@@ -52,7 +66,7 @@ pub(crate) fn advice<const D: usize>(
             LinearSolverError::Singular { .. }
             | LinearSolverError::NotPositiveDefinite { .. }
             | LinearSolverError::Inaccurate { .. },
-        ) if yielding => no_equilibrium(case, (number, stage), error, near_worst),
+        ) if yielding => no_equilibrium(case, (number, stage), error, seen),
         StepFailure::Assembly(assembly) => unformed(case, stage, assembly),
         StepFailure::Linear(linear) => unsolved(case, stage, linear),
         StepFailure::TooDeep { body, .. } => too_deep(case, stage, body),
@@ -99,7 +113,7 @@ pub(crate) fn advice<const D: usize>(
         | StepFailure::Diverged
         | StepFailure::Stagnated
         | StepFailure::MechanismAtOnce => {
-            no_equilibrium(case, (number, stage), error, near_worst)
+            no_equilibrium(case, (number, stage), error, seen)
         }
     };
     try_this.truncate(MOST);
@@ -116,9 +130,10 @@ fn no_equilibrium<const D: usize>(
     case: &Case<D>,
     (number, stage): (usize, &Stage),
     error: &StepError,
-    near_worst: Option<&NearWorst>,
+    seen: Seen,
 ) -> Vec<String> {
-    let near = near_worst.copied().unwrap_or_default();
+    let near_worst = seen.near_worst;
+    let near = near_worst.unwrap_or_default();
     let apex = near.apex as f64 / near.points.max(1) as f64;
     let worst = error.worst.map_or([f64::NAN; 3], |(x, _)| x);
     let material = material_at(case, std::array::from_fn(|axis| worst[axis]));
@@ -126,7 +141,14 @@ fn no_equilibrium<const D: usize>(
 
     out.extend(round_off(case, error));
     out.extend(still_falling(case, error));
-    if near.is_at_strength() {
+    let is_push = matches!(stage.kind, StageKind::Displacement { .. });
+    if is_push && seen.fallen > PAST_PEAK {
+        out.push(format!(
+            "a smaller settlement in stage \"{}\": its load is {} % below its peak, the limit load, which it passed before",
+            stage.name,
+            short((100.0 * seen.fallen).round())
+        ));
+    } else if near.is_at_strength() {
         out.extend(collapse(case, number, stage, error.from));
     }
     out.push(more_steps(stage));
@@ -529,8 +551,19 @@ fn finer_cell<const D: usize>(case: &Case<D>) -> String {
     format!("cell = {{ {} }}", each.join(", "))
 }
 
+/// A length as it can be written in a case file: in few digits where that is exact, else as a fraction, so that cells divide what they
+/// divided.
 fn metres(length: f64) -> String {
-    format!("{} m", short(length))
+    let is_length = |own: f64| (own - length).abs() <= 1e-12 * length.abs();
+    let text = short(length);
+    if text.parse().is_ok_and(is_length) {
+        return format!("{text} m");
+    }
+    let fraction = (1..=DENOMINATORS).find_map(|denominator| {
+        let count = (length * f64::from(denominator)).round();
+        is_length(count / f64::from(denominator)).then(|| format!("{count}/{denominator} m"))
+    });
+    fraction.unwrap_or_else(|| format!("{length} m"))
 }
 
 /// The material at a place in the undeformed bodies; beside all bodies, that of the nearest body.

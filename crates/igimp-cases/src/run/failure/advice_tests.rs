@@ -140,9 +140,16 @@ fn stagnated() -> StepError {
     failed(StepFailure::Stagnated, &[1.0, 0.4, 0.2, 0.09, 0.08, 0.08])
 }
 
+fn seen(near: NearWorst) -> Seen {
+    Seen {
+        near_worst: Some(near),
+        fallen: 0.0,
+    }
+}
+
 #[test]
 fn soil_that_comes_apart_wants_tension() {
-    let try_this = advice(&gravity(), 0, &stagnated(), Some(&near(1310, 200, 42)));
+    let try_this = advice(&gravity(), 0, &stagnated(), seen(near(1310, 200, 42)));
     assert_eq!(
         try_this,
         [
@@ -159,7 +166,7 @@ fn without_a_cutoff_the_apex_is_named() {
     if let Strength::MohrCoulomb { tension_cutoff, .. } = &mut case.materials[0].strength {
         *tension_cutoff = None;
     }
-    let try_this = advice(&case, 0, &stagnated(), Some(&near(100, 20, 10)));
+    let try_this = advice(&case, 0, &stagnated(), seen(near(100, 20, 10)));
     assert_eq!(
         try_this[1],
         "tension_cutoff in \"clay\", below its apex at 27.47 kPa"
@@ -168,7 +175,7 @@ fn without_a_cutoff_the_apex_is_named() {
 
 #[test]
 fn plastic_soil_under_gravity_is_collapse() {
-    let try_this = advice(&gravity(), 0, &stagnated(), Some(&near(16, 14, 0)));
+    let try_this = advice(&gravity(), 0, &stagnated(), seen(near(16, 14, 0)));
     assert_eq!(
         try_this[0],
         "factor = 0.5 in stage \"first\": this is probably collapse under gravity itself"
@@ -202,7 +209,7 @@ fn less_of_a_load_is_nearer_to_where_its_stage_began() {
             start_from: Some(0),
             ..stage(load(to))
         });
-        let try_this = advice(&case, 1, &stagnated(), Some(&near(16, 14, 0)));
+        let try_this = advice(&case, 1, &stagnated(), seen(near(16, 14, 0)));
         assert!(try_this[0].starts_with(said), "{try_this:?}");
     }
 }
@@ -213,7 +220,7 @@ fn a_falling_residual_wants_iterations() {
         StepFailure::MaxIterations { iterations: 25 },
         &[1.0, 0.5, 0.2, 0.05, 0.01, 0.001],
     );
-    let try_this = advice(&gravity(), 0, &error, None);
+    let try_this = advice(&gravity(), 0, &error, Seen::default());
     assert!(
         try_this[0].starts_with("--set solver.max_iterations=50"),
         "{try_this:?}"
@@ -223,7 +230,7 @@ fn a_falling_residual_wants_iterations() {
 #[test]
 fn a_residual_near_round_off_wants_a_tolerance() {
     let error = failed(StepFailure::Stagnated, &[1.0, 1e-3, 3.2e-9, 3.1e-9]);
-    let try_this = advice(&gravity(), 0, &error, None);
+    let try_this = advice(&gravity(), 0, &error, Seen::default());
     assert_eq!(
         try_this[0],
         "--set solver.tolerance=1e-8, as the residual reaches 3e-9"
@@ -239,7 +246,7 @@ fn a_particle_off_the_grid_wants_a_domain() {
         },
         &[],
     );
-    let try_this = advice(&gravity(), 0, &error, None);
+    let try_this = advice(&gravity(), 0, &error, Seen::default());
     assert_eq!(
         try_this[0],
         "a larger domain in [grid]: extend it above x = 20 m"
@@ -253,10 +260,13 @@ fn a_singular_matrix_wants_a_ghost_penalty_and_supports() {
         LinearSolverError::Singular { unknown: Some(3) }.into(),
         &[1.0],
     );
-    assert!(advice(&gravity(), 0, &error, None)[0].starts_with("small_cuts = { ghost_penalty"));
+    assert!(
+        advice(&gravity(), 0, &error, Seen::default())[0]
+            .starts_with("small_cuts = { ghost_penalty")
+    );
     let mut floating = gravity();
     floating.boundaries = Boundaries::default();
-    assert!(advice(&floating, 0, &error, None)[0].starts_with("bottom = \"fixed\""));
+    assert!(advice(&floating, 0, &error, Seen::default())[0].starts_with("bottom = \"fixed\""));
 }
 
 /// GOAL: a system that cannot be solved once the soil came to its strength is no want of supports.
@@ -285,7 +295,7 @@ fn a_singular_matrix_of_soil_at_its_strength_is_collapse() {
         },
     });
     assert_eq!(
-        advice(&case, 0, &singular(&[1.0, 9e-4]), Some(&all)),
+        advice(&case, 0, &singular(&[1.0, 9e-4]), seen(all)),
         [
             "factor below 1 in stage \"first\": this is probably collapse under \"press\"",
             "stop_when = { no_equilibrium = true } and geometry = \"given\" in stage \"first\", which came to 50 % of its way: \
@@ -294,7 +304,7 @@ fn a_singular_matrix_of_soil_at_its_strength_is_collapse() {
         ]
     );
     for (residuals, near) in [(&[1.0][..], all), (&[1.0, 9e-4], near(8, 0, 0))] {
-        let try_this = advice(&case, 0, &singular(residuals), Some(&near));
+        let try_this = advice(&case, 0, &singular(residuals), seen(near));
         assert!(try_this[0].starts_with("small_cuts = {"), "{try_this:?}");
     }
 }
@@ -320,7 +330,7 @@ fn a_singular_matrix_in_motion_wants_mass_at_nodes() {
         LinearSolverError::Singular { unknown: Some(3) }.into(),
         &[1.0],
     );
-    let try_this = advice(&case, 0, &error, None);
+    let try_this = advice(&case, 0, &error, Seen::default());
     assert!(
         try_this[0].starts_with("lumped_share = 0.01 in stage \"first\""),
         "{try_this:?}"
@@ -332,13 +342,13 @@ fn a_singular_matrix_in_motion_wants_mass_at_nodes() {
 fn undrained_soil_wants_a_lower_poisson() {
     let mut case = gravity();
     case.materials[0].poisson = 0.499;
-    let try_this = advice(&case, 0, &stagnated(), Some(&near(16, 2, 0)));
+    let try_this = advice(&case, 0, &stagnated(), seen(near(16, 2, 0)));
     assert!(
         try_this.contains(&"poisson = 0.49 in \"clay\"".to_owned()),
         "{try_this:?}"
     );
     case.method.locking = Locking::None;
-    let try_this = advice(&case, 0, &stagnated(), Some(&near(16, 2, 0)));
+    let try_this = advice(&case, 0, &stagnated(), seen(near(16, 2, 0)));
     assert!(
         try_this.iter().any(|text| text.contains("locking = ")),
         "{try_this:?}"
@@ -353,13 +363,13 @@ fn a_run_out_wants_smaller_moves() {
         move_per_step: 0.2,
         at_rest: 0.01,
     }));
-    let try_this = advice(&case, 0, &stagnated(), Some(&near(3, 0, 0)));
+    let try_this = advice(&case, 0, &stagnated(), seen(near(3, 0, 0)));
     assert_eq!(
         try_this[0],
         "move_per_step = 0.1 in stage \"first\" (now 0.2)"
     );
     assert!(try_this[1].contains("ghost_penalty"), "{try_this:?}");
-    let yielding = advice(&case, 0, &stagnated(), Some(&near(3, 3, 0)));
+    let yielding = advice(&case, 0, &stagnated(), seen(near(3, 3, 0)));
     assert!(
         yielding[0].starts_with("type = \"dynamic\""),
         "{yielding:?}"
@@ -373,4 +383,42 @@ fn the_rock_is_found_where_it_is() {
     assert_eq!(name([5.0, 1.0]), Some("rock"));
     assert_eq!(name([5.0, 6.0]), Some("clay"));
     assert_eq!(name([5.0, 14.0]), Some("clay"));
+}
+
+/// GOAL: a finer cell that is advised divides the domain that the cell divided. CASE: cells of thirds, ninths and of no short fraction.
+/// ORACLE: the reader of quantities; half of the cell within 1e-12. Four digits, 0.1111 m, divided no domain of 6 m.
+#[test]
+fn half_a_cell_is_a_length_that_divides_the_domain() {
+    use igimp_schema::quantity::Quantity;
+    for (cell, said) in [
+        (0.5, Some("0.25 m")),
+        (2.0 / 9.0, Some("1/9 m")),
+        (1.0 / 3.0, Some("1/6 m")),
+        (6.0 / 17.0, Some("3/17 m")),
+        (std::f64::consts::PI, None),
+    ] {
+        let text = metres(0.5 * cell);
+        let read = Quantity::parse(&text).unwrap().value;
+        assert!((read / (0.5 * cell) - 1.0).abs() < 1e-12, "{text}");
+        assert!(said.is_none_or(|own| own == text), "{text}");
+    }
+}
+
+/// GOAL: a push that ends after its load has fallen is not told to look for its limit load. ORACLE: by hand, 25 % below the peak.
+#[test]
+fn a_push_past_its_peak_is_told_so() {
+    let case = case(StageKind::Displacement {
+        load: 0,
+        settlement: 0.2,
+    });
+    let seen = |fallen| Seen {
+        fallen,
+        ..seen(near(16, 14, 0))
+    };
+    let first = |fallen| advice(&case, 0, &stagnated(), seen(fallen)).remove(0);
+    assert!(first(0.0).contains("with the limit load reached"));
+    assert_eq!(
+        first(0.25),
+        "a smaller settlement in stage \"first\": its load is 25 % below its peak, the limit load, which it passed before"
+    );
 }

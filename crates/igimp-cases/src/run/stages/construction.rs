@@ -10,8 +10,8 @@ use igimp_assembly::{
     Kinematics, ParticleFields, Particles, PoreSite, PoreWater as _, RigidBody, Stencils, System,
 };
 use igimp_material::{
-    ConstitutiveModel, ScaledLaw, TangentKind, directed_history, elastic_left_cauchy_green_of,
-    principal_values,
+    ConstitutiveModel, History, Remembered, ScaledLaw, TangentKind, directed_history,
+    elastic_left_cauchy_green_of, principal_values,
 };
 use igimp_model::{Case, Construction, Drainage, Ground, StageKind, distance};
 use igimp_results::ending::EndReason;
@@ -100,15 +100,25 @@ fn changed<const D: usize>(
         if let Some(material) = stated.map(|(_, material)| *material).or_else(kept) {
             let law = fields.law[particle];
             fields.law[particle] = case.law_beside(law, material);
-            // What is placed is free of stress, whatever its law speaks of.
-            if !own.place.contains(&body) {
+            // What is placed is free of stress, whatever its law speaks of, and remembers nothing.
+            let is_placed = own.place.contains(&body);
+            if !is_placed
+                && case
+                    .material_of(law)
+                    .is_same_soil(&case.materials[material])
+            {
+                continue;
+            }
+            if !is_placed {
                 drain_as(model, &state, &mut fields, particle, law);
             }
+            let remembers = (!is_placed).then(|| (law, state.body.particles.history(particle)));
             let stretch = match case.method.kinematics {
                 Kinematics::FiniteStrain => state.body.particles.volume_ratio(particle),
                 Kinematics::SmallStrain => 1.0,
             };
-            become_soil_of((model, &ground), &mut fields, (particle, stretch), material)?;
+            let soil = (material, remembers);
+            become_soil_of((model, &ground), &mut fields, (particle, stretch), soil)?;
         }
     }
     state.body.particles = Particles::from_fields(fields)?;
@@ -192,12 +202,12 @@ fn let_water_out<const D: usize>(fields: &mut ParticleFields<D>, particle: usize
 }
 
 /// Gives a particle weight, strength and stiffness of a material; its stress stays, of which `stretch` makes that which goes with
-/// the elastic strain (theory, eq. 15).
+/// the elastic strain (theory, eq. 15), and so does what it remembers of the law before.
 fn become_soil_of<const D: usize>(
     (model, ground): (&Model<'_, D>, &Ground<D>),
     fields: &mut ParticleFields<D>,
     (particle, stretch): (usize, f64),
-    material: usize,
+    (material, remembers): (usize, Option<(usize, History)>),
 ) -> Result<(), CaseError> {
     let case = model.case;
     let gravity = gravity_of_weights(case.gravity);
@@ -216,7 +226,14 @@ fn become_soil_of<const D: usize>(
         fields.volume0[particle] * soil.unit_weight_at(&place, ground) / gravity;
     let tau = fields.sigma[particle].map(|row| row.map(|stress| stress * stretch));
     let law = ScaledLaw::new(&*model.laws[fields.law[particle]], ratios)?;
-    let history = law.initial_history(&principal_values::<D>(&tau));
+    let mut history = law.initial_history(&principal_values::<D>(&tau));
+    if let Some((law_before, own)) = remembers {
+        let before = Remembered {
+            variables: model.laws[law_before].internal_variables(),
+            history: &own,
+        };
+        history = law.remembering(history, &before);
+    }
     let axes = case.method.section.axes_looked_at::<D>();
     let history = directed_history::<D>(&law, &tau, history, axes);
     fields.internal[particle] = history.internal;

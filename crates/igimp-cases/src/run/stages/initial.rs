@@ -1,4 +1,4 @@
-//! The stresses of level ground: the weight above, and K₀ times that sideways (theory, eqs. 36
+//! The stresses of level ground: the weight above, and K₀ times that sideways (theory, eqs. 36, 36c
 //! and 37).
 
 use igimp_assembly::{Particles, PoreWater as _};
@@ -11,7 +11,8 @@ use crate::run::state::State;
 /// Sets the stresses of level ground under full gravity in an undeformed body; where gravity is 0 there are none.
 ///
 /// The vertical stress is the weight of the ground above a particle, layer by layer, less the pressure of water in the
-/// pores where the law speaks of effective stress; the horizontal ones are K₀ times that. The elastic strain follows from the stress, so that the
+/// pores where the law speaks of effective stress; the horizontal ones are K₀ times that. Water that stands on soil of total stress presses
+/// on it in all directions alike. The elastic strain follows from the stress, so that the
 /// state is what the law would have returned; deformation counts from here.
 pub(crate) fn level_ground<const D: usize>(
     model: &Model<'_, D>,
@@ -29,15 +30,15 @@ pub(crate) fn level_ground<const D: usize>(
         let x = fields.x[particle];
         let material = case.material_of(fields.law[particle]);
         let number = fields.number[particle];
-        let vertical = match &water {
-            None => -ground.weight_above(&x),
-            Some(water) => water.effective_weight(&ground, number, material, &x),
+        let [vertical, pond] = match &water {
+            None => [-ground.weight_above(&x), 0.0],
+            Some(water) => water.at_rest(&ground, number, material, &x),
         };
         let k0 = material
             .k0
             .unwrap_or(material.poisson / (1.0 - material.poisson));
-        let mut sigma = [k0 * vertical; 3];
-        sigma[D - 1] = vertical;
+        let mut sigma = [k0 * vertical + pond; 3];
+        sigma[D - 1] = vertical + pond;
         let tensor =
             std::array::from_fn(|a| std::array::from_fn(|b| if a == b { sigma[a] } else { 0.0 }));
         let answer = |law: &dyn ConstitutiveModel| {

@@ -9,6 +9,7 @@ use crate::build::bodies::sequence::Scene;
 use crate::build::context::About;
 
 /// Refuses modified Cam-clay that does not begin at rest under its weight: by the first stage, and of all bodies that are placed.
+/// Soil that comes to be of it later begins with the stresses that it has.
 pub(super) fn check<const D: usize>(about: &About<'_, D>, problems: &mut Problems) {
     let (context, place) = (about.context, about.stage.form.place);
     let start = &context.sequence.start;
@@ -22,8 +23,17 @@ pub(super) fn check<const D: usize>(about: &About<'_, D>, problems: &mut Problem
         let is_in =
             |scene: &Scene, body: usize| scene.present[body] && scene.material[body] == Some(index);
         let at_start = |body: usize| is_in(start, body);
-        let comes = |body: usize| context.sequence.scenes().any(|scene| is_in(scene, body));
-        let later = (0..bodies).any(|body| !at_start(body) && comes(body));
+        // Soil that comes to be of it where it lies has its stresses, of which a body that is placed has none.
+        let stages = 0..context.stages.len();
+        let is_placed = |(stage, body): (usize, usize)| {
+            let [before, after] = [
+                context.sequence.before(stage),
+                &context.sequence.ends[stage],
+            ];
+            !before.present[body] && is_in(after, body)
+        };
+        let mut built = stages.flat_map(|stage| (0..bodies).map(move |body| (stage, body)));
+        let later = built.any(is_placed);
         let name = clip(&material.name, 40);
         if (0..bodies).any(at_start) && !starts_at_rest {
             problems

@@ -1,0 +1,82 @@
+//! Bodies that come to another material: what the new law does not remember.
+
+use igimp_material::InternalVariable;
+use igimp_model::{Case, Material, StageKind, Strength};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::stages::Construction;
+use igimp_schema::text::clip;
+use igimp_schema::tree::Node;
+
+use crate::build::things;
+
+/// Warns of what soil remembers by one law and not by the one that a stage gives it, and of a ratio of overconsolidation that soil
+/// which remembers its preconsolidation does not take over.
+pub(crate) fn check<const D: usize>(tree: &Node, case: &Case<D>, problems: &mut Problems) {
+    let cell = case.grid.largest_cell()[D - 1];
+    let stated = things(Root::<D>::stages(tree));
+    for (own, stated) in std::iter::zip(&case.stages, stated) {
+        let (StageKind::Construction(kind), Some(stated)) = (&own.kind, stated) else {
+            continue;
+        };
+        let Some(changes) = stated.construction().map(Construction::changes) else {
+            continue;
+        };
+        for (change, &(body, material)) in std::iter::zip(changes.iter().flatten(), &kind.materials)
+        {
+            if kind.place.contains(&body) {
+                continue;
+            }
+            let before = &case.materials[case.material_after(own.start_from, body)];
+            let after = &case.materials[material];
+            let shown = clip(&case.bodies[body].name, 40);
+            let [from, to] = [before, after].map(|own| clip(&own.name, 40));
+            let lost = forgotten((before, after), cell);
+            if !lost.is_empty() {
+                let are = if lost.len() == 1 { "is" } else { "are" };
+                let message = format!(
+                    "stage `{}` makes `{shown}` of `{to}`: {} that it has by `{from}` {are} lost",
+                    clip(&own.name, 40),
+                    lost.join(" and "),
+                );
+                problems
+                    .warning(change.material.place, message)
+                    .help("that is right of soil that is taken out or treated; a material of the same model keeps what soil remembers");
+            }
+            if let (Some(stayed), Some(stated)) = (ocr_of(before), ocr_of(after))
+                && (stayed / stated - 1.0).abs() > 1e-12
+            {
+                let message = format!(
+                    "`ocr` of `{to}` has no effect on `{shown}`, which keeps its preconsolidation pressure"
+                );
+                problems
+                    .warning(change.material.place, message)
+                    .help("ocr is of soil that a stage of type k0 begins with, or that is placed");
+            }
+        }
+    }
+}
+
+/// What soil remembers by the law of one material and not by that of another.
+fn forgotten((before, after): (&Material, &Material), cell: f64) -> Vec<String> {
+    let (Ok(before), Ok(after)) = (before.law_on(cell), after.law_on(cell)) else {
+        return Vec::new();
+    };
+    let is_kept = |own: &InternalVariable| {
+        let mut known = after.internal_variables().iter();
+        own.follows_stress || known.any(|other| own.is_remembered_as(other))
+    };
+    (before.internal_variables().iter())
+        .filter(|own| !is_kept(own))
+        .map(|own| format!("the {}", own.name))
+        .collect()
+}
+
+/// The ratio of overconsolidation of a law that has one \[-\].
+fn ocr_of(material: &Material) -> Option<f64> {
+    match &material.strength {
+        Strength::ModifiedCamClay(own) => Some(own.overconsolidation),
+        Strength::HardeningSoil(own) => Some(own.overconsolidation),
+        _ => None,
+    }
+}
