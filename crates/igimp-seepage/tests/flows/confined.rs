@@ -377,3 +377,43 @@ fn sections_pass_all_that_enters_on_their_side() {
         assert!((section.inflow + other.inflow).abs() < 1e-9 * own.inflow);
     }
 }
+
+/// GOAL: what a condition lets through is what flows, and no noise of single places: a slanting layer, ten times as permeable along as
+/// across, whose faces cut the grid at any angle. ORACLE: k H Δh / L, which enters at one end and leaves at the other.
+#[test]
+fn what_passes_an_end_of_a_slanting_layer_is_what_flows() {
+    let (length, thick) = (6.0_f64, 1.5);
+    for (degrees, cell, [x, y]) in [
+        (35.0_f64, 0.25, [0.0, 0.0]),
+        (35.0, 0.125, [0.0, 0.0]),
+        (35.0, 0.25, [0.06, 0.02]),
+        (-35.0, 0.25, [0.13, 0.21]),
+        (17.0, 0.25, [0.0, 0.0]),
+    ] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let place = |u: f64, v: f64| [3.0 + x + u * cos - v * sin, 4.0 + y + u * sin + v * cos];
+        let count = |size: f64| (size / cell) as usize;
+        let grid = grid([0.0, 0.0], cell, [count(12.0), count(10.0)]);
+        let mut conditions = confined(&[1e-5]);
+        conditions.soils[0].across = 1e-6;
+        conditions.soils[0].angle = degrees.to_radians();
+        let end = |name: &str, u: f64, head: f64| {
+            let [a, b] = [place(u, 0.0), place(u, thick)];
+            let lower = [0, 1].map(|axis| a[axis].min(b[axis]));
+            let upper = [0, 1].map(|axis| a[axis].max(b[axis]));
+            faces(name, lower, upper, OnFaces::Head(head))
+        };
+        conditions.faces = vec![end("in", 0.0, 20.0), end("out", length, 14.0)];
+        let layer = [(0.0, 0.0), (length, 0.0), (length, thick), (0.0, thick)];
+        let layer = layer.map(|(u, v)| place(u, v)).to_vec();
+        let found = flow(&grid, &[layer], &conditions).unwrap();
+        let exact = 1e-5 * thick * 6.0 / length;
+        let passed: Vec<_> = (found.discharges.iter())
+            .map(|own| [own.inflow / exact, own.outflow / exact])
+            .collect();
+        println!(
+            "{degrees} {cell}: {:.4} {passed:.4?}",
+            found.outflow / exact
+        );
+    }
+}
