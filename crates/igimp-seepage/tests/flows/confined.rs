@@ -417,3 +417,63 @@ fn what_passes_an_end_of_a_slanting_layer_is_what_flows() {
         );
     }
 }
+
+/// GOAL: full pores with faces where water comes out, and with rain, of which what cannot enter runs off; faces on lines of the grid and off
+/// them. ORACLE: Darcy's law for a column: k (7 − 4)/4 comes out; rain of k/4 enters whole, and its head at the top is 2; of 2 k enters
+/// k (4 − 1)/4. No water comes out where the head is below the face.
+#[test]
+fn full_pores_have_open_faces_and_rain() {
+    let (permeability, height) = (1e-5, 4.0);
+    for shift in [0.0, 0.3] {
+        for (top, below, passes, head) in [
+            (OnFaces::Open, 7.0, -0.75, 4.0),
+            (OnFaces::Open, 3.0, 0.0, 3.0),
+            (OnFaces::Recharge(0.25 * permeability), 1.0, 0.25, 2.0),
+            (OnFaces::Recharge(2.0 * permeability), 1.0, 0.75, 4.0),
+        ] {
+            let grid = grid([0.0, -shift * 0.25], 0.25, [4, 17]);
+            let mut conditions = confined(&[permeability]);
+            conditions.faces = vec![
+                faces("top", [0.0, height], [1.0, height], top),
+                faces("base", [0.0, 0.0], [1.0, 0.0], OnFaces::Head(below)),
+            ];
+            let ground = [rectangle([0.0, 0.0], [1.0, height])];
+            let found = flow(&grid, &ground, &conditions).unwrap();
+            let own = &found.discharges[0];
+            let entered = (own.inflow - own.outflow) / permeability;
+            println!("{top:?}, head {below}, shift {shift}: {entered} of {passes}");
+            assert!((entered - passes).abs() < 1e-8, "{entered} of {passes}");
+            assert!((found.head(&[0.4, height]) - head).abs() < 1e-8);
+        }
+    }
+}
+
+/// GOAL: full pores with a slope where water comes out at a part, between heads on both sides: what was refused as having no solution.
+/// ORACLE: the balance; none enters at the open face, and the head there is nowhere above it.
+#[test]
+fn full_pores_drain_to_an_open_slope() {
+    let grid = grid([0.0, 0.0], 0.5, [24, 16]);
+    let mut conditions = confined(&[1e-5]);
+    conditions.faces = vec![
+        faces("right", [12.0, 0.0], [12.0, 8.0], OnFaces::Head(5.0)),
+        faces("left", [0.0, 0.0], [0.0, 8.0], OnFaces::Head(5.5)),
+        faces("slope", [4.5, 3.9], [12.0, 8.0], OnFaces::Open),
+    ];
+    let ground = [
+        [0.0, 0.0],
+        [12.0, 0.0],
+        [12.0, 4.0],
+        [8.0, 4.0],
+        [4.0, 6.0],
+        [0.0, 6.0],
+    ];
+    let found = flow(&grid, &[ground.to_vec()], &conditions).unwrap();
+    println!("{:?}", found.discharges);
+    assert!((found.inflow / found.outflow - 1.0).abs() < 1e-9);
+    let slope = &found.discharges[2];
+    assert!(slope.outflow > 0.0 && slope.inflow < 1e-6 * slope.outflow);
+    for x in [8.5, 9.5, 11.0] {
+        let head = found.head(&[x, 4.0]);
+        assert!((head - 4.0).abs() < 0.05, "{x}: {head}");
+    }
+}
