@@ -392,6 +392,26 @@ mod tests {
         }
     }
 
+    /// GOAL: a stage in which water flows by steps of five days for 60 000 days is planned with all of them.
+    /// ORACLE: 60 000 / 5.
+    #[test]
+    fn the_longest_step_of_flow_is_planned() {
+        let shipped = igimp_input::shipped::find("consolidation").unwrap();
+        let file = shipped.case_file(Vec::<String>::new()).unwrap();
+        let mut case = file.case().clone();
+        let stage = case
+            .stages
+            .iter_mut()
+            .find(|own| own.consolidation.is_some());
+        let stage = stage.unwrap();
+        let own = stage.consolidation.as_mut().unwrap();
+        let day = 86_400.0;
+        (own.duration, own.longest_step) = (60_000.0 * day, Some(5.0 * day));
+        let stage = stage.clone();
+        let taken = planned(&case, &stage);
+        assert!((taken.steps - 12_000.0).abs() < 1e-6, "{}", taken.steps);
+    }
+
     #[test]
     fn times_are_readable() {
         assert_eq!(readable(0.2), "1 s");

@@ -403,6 +403,15 @@ impl<'a, const D: usize> System<'a, D> {
         (leaves, sources)
     }
 
+    /// The penalty on heads at a facet over the permeability across it \[1/m\].
+    fn steepness(&self, held: &Held<D>) -> f64 {
+        let size = self.grid.cell_size(self.cells[held.cell].place);
+        let across = std::iter::zip(held.facet.normal, size);
+        let height: f64 = across.map(|(normal, size)| normal.abs() * size).sum();
+        let whole = NITSCHE / height;
+        self.steep[held.cell].clamp(whole, CUT_MOST * whole)
+    }
+
     /// Flow through a facet (eqs. 82 and 83).
     fn face(
         &self,
@@ -417,14 +426,9 @@ impl<'a, const D: usize> System<'a, D> {
             area,
             soil,
         } = held.facet;
-        let place = self.cells[held.cell].place;
-        let basis = Basis::at(ends_of(self.grid, place), &x);
+        let basis = Basis::at(ends_of(self.grid, self.cells[held.cell].place), &x);
         let pull = apply(self.tensor(held.cell, soil), &normal);
-        let across = dot(&pull, &normal);
-        let size = self.grid.cell_size(place);
-        let height: f64 = (0..D).map(|axis| normal[axis].abs() * size[axis]).sum();
-        let penalty =
-            across * (NITSCHE / height).max(self.steep[held.cell].min(CUT_MOST * NITSCHE / height));
+        let penalty = dot(&pull, &normal) * self.steepness(held);
         let (head, slope) = (basis.head(heads), basis.slope(heads));
         let towards = dot(&pull, &slope);
         let corners = 1 << D;
@@ -642,7 +646,8 @@ fn steep<const D: usize>(
 ) -> Vec<f64> {
     let mut area = vec![0.0; cells.len()];
     for own in held {
-        if matches!(own.at, At::Head(_)) {
+        // A face on the axis of revolution has no area.
+        if matches!(own.at, At::Head(_)) && own.facet.area > 0.0 {
             area[own.cell] += own.facet.area / conditions.thickness(own.facet.x[0]);
         }
     }

@@ -249,7 +249,7 @@ fn is_off_soil<const D: usize>(
             .collect();
     }
     let is_off = |at: &&[f64; D]| {
-        let margins = [0.5, 1.0].map(|share| share * soil.cell());
+        let margins = [0.25, 0.5, 0.75].map(|share| share * soil.cell());
         !margins
             .into_iter()
             .any(|margin| soil.holds_point(at, margin))
