@@ -107,6 +107,14 @@ struct StepsTaken {
 /// Steps of a stage in which water flows, which its error in time chooses.
 const FLOW_STEPS: f64 = 60.0;
 
+/// The steps of a stage in which water flows, none longer than its longest; none where no water flows.
+fn steps_of_flow(stage: &Stage) -> f64 {
+    stage.consolidation.as_ref().map_or(0.0, |own| {
+        let least = own.longest_step.map_or(0.0, |step| own.duration / step);
+        least.max(FLOW_STEPS)
+    })
+}
+
 /// The effort that the case plans for a stage.
 fn planned<const D: usize>(case: &Case<D>, stage: &Stage) -> StepsTaken {
     let steps = stage.steps as f64;
@@ -130,8 +138,7 @@ fn planned<const D: usize>(case: &Case<D>, stage: &Stage) -> StepsTaken {
             }
         }
         StageKind::Dynamic(own) => (steps.max(steps_of_time(case, own)), 0.0),
-        _ if stage.consolidation.is_some() => (steps.max(FLOW_STEPS), 0.0),
-        _ => (steps, 0.0),
+        _ => (steps.max(steps_of_flow(stage)), 0.0),
     };
     let to_collapse =
         stage.stop_when.no_equilibrium || stage.stop_when.load_grows_less_than.is_some();
@@ -383,6 +390,26 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// GOAL: a stage in which water flows by steps of five days for 60 000 days is planned with all of them.
+    /// ORACLE: 60 000 / 5.
+    #[test]
+    fn the_longest_step_of_flow_is_planned() {
+        let shipped = igimp_input::shipped::find("consolidation").unwrap();
+        let file = shipped.case_file(Vec::<String>::new()).unwrap();
+        let mut case = file.case().clone();
+        let stage = case
+            .stages
+            .iter_mut()
+            .find(|own| own.consolidation.is_some());
+        let stage = stage.unwrap();
+        let own = stage.consolidation.as_mut().unwrap();
+        let day = 86_400.0;
+        (own.duration, own.longest_step) = (60_000.0 * day, Some(5.0 * day));
+        let stage = stage.clone();
+        let taken = planned(&case, &stage);
+        assert!((taken.steps - 12_000.0).abs() < 1e-6, "{}", taken.steps);
     }
 
     #[test]

@@ -102,8 +102,11 @@ impl<'a, const D: usize> Search<'a, D> {
         let cells = cells(grid, &Bodies::new(bodies), conditions);
         let system = System::new(grid, cells, conditions, free)?;
         check_places(&system)?;
+        // Where water comes out, a face acts on its own heads alone.
+        let is_symmetric =
+            conditions.confined && !(system.held.iter()).any(|held| matches!(held.at, At::Open(_)));
         Ok(Self {
-            matrix: TangentMatrix::zeros(system.pattern.clone(), conditions.confined),
+            matrix: TangentMatrix::zeros(system.pattern.clone(), is_symmetric),
             solver: SolverKind::Auto.build(),
             heads: Vec::new(),
             corrections: 0,

@@ -16,6 +16,11 @@ use crate::layers;
 
 /// Factor of Nitsche's method: penalty on heads over k / h \[-\].
 const NITSCHE: f64 = 10.0;
+/// The same in cells that the ground fills in part, over k times the area of their faces with heads by their volume \[-\]: of a cell
+/// that is cut gradients are large beside their work.
+const CUT: f64 = 5.0;
+/// How many times as large the penalty of a cut cell is, at most \[-\]: slivers are held by their neighbours.
+const CUT_MOST: f64 = 10.0;
 /// The same within regions, over k / h² \[-\].
 const REGION: f64 = 1e3;
 /// Penalty on jumps of the gradient at cells that are cut \[-\].
@@ -70,6 +75,8 @@ pub(crate) struct System<'a, const D: usize> {
     /// In time, by facet: the flow that its gradient drives out as a step begins \[m/s\]; none: that of the heads sought.
     pub(crate) driven: Vec<f64>,
     pairs: Vec<Pair>,
+    /// By cell: the penalty on its heads over its permeability, by how little of it is ground \[1/m\].
+    steep: Vec<f64>,
     /// Unknowns of the corners of each cell.
     pub(crate) corners: Vec<[usize; CORNERS]>,
     /// Node by unknown.
@@ -80,10 +87,14 @@ pub(crate) struct System<'a, const D: usize> {
 }
 
 /// Flows by who lets them in \[m^D/s\]: conditions on faces, free water, open faces, then regions; inwards positive.
+///
+/// Of faces what enters and what leaves are told apart by node, for what passes single points scatters. A region has one flow.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Flows {
     pub(crate) inwards: Vec<f64>,
     pub(crate) outwards: Vec<f64>,
+    /// What enters by who lets it in and by unknown, piece by piece.
+    pieces: Vec<(usize, usize, f64)>,
 }
 
 impl Flows {
@@ -91,24 +102,27 @@ impl Flows {
         Self {
             inwards: vec![0.0; count],
             outwards: vec![0.0; count],
+            pieces: Vec::new(),
         }
     }
 
-    /// What goes in and out within a region is one flow.
-    fn balance_from(&mut self, first: usize) {
-        for owner in first..self.inwards.len() {
-            let net = self.inwards[owner] - self.outwards[owner];
-            self.inwards[owner] = net.max(0.0);
-            self.outwards[owner] = (-net).max(0.0);
+    /// Adds up what enters by node, and takes it as entering or leaving.
+    fn add_up(&mut self) {
+        // The sort is stable: pieces of a node are added in the order of cells.
+        self.pieces
+            .sort_by_key(|&(owner, unknown, _)| (owner, unknown));
+        let of_node = |a: &(usize, usize, f64), b: &(usize, usize, f64)| (a.0, a.1) == (b.0, b.1);
+        for own in self.pieces.chunk_by(of_node) {
+            let net: f64 = own.iter().map(|(_, _, inwards)| inwards).sum();
+            self.inwards[own[0].0] += net.max(0.0);
+            self.outwards[own[0].0] += (-net).max(0.0);
         }
+        self.pieces = Vec::new();
     }
 
-    fn add(&mut self, owner: usize, inwards: f64) {
-        if inwards > 0.0 {
-            self.inwards[owner] += inwards;
-        } else {
-            self.outwards[owner] -= inwards;
-        }
+    /// Adds what enters at an unknown; that of a region at any, the same for all of it.
+    fn add(&mut self, owner: usize, unknown: usize, inwards: f64) {
+        self.pieces.push((owner, unknown, inwards));
     }
 }
 
@@ -150,6 +164,7 @@ impl<'a, const D: usize> System<'a, D> {
             }
         }
         let held = held(&cells, conditions, free, grid);
+        let steep = steep(grid, &cells, &held, conditions);
         let mut tensors: Vec<_> = conditions.soils.iter().map(Soil::tensor).collect();
         let shared = (cells.iter())
             .map(|cell| {
@@ -172,6 +187,7 @@ impl<'a, const D: usize> System<'a, D> {
             held,
             driven: Vec::new(),
             pairs,
+            steep,
             corners,
             nodes,
             pattern,
@@ -293,7 +309,7 @@ impl<'a, const D: usize> System<'a, D> {
             self.ghost(pair, heads, &mut local);
             add(&local, &mut residual, matrix.as_deref_mut());
         }
-        flows.balance_from(self.conditions.faces.len() + 2);
+        flows.add_up();
         (residual, flows)
     }
 
@@ -324,7 +340,7 @@ impl<'a, const D: usize> System<'a, D> {
             }
             let Some(region) = point.region else { continue };
             let (outflow, stiffness) = self.of_region(cell, (&point, region), head);
-            flows.add(self.conditions.faces.len() + 2 + region, -outflow);
+            flows.add(self.conditions.faces.len() + 2 + region, 0, -outflow);
             for i in 0..corners {
                 local.residual[i] += outflow * basis.value[i];
                 for j in 0..corners {
@@ -387,6 +403,15 @@ impl<'a, const D: usize> System<'a, D> {
         (leaves, sources)
     }
 
+    /// The penalty on heads at a facet over the permeability across it \[1/m\].
+    fn steepness(&self, held: &Held<D>) -> f64 {
+        let size = self.grid.cell_size(self.cells[held.cell].place);
+        let across = std::iter::zip(held.facet.normal, size);
+        let height: f64 = across.map(|(normal, size)| normal.abs() * size).sum();
+        let whole = NITSCHE / height;
+        self.steep[held.cell].clamp(whole, CUT_MOST * whole)
+    }
+
     /// Flow through a facet (eqs. 82 and 83).
     fn face(
         &self,
@@ -401,20 +426,21 @@ impl<'a, const D: usize> System<'a, D> {
             area,
             soil,
         } = held.facet;
-        let place = self.cells[held.cell].place;
-        let basis = Basis::at(ends_of(self.grid, place), &x);
+        let basis = Basis::at(ends_of(self.grid, self.cells[held.cell].place), &x);
         let pull = apply(self.tensor(held.cell, soil), &normal);
-        let across = dot(&pull, &normal);
-        let size = self.grid.cell_size(place);
-        let height: f64 = (0..D).map(|axis| normal[axis].abs() * size[axis]).sum();
-        let penalty = NITSCHE * across / height;
+        let penalty = dot(&pull, &normal) * self.steepness(held);
         let (head, slope) = (basis.head(heads), basis.slope(heads));
         let towards = dot(&pull, &slope);
         let corners = 1 << D;
+        let mut passes = |inwards: f64| {
+            for (unknown, value) in std::iter::zip(local.unknowns, basis.value) {
+                flows.add(held.owner, *unknown, inwards * area * value);
+            }
+        };
         match held.at {
             At::Closed => {}
             At::Inflow(inflow) => {
-                flows.add(held.owner, inflow * area);
+                passes(inflow);
                 for i in 0..corners {
                     local.residual[i] -= inflow * area * basis.value[i];
                 }
@@ -423,7 +449,7 @@ impl<'a, const D: usize> System<'a, D> {
                 let [share, _] = self.share(relative, soil, wanted - x[D - 1]);
                 if let Some(driven) = driven {
                     let outflow = share * penalty * (head - wanted) + driven;
-                    flows.add(held.owner, -outflow * area);
+                    passes(-outflow);
                     for i in 0..corners {
                         local.residual[i] += area * outflow * basis.value[i];
                         for j in 0..corners {
@@ -434,7 +460,7 @@ impl<'a, const D: usize> System<'a, D> {
                     return;
                 }
                 let outflow = share * (penalty * (head - wanted) - towards);
-                flows.add(held.owner, -outflow * area);
+                passes(-outflow);
                 for i in 0..corners {
                     let own = dot(&pull, &basis.gradient[i]);
                     local.residual[i] +=
@@ -456,7 +482,7 @@ impl<'a, const D: usize> System<'a, D> {
                 let driven = driven.unwrap_or(-share * towards);
                 let pressed = rain + driven + penalty * (head - x[D - 1]);
                 let outflow = pressed.max(0.0) - rain;
-                flows.add(held.owner, -outflow * area);
+                passes(-outflow);
                 for i in 0..corners {
                     local.residual[i] += area * outflow * basis.value[i];
                     for j in (0..corners).filter(|_| pressed > 0.0) {
@@ -609,6 +635,26 @@ fn pairs<const D: usize>(grid: &Grid<D>, cells: &[Cell<D>]) -> Vec<Pair> {
         }
     }
     pairs
+}
+
+/// By cell: the penalty on its heads over its permeability, by the area of the faces that have one and the volume of its ground \[1/m\].
+fn steep<const D: usize>(
+    grid: &Grid<D>,
+    cells: &[Cell<D>],
+    held: &[Held<D>],
+    conditions: &Conditions<D>,
+) -> Vec<f64> {
+    let mut area = vec![0.0; cells.len()];
+    for own in held {
+        // A face on the axis of revolution has no area.
+        if matches!(own.at, At::Head(_)) && own.facet.area > 0.0 {
+            area[own.cell] += own.facet.area / conditions.thickness(own.facet.x[0]);
+        }
+    }
+    let volume = |cell: &Cell<D>| cell.filled * grid.cell_size(cell.place).iter().product::<f64>();
+    (std::iter::zip(cells, area))
+        .map(|(cell, area)| CUT * area / volume(cell))
+        .collect()
 }
 
 /// Which heads are coupled.

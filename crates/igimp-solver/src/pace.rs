@@ -1,5 +1,6 @@
 //! How long the next step of a motion may be (theory, eqs. 68 to 68d): by the error of the time integration, by how far the body moves,
-//! by what contact changes, and by how hard equilibrium was to find; where water flows by the error of its pressures alone (eq. 104).
+//! by what contact changes, and by how hard equilibrium was to find; where water flows by the error of its pressures alone (eq. 104), and as
+//! long as they may be where a stage takes time and no water is there to flow.
 
 use igimp_assembly::{ContactChange, Drive, RigidMotion, System, Trial};
 use igimp_shape::Grid;
@@ -73,10 +74,9 @@ pub(crate) fn after<const D: usize>(
         };
     }
     let Some(error) = system.time_error(u) else {
-        return Pacing {
-            next: 1.0,
-            again: None,
-        };
+        // Where no water flows and nothing moves nothing asks for short steps.
+        let next = (system.conditions().flow.as_ref()).map_or(1.0, |_| f64::INFINITY);
+        return Pacing { next, again: None };
     };
     let grid = &system.conditions().grid;
     let cell = smallest_cell(grid);

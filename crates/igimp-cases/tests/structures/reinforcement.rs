@@ -249,3 +249,161 @@ fn members_lie_in_soil_while_they_are_there() {
         "{placed}"
     );
 }
+
+/// The largest tension of a geotextile under a fill of 2 m on soft ground, in the whole section or in its right half.
+fn tension_under_fill(is_half: bool, more: &str) -> f64 {
+    let [left, fill, end] = if is_half {
+        [0.0, 0.0, 0.0]
+    } else {
+        [-8.0, -4.0, -3.5]
+    };
+    let text = format!(
+        r#"
+igimp = 1
+[case]
+title = "a fill on a geotextile"
+[grid]
+cell = "0.5 m"
+domain = {{ x = ["{left} m", "8 m"], y = ["0 m", "5 m"] }}
+[materials.soft]
+model = "elastic"
+young = "2 MPa"
+poisson = 0.45
+unit_weight = "16 kN/m3"
+[materials.fill]
+model = "elastic"
+young = "5 MPa"
+poisson = 0.3
+unit_weight = "20 kN/m3"
+[[bodies]]
+name = "ground"
+material = "soft"
+polygon = [["{left} m","0 m"],["8 m","0 m"],["8 m","3 m"],["{left} m","3 m"]]
+[[bodies]]
+name = "fill"
+material = "fill"
+polygon = [["{fill} m","3 m"],["4 m","3 m"],["4 m","4 m"],["{fill} m","4 m"]]
+[[reinforcement]]
+name = "mat"
+type = "geotextile"
+points = [["{end} m","3 m"],["3.5 m","3 m"]]
+stiffness = "5 MN/m"
+capacity = "100 kN/m"
+bond = "30 kPa"
+{more}
+[[stages]]
+name = "weight"
+type = "gravity"
+steps = 2
+geometry = "given"
+[output]
+figures = []
+report = false
+"#
+    );
+    let file = CaseFile::parse("fill.toml", &text, &[]).unwrap();
+    let run = in_memory(file.case()).unwrap();
+    run.summary.stages[0].reinforcement[0].force
+}
+
+/// GOAL: a geotextile that ends on a plane of symmetry goes on beyond it.
+/// ORACLE: the whole section, whose tension in the middle is that at the end of the half; an end that is free by its key is the control.
+#[test]
+fn half_a_geotextile_is_held_on_the_plane_of_symmetry() {
+    let whole = tension_under_fill(false, "");
+    let half = tension_under_fill(true, "");
+    let free = tension_under_fill(true, "head_capacity = \"0 kN/m\"");
+    println!("whole {whole}, half {half}, with a free end {free}");
+    assert!(
+        whole > 1e3 && (half / whole - 1.0).abs() < 1e-6,
+        "{whole} {half}"
+    );
+    assert!(free < 0.95 * whole, "{free}");
+}
+
+/// A cut in space, 2 m wide with an anchor in its middle or 1 m wide with half of it on the plane of symmetry: tension at the head and the
+/// displacement of the face at the anchor.
+fn anchored_slice(width: f64, share: f64, plate: f64) -> Result<[f64; 2], String> {
+    let text = format!(
+        r#"
+igimp = 1
+[case]
+title = "half an anchor"
+analysis = "3d"
+[grid]
+cell = "0.5 m"
+domain = {{ x = ["0 m","5 m"], y = ["0 m","{width} m"], z = ["0 m","3.5 m"] }}
+[materials.soil]
+model = "elastic"
+unit_weight = "20 kN/m3"
+young = "5 MPa"
+poisson = 0.3
+[[bodies]]
+name = "ground"
+material = "soil"
+points_per_cell = 8
+box = {{ from = ["0 m","0 m","0 m"], to = ["4 m","{width} m","3 m"] }}
+[[reinforcement]]
+name = "anchor"
+type = "anchor"
+head = ["4 m","1 m","1.5 m"]
+end = ["1 m","1 m","1.25 m"]
+bonded_length = "1.5 m"
+plate = "{plate} m"
+stiffness = "{} MN"
+capacity = "{} kN"
+bond = "{} kN/m"
+prestress = "{} kN"
+[[stages]]
+name = "weight"
+type = "gravity"
+steps = 1
+geometry = "given"
+[[stages]]
+name = "stress"
+type = "gravity"
+install = ["anchor"]
+steps = 1
+geometry = "given"
+[[stages]]
+name = "more"
+type = "gravity"
+factor = 1.2
+steps = 1
+geometry = "given"
+[[monitors]]
+name = "face"
+point = ["4 m","0.75 m","1.75 m"]
+record = ["displacement_x"]
+[output]
+figures = []
+report = false
+"#,
+        60.0 * share,
+        100.0 * share,
+        60.0 * share,
+        30.0 * share
+    );
+    let file = CaseFile::parse("slice.toml", &text, &[]).map_err(|error| error.to_string())?;
+    let run = in_memory(file.case_in_space()).unwrap();
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let force = run.summary.stages[2].reinforcement[0].head_force;
+    let row = run.monitors[0].rows.last().unwrap();
+    Ok([force, row[row.len() - 1]])
+}
+
+/// GOAL: the plate of an anchor on a plane of symmetry is cut there: half of the anchor on half of the ground is half of the whole.
+/// ORACLE: the whole. A plate that reaches off the ground by more than a cell is refused.
+#[test]
+fn plates_are_cut_on_planes_of_symmetry() {
+    let whole = anchored_slice(2.0, 1.0, 1.0).unwrap();
+    let half = anchored_slice(1.0, 0.5, 1.0).unwrap();
+    println!("whole {whole:?}, half {half:?}");
+    assert!((2.0 * half[0] / whole[0] - 1.0).abs() < 1e-6);
+    assert!((half[1] / whole[1] - 1.0).abs() < 1e-6);
+    let refused = anchored_slice(2.0, 1.0, 5.0).unwrap_err();
+    assert!(
+        refused.contains("the plate of `anchor`") && refused.contains("where there is no body"),
+        "{refused}"
+    );
+}

@@ -256,3 +256,127 @@ consolidation = {{ duration = "1 d"{keys} }}
     assert!(!told(""));
     assert!(!told(", open_faces = false, open_sides = [\"bottom\"]"));
 }
+
+/// GOAL: a stage that takes time goes at once to its end where no water is left to flow.
+/// CASE: clay that is loaded, waits, is made drained, undrained or of total stress by construction, and waits for a century.
+/// ORACLE: nothing flows: its two steps, and one that comes before them.
+#[test]
+fn a_wait_in_which_nothing_flows_is_short() {
+    let soil = "unit_weight = \"17 kN/m3\"\nyoung = \"20 MPa\"\ndrainage = \"coupled\"\npermeability = \"5e-11 m/s\"\npore_water = \"10 GPa\"";
+    for drainage in ["drained", "undrained", "total"] {
+        let rest = format!(
+            r#"
+[materials.other]
+model = "elastic"
+poisson = 0.25
+unit_weight = "17 kN/m3"
+young = "20 MPa"
+drainage = "{drainage}"
+[[loads]]
+name = "fill"
+type = "pressure"
+from = ["0 m", "6 m"]
+to = ["0.75 m", "6 m"]
+pressure = "10 kPa"
+[[stages]]
+name = "rest"
+type = "k0"
+drained = true
+steps = 1
+[[stages]]
+name = "fill"
+type = "load"
+load = "fill"
+steps = 1
+[[stages]]
+name = "other"
+type = "construction"
+materials = [{{ body = "column", material = "other" }}]
+steps = 1
+[[stages]]
+name = "wait"
+type = "wait"
+steps = 2
+consolidation = {{ duration = "36525 d" }}
+"#
+        );
+        let run = ran(soil, &rest);
+        let [.., wait] = &run.summary.stages[..] else {
+            panic!("there are four stages");
+        };
+        println!("{drainage}: {} steps", wait.steps);
+        assert!(wait.steps <= 3, "{drainage}: {} steps", wait.steps);
+    }
+}
+
+/// GOAL: a drain acts as wide as it is drawn, to half a cell, wherever its side lies in a cell.
+/// CASE: clay 4 m wide under a smooth plate, drained by a box at its left end, cells of 0.25 m.
+/// ORACLE: equal strain: U = 1 − exp(−3 c_v t L / (L − w)³) for a drain of width w; a width of 0.26 m acted as 0.44 m.
+#[test]
+fn a_drain_acts_as_wide_as_it_is_drawn() {
+    let (length, young, permeability): (f64, f64, f64) = (4.0, 20e6, 1e-9);
+    let duration = 0.3 * length * length * 9810.0 / (permeability * young);
+    for width in [0.25, 0.26, 0.3, 0.375] {
+        let text = format!(
+            r#"
+igimp = 1
+[case]
+title = "a strip with a drain"
+gravity = "0 m/s2"
+[grid]
+cell = "0.25 m"
+domain = {{ x = ["0 m", "4 m"], y = ["0 m", "2 m"] }}
+[materials.clay]
+model = "elastic"
+unit_weight = "17 kN/m3"
+young = "20 MPa"
+poisson = 0.0
+drainage = "coupled"
+permeability = "1e-9 m/s"
+pore_water = "10 GPa"
+[[bodies]]
+name = "layer"
+material = "clay"
+polygon = [["0 m","0 m"],["4 m","0 m"],["4 m","1 m"],["0 m","1 m"]]
+[[rigid]]
+name = "cap"
+type = "rectangle"
+from = ["-1 m","1 m"]
+to = ["5 m","3 m"]
+interface = "smooth"
+force_factor = 1
+[[stages]]
+name = "press"
+type = "rigid"
+bodies = [{{ body = "cap", force_y = "-40 kN/m" }}]
+steps = 1
+[[stages]]
+name = "wait"
+type = "wait"
+steps = 4
+[stages.consolidation]
+duration = "{duration} s"
+open_faces = false
+drains = [{{ from = ["0 m","0 m"], to = ["{width} m","2 m"] }}]
+[[monitors]]
+name = "far"
+point = ["4 m","1 m"]
+record = ["displacement_y"]
+[output]
+figures = []
+report = false
+"#
+        );
+        let file = CaseFile::parse("strip.toml", &text, &[]).unwrap();
+        let is_told = file.warnings().contains("a side of this drain, x =");
+        assert_eq!(is_told, width > 0.25, "{}", file.warnings());
+        let run = in_memory(file.case()).unwrap();
+        let rows = &run.monitors[0].rows;
+        let column = rows[0].len() - 1;
+        let first = rows.iter().rfind(|row| row[0] < 1.5).unwrap()[column];
+        let degree = -(last(&run, "far")[0] - first) * young / 10e3;
+        let drained = length - (-0.9 * length.powi(3) / (1.0 - degree).ln()).cbrt();
+        println!("width {width}: U {degree:.4}, acts as {drained:.3} m");
+        assert!((drained - width).abs() < 0.5 * 0.25, "{width}: {drained}");
+    }
+}

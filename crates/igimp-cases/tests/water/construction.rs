@@ -616,3 +616,57 @@ fn a_search_by_gravity_sees_what_was_built() {
     });
     assert_eq!(built, whole);
 }
+
+/// GOAL: a monitor where ground meets what is dug follows the ground, wherever the corner lies in its cell.
+/// CASE: the crest of a cut is a corner of the ground and of the slice that is dug.
+/// ORACLE: it has a displacement to the end, that of a particle of the ground.
+#[test]
+fn a_monitor_at_a_corner_follows_what_stays() {
+    for face in [6.0, 6.05, 6.1, 6.125, 6.2] {
+        let text = format!(
+            r#"
+igimp = 1
+[case]
+title = "a cut"
+[grid]
+cell = "0.25 m"
+domain = {{ x = ["4 m", "8 m"], y = ["0 m", "5 m"] }}
+[materials.soil]
+model = "elastic"
+young = "20 MPa"
+poisson = 0.3
+unit_weight = "20 kN/m3"
+[[bodies]]
+name = "slice"
+material = "soil"
+polygon = [["{face} m","3 m"],["8 m","3 m"],["8 m","4 m"],["{face} m","4 m"]]
+[[bodies]]
+name = "ground"
+material = "soil"
+polygon = [["4 m","0 m"],["8 m","0 m"],["8 m","3 m"],["{face} m","3 m"],["{face} m","4 m"],["4 m","4 m"]]
+[[stages]]
+name = "rest"
+type = "gravity"
+steps = 1
+[[stages]]
+name = "dig"
+type = "construction"
+remove = ["slice"]
+steps = 1
+[[monitors]]
+name = "crest"
+point = ["{face} m", "4 m"]
+record = ["displacement_y"]
+[output]
+figures = []
+report = false
+"#
+        );
+        let file = CaseFile::parse("cut.toml", &text, &[]).unwrap();
+        let run = in_memory(file.case()).unwrap();
+        let row = run.monitors[0].rows.last().unwrap();
+        let crest = row[row.len() - 1];
+        println!("face at {face}: {crest:e} m");
+        assert!(crest.is_finite(), "{face}");
+    }
+}

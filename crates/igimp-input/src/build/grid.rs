@@ -45,6 +45,17 @@ pub(super) struct Frame<const D: usize> {
     pub(super) axes: [AxisSpec; D],
 }
 
+/// Places this near to a line lie on it, as a share of the cell \[-\].
+const ON_LINE: f64 = 1e-2;
+
+impl<const D: usize> Frame<D> {
+    /// Whether a place on an axis lies within the grid and between its lines.
+    pub(crate) fn is_off_lines(&self, axis: usize, at: f64) -> bool {
+        let place = self.axes[axis].place(at);
+        self.lower[axis] < at && at < self.upper[axis] && (place - place.round()).abs() > ON_LINE
+    }
+}
+
 /// What a table says of each axis.
 fn by_axis<'a, T, const D: usize>(
     [x, y]: [&'a At<T>; 2],

@@ -5,6 +5,7 @@ pub(crate) mod space;
 use igimp_model::{ReinforcementKind, ReinforcementPart, distance};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
+use igimp_schema::schema::grid::Side;
 use igimp_schema::schema::reinforcement::{Member, MemberForm};
 use igimp_schema::schema::stages::{ReductionPath, Stage, StageForm, StopWhen};
 use igimp_schema::source::Place;
@@ -19,6 +20,11 @@ use crate::build::context::{About, Context};
 
 /// Places along a member at which soil is looked for.
 const SAMPLES: u32 = 40;
+/// An end this near to a side of the grid lies on it, as a share of the cell \[-\].
+const ON_SIDE: f64 = 1e-2;
+/// Places by cell along a plate at which soil is looked for, as many as hold it, and their most.
+const PER_CELL: f64 = 4.0;
+const MOST_PLACES: f64 = 100.0;
 /// A head this near to an edge of the soil lies on it, as a share of the cell \[-\].
 const NEAR: f64 = 0.05;
 
@@ -45,8 +51,20 @@ pub(super) fn members<const D: usize>(
             return None;
         }
         let (mut part, width) = part(&own, soil, stages, problems)?;
+        if let MemberForm::Geotextile(Ok(form)) = &*own.form {
+            let stated = [&form.head_capacity, &form.end_capacity].map(Option::is_some);
+            for (k, ends) in ends_of(&part.line).into_iter().enumerate() {
+                if !stated[k] && goes_on(tree, ends, soil) {
+                    part.fastened[k] = part.capacity;
+                }
+            }
+        }
         if width > 0.0 {
-            part.plate = Some(soil.plate(&part, width));
+            let plate = soil.plate(&part, width);
+            if is_off_soil((&own, &part.line[0]), &plate, soil, problems) {
+                return None;
+            }
+            part.plate = Some(plate);
         }
         Some(part)
     };
@@ -133,6 +151,10 @@ fn part<const D: usize>(
     let (stated, common) = (stated(&own.form)?, own.common.as_ref().ok()?);
     let kind = stated.kind;
     let value = |own: Option<&At<f64>>| own.map(|own| **own);
+    let at_head = match kind {
+        ReinforcementKind::Geotextile => 0.0,
+        ReinforcementKind::Anchor | ReinforcementKind::Nail => *common.capacity,
+    };
     let mut part = ReinforcementPart {
         name: name.to_owned(),
         kind,
@@ -141,7 +163,7 @@ fn part<const D: usize>(
         capacity: *common.capacity,
         bond: *common.bond,
         fastened: [
-            value(stated.head_capacity).unwrap_or(*common.capacity),
+            value(stated.head_capacity).unwrap_or(at_head),
             value(stated.end_capacity).unwrap_or(0.0),
         ],
         free_length: 0.0,
@@ -181,6 +203,72 @@ fn part<const D: usize>(
     let within = in_soil(own.name.place, &part, soil, problems);
     holds(&part, common.bond.place, stated.prestress, problems);
     within.then_some((part, stated.plate))
+}
+
+/// The ends of a line, each with the point of the line beside it.
+fn ends_of<const D: usize>(line: &[[f64; D]]) -> [[[f64; D]; 2]; 2] {
+    let last = line.len() - 1;
+    [[line[0], line[1]], [line[last], line[last - 1]]]
+}
+
+/// Whether a line that leaves an end towards a place ends there on a side of the grid that is a roller: a plane of symmetry, on whose
+/// other side it goes on.
+fn goes_on<const D: usize>(tree: &Node, [end, next]: [[f64; D]; 2], soil: &impl Soil<D>) -> bool {
+    let (Ok(sides), Some([lower, upper])) = (Root::<D>::boundaries(tree), soil.ends()) else {
+        return false;
+    };
+    let near = ON_SIDE * soil.cell();
+    let on = |side: &At<Side>, axis: usize, at: f64| {
+        **side == Side::Roller && (end[axis] - at).abs() <= near && (next[axis] - at).abs() > near
+    };
+    on(&sides.left, 0, lower[0])
+        || on(&sides.right, 0, upper[0])
+        || on(&sides.bottom, D - 1, lower[D - 1])
+        || on(&sides.top, D - 1, upper[D - 1])
+}
+
+/// Refuses a plate of which a part is farther off any soil than the cells that carry it.
+fn is_off_soil<const D: usize>(
+    (own, head): (&Member<D>, &[f64; D]),
+    plate: &[[f64; D]],
+    soil: &impl Soil<D>,
+    problems: &mut Problems,
+) -> bool {
+    let from = plate[0];
+    let mut places = vec![from];
+    for to in &plate[1..] {
+        let count = (PER_CELL * distance(&from, to) / soil.cell())
+            .ceil()
+            .clamp(2.0, MOST_PLACES);
+        let moved = |place: &[f64; D], k: usize| -> [f64; D] {
+            let t = (k as f64 + 0.5) / count;
+            std::array::from_fn(|axis| place[axis] + t * (to[axis] - from[axis]))
+        };
+        places = (0..count as usize)
+            .flat_map(|k| places.iter().map(move |place| moved(place, k)))
+            .collect();
+    }
+    let is_off = |at: &&[f64; D]| {
+        let margins = [0.25, 0.5, 0.75].map(|share| share * soil.cell());
+        !margins
+            .into_iter()
+            .any(|margin| soil.holds_point(at, margin))
+    };
+    let Some(at) = places.iter().find(is_off).filter(|_| soil.is_known()) else {
+        return false;
+    };
+    problems
+        .error(
+            own.name.place,
+            format!(
+                "the plate of `{}`, about its head at {}, reaches {}, where there is no body",
+                clip(&own.name, 40),
+                point(*head),
+                point(*at)
+            ),
+        )
+        .help("use a smaller plate, or lay its head further from the edge of the ground; what lies beyond an upright side of the grid is cut off");
+    true
 }
 
 /// Everything that stages install.

@@ -70,6 +70,10 @@ impl Soil<3> for Solids {
     fn ends(&self) -> Option<[[f64; 3]; 2]> {
         self.is_complete.then_some([self.lower, self.upper])
     }
+
+    fn is_off_lines(&self, axis: usize, at: f64) -> bool {
+        (self.frame.as_ref()).is_some_and(|frame| frame.is_off_lines(axis, at))
+    }
 }
 
 /// Whether a place lies in a region, or not further outside than a margin.

@@ -41,9 +41,9 @@ table! {
     GEOTEXTILE: Geotextile<D>, "In plane strain: a geotextile or geogrid, bonded over its whole length.";
     points: list(point, 2, MANY), required "[[\"0 m\", \"3 m\"], [\"12 m\", \"3 m\"]]",
         "its line, from one end to the other";
-    head_capacity: quantity(ForcePerLength, NotNegative), default "\"0 kN/m\"",
+    head_capacity: quantity(ForcePerLength, NotNegative), derived "its capacity on a side of the grid that is a roller, else \"0 kN/m\"",
         "force that holds it at its first point, as by a facing", in_plane;
-    end_capacity: quantity(ForcePerLength, NotNegative), default "\"0 kN/m\"",
+    end_capacity: quantity(ForcePerLength, NotNegative), derived "its capacity on a side of the grid that is a roller, else \"0 kN/m\"",
         "force that holds it at its last point", in_plane;
 }
 

@@ -377,3 +377,103 @@ fn sections_pass_all_that_enters_on_their_side() {
         assert!((section.inflow + other.inflow).abs() < 1e-9 * own.inflow);
     }
 }
+
+/// GOAL: what a condition lets through is what flows, and no noise of single places: a slanting layer, ten times as permeable along as
+/// across, whose faces cut the grid at any angle. ORACLE: k H Δh / L, which enters at one end and leaves at the other.
+#[test]
+fn what_passes_an_end_of_a_slanting_layer_is_what_flows() {
+    let (length, thick) = (6.0_f64, 1.5);
+    for (degrees, cell, [x, y]) in [
+        (35.0_f64, 0.25, [0.0, 0.0]),
+        (35.0, 0.125, [0.0, 0.0]),
+        (35.0, 0.25, [0.06, 0.02]),
+        (-35.0, 0.25, [0.13, 0.21]),
+        (17.0, 0.25, [0.0, 0.0]),
+    ] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let place = |u: f64, v: f64| [3.0 + x + u * cos - v * sin, 4.0 + y + u * sin + v * cos];
+        let count = |size: f64| (size / cell) as usize;
+        let grid = grid([0.0, 0.0], cell, [count(12.0), count(10.0)]);
+        let mut conditions = confined(&[1e-5]);
+        conditions.soils[0].across = 1e-6;
+        conditions.soils[0].angle = degrees.to_radians();
+        let end = |name: &str, u: f64, head: f64| {
+            let [a, b] = [place(u, 0.0), place(u, thick)];
+            let lower = [0, 1].map(|axis| a[axis].min(b[axis]));
+            let upper = [0, 1].map(|axis| a[axis].max(b[axis]));
+            faces(name, lower, upper, OnFaces::Head(head))
+        };
+        conditions.faces = vec![end("in", 0.0, 20.0), end("out", length, 14.0)];
+        let layer = [(0.0, 0.0), (length, 0.0), (length, thick), (0.0, thick)];
+        let layer = layer.map(|(u, v)| place(u, v)).to_vec();
+        let found = flow(&grid, &[layer], &conditions).unwrap();
+        let exact = 1e-5 * thick * 6.0 / length;
+        let passed: Vec<_> = (found.discharges.iter())
+            .map(|own| [own.inflow / exact, own.outflow / exact])
+            .collect();
+        println!(
+            "{degrees} {cell}: {:.4} {passed:.4?}",
+            found.outflow / exact
+        );
+    }
+}
+
+/// GOAL: full pores with faces where water comes out, and with rain, of which what cannot enter runs off; faces on lines of the grid and off
+/// them. ORACLE: Darcy's law for a column: k (7 − 4)/4 comes out; rain of k/4 enters whole, and its head at the top is 2; of 2 k enters
+/// k (4 − 1)/4. No water comes out where the head is below the face.
+#[test]
+fn full_pores_have_open_faces_and_rain() {
+    let (permeability, height) = (1e-5, 4.0);
+    for shift in [0.0, 0.3] {
+        for (top, below, passes, head) in [
+            (OnFaces::Open, 7.0, -0.75, 4.0),
+            (OnFaces::Open, 3.0, 0.0, 3.0),
+            (OnFaces::Recharge(0.25 * permeability), 1.0, 0.25, 2.0),
+            (OnFaces::Recharge(2.0 * permeability), 1.0, 0.75, 4.0),
+        ] {
+            let grid = grid([0.0, -shift * 0.25], 0.25, [4, 17]);
+            let mut conditions = confined(&[permeability]);
+            conditions.faces = vec![
+                faces("top", [0.0, height], [1.0, height], top),
+                faces("base", [0.0, 0.0], [1.0, 0.0], OnFaces::Head(below)),
+            ];
+            let ground = [rectangle([0.0, 0.0], [1.0, height])];
+            let found = flow(&grid, &ground, &conditions).unwrap();
+            let own = &found.discharges[0];
+            let entered = (own.inflow - own.outflow) / permeability;
+            println!("{top:?}, head {below}, shift {shift}: {entered} of {passes}");
+            assert!((entered - passes).abs() < 1e-8, "{entered} of {passes}");
+            assert!((found.head(&[0.4, height]) - head).abs() < 1e-8);
+        }
+    }
+}
+
+/// GOAL: full pores with a slope where water comes out at a part, between heads on both sides: what was refused as having no solution.
+/// ORACLE: the balance; none enters at the open face, and the head there is nowhere above it.
+#[test]
+fn full_pores_drain_to_an_open_slope() {
+    let grid = grid([0.0, 0.0], 0.5, [24, 16]);
+    let mut conditions = confined(&[1e-5]);
+    conditions.faces = vec![
+        faces("right", [12.0, 0.0], [12.0, 8.0], OnFaces::Head(5.0)),
+        faces("left", [0.0, 0.0], [0.0, 8.0], OnFaces::Head(5.5)),
+        faces("slope", [4.5, 3.9], [12.0, 8.0], OnFaces::Open),
+    ];
+    let ground = [
+        [0.0, 0.0],
+        [12.0, 0.0],
+        [12.0, 4.0],
+        [8.0, 4.0],
+        [4.0, 6.0],
+        [0.0, 6.0],
+    ];
+    let found = flow(&grid, &[ground.to_vec()], &conditions).unwrap();
+    println!("{:?}", found.discharges);
+    assert!((found.inflow / found.outflow - 1.0).abs() < 1e-9);
+    let slope = &found.discharges[2];
+    assert!(slope.outflow > 0.0 && slope.inflow < 1e-6 * slope.outflow);
+    for x in [8.5, 9.5, 11.0] {
+        let head = found.head(&[x, 4.0]);
+        assert!((head - 4.0).abs() < 0.05, "{x}: {head}");
+    }
+}

@@ -23,6 +23,9 @@ const ALONG: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8];
 /// Soil closer to a rigid body than this share of a cell has no free face there \[-\].
 const NEAR_BODY: f64 = 0.5;
 
+/// Drains take domains of which they have half to within this share \[-\].
+const ROUND_OFF: f64 = 1e-9;
+
 /// A place where water leaves in proportion to its excess pressure.
 #[derive(Clone, Debug)]
 pub(crate) struct Opening {
@@ -230,7 +233,8 @@ fn face<const D: usize>(
     }
 }
 
-/// The share of a domain that drains take, at most 1 \[-\].
+/// The share of a domain that drains take, at most 1 \[-\]. A side of a drain takes a domain along with it that lies in it by half, or
+/// that has half of the drain: what a drain merely touches would drain the nodes of its cell.
 fn drained_share<const D: usize>(
     flow: &Consolidating<D>,
     x: &[f64; D],
@@ -240,7 +244,9 @@ fn drained_share<const D: usize>(
         let along = |axis: usize| {
             let from = (x[axis] - half_length[axis]).max(lower[axis]);
             let to = (x[axis] + half_length[axis]).min(upper[axis]);
-            ((to - from) / (2.0 * half_length[axis])).max(0.0)
+            let (own, all) = (2.0 * half_length[axis], upper[axis] - lower[axis]);
+            let is_taken = to - from >= (0.5 - ROUND_OFF) * own.min(all);
+            if is_taken { (to - from) / own } else { 0.0 }
         };
         (0..D).map(along).product()
     };

@@ -279,9 +279,12 @@ fn unformed<const D: usize>(case: &Case<D>, stage: &Stage, error: &AssemblyError
             short(position[1])
         )],
         AssemblyError::UnsupportedReinforcement { name, position } => vec![format!(
-            "soil around ({}, {}) m, where the reinforcement \"{name}\" is, in the stage that installs it and after",
-            short(position[0]),
-            short(position[1])
+            "soil around ({}) m, where the reinforcement \"{name}\" is, in the stage that installs it and after",
+            position[..D]
+                .iter()
+                .map(|x| short(*x))
+                .collect::<Vec<_>>()
+                .join(", ")
         )],
         AssemblyError::NoUnknowns => {
             vec!["a free or roller side in [boundaries]: every node is held".to_owned()]

@@ -2,7 +2,7 @@
 
 use igimp_assembly::{Particles, SharedLaw};
 use igimp_geometry::SeedError;
-use igimp_model::{Case, CheckTime, Field, Quantity};
+use igimp_model::{Case, CheckTime, Field, Quantity, StageKind};
 use igimp_results::fields;
 use igimp_results::summary::EnergySummary;
 use igimp_results::tables::table::Table;
@@ -38,6 +38,54 @@ pub(crate) struct Records {
     seeded: usize,
 }
 
+/// Bodies hold a place up to this share of a cell beside it \[-\].
+const BESIDE: f64 = 1e-6;
+
+/// The place of a monitor. One that stands where a body that construction places or removes meets one that is there all along is of
+/// the latter: the crest of a cut is that of the ground.
+fn watched<const D: usize>(
+    case: &Case<D>,
+    particles: &Particles<D>,
+    point: &[f64; D],
+) -> Option<Place> {
+    let mut changes = vec![false; case.bodies.len()];
+    for stage in &case.stages {
+        if let StageKind::Construction(own) = &stage.kind {
+            for &body in own.place.iter().chain(&own.remove) {
+                changes[body] = true;
+            }
+        }
+    }
+    let reach = BESIDE
+        * case
+            .grid
+            .smallest_cell()
+            .into_iter()
+            .fold(f64::INFINITY, f64::min);
+    let ends = [-reach, reach].map(|by| point.map(|x| x + by));
+    let holds = |body: &usize| case.bodies[*body].region.within(ends[0], ends[1]).volume > 0.0;
+    let (goes, stays): (Vec<usize>, Vec<usize>) = (0..case.bodies.len())
+        .filter(holds)
+        .partition(|&body| changes[body]);
+    let of_those_that_stay = |&particle: &usize| {
+        let x = particles.x[particle];
+        stays
+            .iter()
+            .any(|&body| case.bodies[body].region.encloses(x))
+    };
+    let distance = |particle: usize| {
+        let pairs = std::iter::zip(&particles.x[particle], point);
+        pairs.map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
+    };
+    if goes.is_empty() || stays.is_empty() {
+        return Place::of(particles, point, f64::INFINITY);
+    }
+    (0..particles.len())
+        .filter(of_those_that_stay)
+        .min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+        .map(|nearest| Place::near(particles, nearest, point))
+}
+
 impl Records {
     /// Empty tables; monitors stand in the undeformed bodies.
     pub(crate) fn new<const D: usize>(
@@ -67,7 +115,7 @@ impl Records {
             .monitors
             .iter()
             .map(|monitor| {
-                Place::of(particles, &monitor.point, f64::INFINITY)
+                watched(case, particles, &monitor.point)
                     .ok_or(CaseError::Seed(SeedError::EmptyBody))
             })
             .collect::<Result<_, _>>()?;

@@ -49,6 +49,9 @@ pub(crate) trait Soil<const D: usize> {
 
     /// Lower and upper ends of the grid \[m\]; none where it was found wrong.
     fn ends(&self) -> Option<[[f64; D]; 2]>;
+
+    /// Whether a place on an axis lies between the lines of the grid; it does not where that was found wrong.
+    fn is_off_lines(&self, axis: usize, at: f64) -> bool;
 }
 
 impl Soil<2> for Site {
@@ -96,6 +99,10 @@ impl Soil<2> for Site {
     fn ends(&self) -> Option<[[f64; 2]; 2]> {
         let frame = self.frame.as_ref()?;
         Some([frame.lower, frame.upper])
+    }
+
+    fn is_off_lines(&self, axis: usize, at: f64) -> bool {
+        (self.frame.as_ref()).is_some_and(|frame| frame.is_off_lines(axis, at))
     }
 }
 
@@ -241,6 +248,8 @@ pub(crate) struct Solids {
     /// Extent of the grid \[m\].
     pub(crate) lower: [f64; 3],
     pub(crate) upper: [f64; 3],
+    /// The grid, as far as it was found right.
+    pub(crate) frame: Option<Frame<3>>,
 }
 
 impl Solids {
@@ -262,6 +271,7 @@ impl Solids {
             round_off,
             lower: frame.map_or([0.0; 3], |frame| frame.lower),
             upper: frame.map_or([0.0; 3], |frame| frame.upper),
+            frame: frame.cloned(),
             cell: cells
                 .map(|axis| axis.extremes()[0])
                 .fold(f64::INFINITY, f64::min),

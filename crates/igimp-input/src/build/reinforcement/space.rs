@@ -9,6 +9,8 @@ use crate::build::bodies::site::{Soil as _, Solids};
 
 /// How far beside a head the surface is looked for, as a share of the cell \[-\].
 const BESIDE: f64 = 0.02;
+/// A direction along an axis has no more of another than this \[-\].
+const ALONG: f64 = 1e-9;
 /// Halvings until the surface is found.
 const HALVINGS: usize = 60;
 
@@ -31,26 +33,59 @@ impl Holding<3> for Solids {
     }
 }
 
-/// Three corners of a square about the head: on the surface of the soil, else across the member. One of its sides is level.
+/// Three corners of a square about the head: on the surface of the soil, else across the member. One of its sides is level. What lies
+/// beyond a side of the grid along which a side of the square runs is cut off, as behind a plane of symmetry.
 fn plate(part: &ReinforcementPart<3>, width: f64, soil: &Solids) -> Vec<[f64; 3]> {
     let (head, next) = (part.line[0], part.line[1]);
-    let normal = surface_at(&head, soil);
+    let normal = surface_at(&head, soil, true).or_else(|| surface_at(&head, soil, false));
     let normal = normal.or_else(|| unit(less(head, next)));
     let normal = normal.unwrap_or([0.0, 0.0, 1.0]);
     let level = unit(cross([0.0, 0.0, 1.0], normal)).unwrap_or([1.0, 0.0, 0.0]);
     let up = cross(normal, level);
+    let [along, upwards] = [(level, up), (up, level)].map(|own| reach(&head, own, width, soil));
     let corner = |along: f64, upwards: f64| {
-        let half = 0.5 * width;
-        std::array::from_fn(|k| head[k] + half * (along * level[k] + upwards * up[k]))
+        std::array::from_fn(|k| head[k] + along * level[k] + upwards * up[k])
     };
-    vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0)]
+    vec![
+        corner(along[0], upwards[0]),
+        corner(along[1], upwards[0]),
+        corner(along[0], upwards[1]),
+    ]
 }
 
-/// The outward normal of the surface of the soil near a place, where it is flat.
-fn surface_at(at: &[f64; 3], soil: &Solids) -> Option<[f64; 3]> {
+/// How far a plate reaches to either side of its head along a direction, with its other sides along another \[m\].
+fn reach(
+    head: &[f64; 3],
+    (own, other): ([f64; 3], [f64; 3]),
+    width: f64,
+    soil: &Solids,
+) -> [f64; 2] {
+    let mut reach = [-0.5 * width, 0.5 * width];
+    let Some(ends) = soil.ends() else {
+        return reach;
+    };
+    for axis in 0..3 {
+        if own[axis].abs() > ALONG && other[axis].abs() <= ALONG {
+            let [a, b] = ends.map(|end| (end[axis] - head[axis]) / own[axis]);
+            reach = [reach[0].max(a.min(b)), reach[1].min(a.max(b))];
+        }
+    }
+    reach
+}
+
+/// The outward normal of the surface of the soil near a place, where it is flat; with the soil going on beyond upright sides of the grid,
+/// where that is asked for.
+fn surface_at(at: &[f64; 3], soil: &Solids, goes_on: bool) -> Option<[f64; 3]> {
     let reach = BESIDE * soil.cell();
     let step = |along: [f64; 3], by: f64| [0, 1, 2].map(|k| at[k] + by * along[k]);
-    let is_soil = |place: [f64; 3]| soil.regions.iter().any(|own| own.encloses(place));
+    let is_soil = |mut place: [f64; 3]| {
+        for axis in (0..2).filter(|_| goes_on) {
+            let [lower, upper] = [soil.lower[axis], soil.upper[axis]];
+            let within = place[axis].clamp(lower, upper);
+            place[axis] = 2.0 * within - place[axis];
+        }
+        soil.regions.iter().any(|own| own.encloses(place))
+    };
     let mut outwards = [0.0; 3];
     for k in 0..27 {
         let along = [k % 3, k / 3 % 3, k / 9].map(|own| f64::from(own) - 1.0);

@@ -5,12 +5,16 @@ use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::consolidation as keys;
 use igimp_schema::schema::ground_motion::Wall;
 use igimp_schema::schema::stages::{StageCommon, StageForm};
+use igimp_schema::text::number;
 use igimp_schema::tree::Wrong;
 use igimp_schema::tree::read::At;
 
 use crate::build::bodies::reach::{meets_box, meets_side};
-use crate::build::context::About;
+use crate::build::context::{About, Context};
 use crate::build::water::seepage::extent;
+
+/// Soil is looked for beyond the sides of drains as far as this share of a cell \[-\].
+const WITHIN: f64 = 1e-2;
 
 /// The time that a stage takes for water to flow, if it takes any.
 pub(super) fn consolidation<const D: usize>(
@@ -150,9 +154,49 @@ fn drains<const D: usize>(
                 .help("water leaves from the soil within the box: let it reach into the ground");
             return Err(Wrong);
         }
+        if let Some((axis, at)) = side_within_cells(context, ends) {
+            let axis = ["x", "y", "z"][axis];
+            problems
+                .warning(
+                    from.place,
+                    format!(
+                        "a side of this drain, {axis} = {} m, lies in soil off the lines of the grid: water leaves at the nodes of cells, and the \
+                         drain acts up to a cell wider or narrower",
+                        number(at)
+                    ),
+                )
+                .help("lay its sides on lines of the grid, with `lines` in [grid] if need be");
+        }
         drains.push([within.lower, within.upper]);
     }
     Ok(drains)
+}
+
+/// A side of a drain that lies in soil within a cell, with its axis \[m\].
+fn side_within_cells<const D: usize>(
+    context: &Context<'_, D>,
+    [lower, upper]: [[f64; D]; 2],
+) -> Option<(usize, f64)> {
+    let thin = WITHIN * context.soil.cell();
+    let sides = (0..D).flat_map(|axis| [(axis, false), (axis, true)]);
+    let mut sides = sides.filter(|&(axis, is_upper)| {
+        // What lies just beyond the side, along it: soil that does not drain.
+        let mut beyond = [lower, upper];
+        beyond[usize::from(!is_upper)][axis] = if is_upper {
+            upper[axis]
+        } else {
+            lower[axis] - thin
+        };
+        beyond[usize::from(is_upper)][axis] = if is_upper {
+            upper[axis] + thin
+        } else {
+            lower[axis]
+        };
+        let at = if is_upper { upper[axis] } else { lower[axis] };
+        context.soil.is_off_lines(axis, at) && meets_box(context.bodies, context.sequence, beyond)
+    });
+    let (axis, is_upper) = sides.next()?;
+    Some((axis, if is_upper { upper[axis] } else { lower[axis] }))
 }
 
 /// A side of the grid by its name: axis, and whether it is the upper end.
