@@ -18,7 +18,6 @@
 #![doc = include_str!("../examples/slope.rs")]
 //! ```
 
-pub(crate) mod driven;
 pub mod exact;
 pub(crate) mod limit;
 pub mod mesh_study;

@@ -5,6 +5,7 @@
 
 mod axes;
 pub mod check;
+mod driven;
 mod grid;
 mod ground;
 mod load;
@@ -27,6 +28,7 @@ use igimp_linear::{LinearSolver, SolverKind};
 use serde::{Deserialize, Serialize};
 
 pub use axes::{front, in_space};
+pub use driven::Driven;
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use ground::{Ground, Layer};
 pub use igimp_schema::field::Field;

@@ -1,12 +1,11 @@
 //! The results of the runs of a study, side by side.
 
-use igimp_model::{Case, CheckValue, Curve, Quantity, StageKind, meshes};
+use igimp_model::{Case, CheckValue, Curve, Driven, Quantity, StageKind, meshes};
 use igimp_results::mesh_study::{Computed, Convergence, ResultKind, StudyResult, estimate};
 use igimp_results::summary::{CheckRow, StageOutcome, StageSummary, Standing, Summary};
 use igimp_text::short;
 
 use super::known::{of_check, of_stage};
-use crate::driven::Driven;
 
 /// A value of a run.
 #[derive(Clone, Copy, Debug)]

@@ -1,9 +1,7 @@
 //! Prior knowledge of how the results of a case converge: by their kind, and by the structures in the case.
 
-use igimp_model::{Case, LoadKind, Material, Quantity, Stage, StageKind};
+use igimp_model::{Case, Driven, LoadKind, Material, Quantity, Stage, StageKind};
 use igimp_results::mesh_study::{Convergence, ResultKind};
-
-use crate::driven::Driven;
 
 /// The result that a stage is made for, if it is made for one: its name, what it is, and how it converges.
 pub(super) fn of_stage<const D: usize>(

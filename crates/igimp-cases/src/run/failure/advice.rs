@@ -3,13 +3,12 @@
 
 use igimp_assembly::{AssemblyError, Geometry, Locking, Penetration};
 use igimp_linear::LinearSolverError;
-use igimp_model::{BodyPart, Case, Material, RigidMove, Side, Stage, StageKind, Strength};
+use igimp_model::{BodyPart, Case, Driven, Material, RigidMove, Side, Stage, StageKind, Strength};
 use igimp_results::fields::length;
 use igimp_solver::{Component, StepError, StepFailure};
 use igimp_text::short;
 
 use super::is_loss_of_strength;
-use crate::driven::Driven;
 use crate::run::NearWorst;
 
 /// Most suggestions that a reader will try.

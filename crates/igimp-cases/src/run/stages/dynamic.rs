@@ -5,7 +5,7 @@
 //! many as the stage has steps. No factor of safety follows from motion.
 
 use igimp_assembly::{CutVolume, Method, Remedy, SmallCuts};
-use igimp_model::{Calm, Case, Dynamic, GroundMotion, Stage, StageKind};
+use igimp_model::{Calm, Case, Driven, Dynamic, GroundMotion, Stage, StageKind};
 use igimp_results::ending::EndReason;
 use igimp_results::summary::{NewmarkSummary, StageSummary};
 use igimp_solver::{MarchSettings, Pace};
@@ -14,7 +14,6 @@ use super::loading::{begin, reason_to_stop, target};
 use super::rigid_begin;
 use super::run_out::{divisor, flowing};
 use super::walls;
-use crate::driven::Driven;
 use crate::error::CaseError;
 use crate::run::model::Model;
 use crate::run::output::moment::Moment;

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use igimp_assembly::Geometry;
-use igimp_model::{RigidMove, Stage, StageKind};
+use igimp_model::{Driven, RigidMove, Stage, StageKind};
 use igimp_results::ending::{EndReason, PathEnd};
 use igimp_results::summary::{PathPoint, PathSummary, StageSummary};
 use igimp_solver::{
@@ -14,7 +14,6 @@ use igimp_solver::{
 };
 use igimp_text::short;
 
-use crate::driven::Driven;
 use crate::error::{CaseError, on_one_line};
 use crate::limit::{self, Course};
 use crate::run::model::displacement_scale;

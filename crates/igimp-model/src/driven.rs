@@ -1,13 +1,13 @@
 //! The control that a stage of loads or gravity drives: the one whose factor tells how far it came.
 
-use igimp_model::{Case, Quantity, StageKind};
+use crate::{Case, Quantity, StageKind};
 
 /// Factors that differ by less than this share of the larger one are the same \[-\].
 const SAME: f64 = 1e-9;
 
 /// A control that stages of loads or gravity change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Driven {
+pub enum Driven {
     /// Factor on a load.
     Load(usize),
     /// Pseudo-static force over the weight, by component: to the right, backwards, upwards.
@@ -18,7 +18,7 @@ pub(crate) enum Driven {
 
 impl Driven {
     /// The control that a quantity records, if it records one.
-    pub(crate) fn recorded_by(of: Quantity) -> Option<Self> {
+    pub fn recorded_by(of: Quantity) -> Option<Self> {
         match of {
             Quantity::LoadFactor(load) => Some(Self::Load(load)),
             Quantity::HorizontalFactor => Some(Self::Acceleration(0)),
@@ -28,7 +28,7 @@ impl Driven {
     }
 
     /// Where a stage takes the control, if it states it \[-\].
-    pub(crate) fn aim(self, kind: &StageKind) -> Option<f64> {
+    pub fn aim(self, kind: &StageKind) -> Option<f64> {
         match (kind, self) {
             (StageKind::K0, Self::Gravity) => Some(1.0),
             (StageKind::Gravity { factor, .. }, Self::Gravity) => Some(*factor),
@@ -50,7 +50,7 @@ impl Driven {
 
     /// The control that tells how far a stage came, with what it was at its beginning: the first of those stated that the stage
     /// changes. Loads go in their order, accelerations before gravity. None of a stage that drives none of them.
-    pub(crate) fn of(kind: &StageKind, before: impl Fn(Self) -> f64) -> Option<Self> {
+    pub fn of(kind: &StageKind, before: impl Fn(Self) -> f64) -> Option<Self> {
         let stated: Vec<Self> = match kind {
             StageKind::Load { loads, .. } => loads.iter().map(|&load| Self::Load(load)).collect(),
             StageKind::Gravity { .. } => {
@@ -69,14 +69,14 @@ impl Driven {
     }
 
     /// The control that a stage drives where all before it came to their ends.
-    pub(crate) fn planned<const D: usize>(case: &Case<D>, number: usize) -> Option<Self> {
+    pub fn planned<const D: usize>(case: &Case<D>, number: usize) -> Option<Self> {
         Self::of(&case.stages[number].kind, |own| {
             own.before(case, number, &|_| 1.0)
         })
     }
 
     /// The control at the beginning of a stage, from the shares of stages that were reached \[-\].
-    pub(crate) fn before<const D: usize>(
+    pub fn before<const D: usize>(
         self,
         case: &Case<D>,
         number: usize,
@@ -87,7 +87,7 @@ impl Driven {
     }
 
     /// The control at the end of a stage, from the shares of stages that were reached \[-\].
-    pub(crate) fn after<const D: usize>(
+    pub fn after<const D: usize>(
         self,
         case: &Case<D>,
         number: usize,
