@@ -5,7 +5,6 @@
 
 mod axes;
 pub mod check;
-mod driven;
 mod grid;
 mod ground;
 mod load;
@@ -28,7 +27,6 @@ use igimp_linear::{LinearSolver, SolverKind};
 use serde::{Deserialize, Serialize};
 
 pub use axes::{front, in_space};
-pub use driven::Driven;
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use ground::{Ground, Layer};
 pub use igimp_schema::field::Field;
@@ -51,6 +49,7 @@ pub use rigid::{
     Adhesion, COMPONENTS, RigidDrive, RigidForm, RigidInterface, RigidMove, RigidPart,
     RigidQuantity, RigidShape, RigidShear, components, overlap_of_rigid,
 };
+pub use stage::driven::Driven;
 pub use stage::{
     Consolidation, Dynamic, Reduction, ReductionPath, RunOut, SearchMethod, Stage, StageKind,
     StageWalls, StopWhen, StrengthReduction, search_of,

@@ -1,5 +1,7 @@
 //! Stages: what happens, in order.
 
+pub(crate) mod driven;
+
 use igimp_assembly::{Geometry, Rayleigh, TimeScheme};
 
 use super::{Construction, GroundMotion, RigidMove};
