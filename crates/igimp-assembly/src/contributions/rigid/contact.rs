@@ -142,7 +142,7 @@ impl<'a, const D: usize> Contact<'a, D> {
             row.carry_force(interface, &penalty, tents[knot] * (sums.area / sums.length));
             if interface.tension == Tension::None && !rolls {
                 let takes_time = conditions.time.is_some();
-                row.take_soil_that_came((sums.mean_gap(), takes_time), interface, &penalty);
+                row.take_soil_that_came((sums.gap_in_front(), takes_time), interface, &penalty);
             }
             if is_laid {
                 row.seat(&penalty);
