@@ -112,6 +112,13 @@ impl<const D: usize> Face<D> {
         })
     }
 
+    /// The same of a particle whose soil reaches `beyond` its domain \[length\]: towards the side the face is that of the soil (theory, eq. 45i).
+    #[must_use]
+    pub fn grown(mut self, beyond: &[f64; D]) -> Self {
+        self.gap -= (-dot(beyond, &self.normal)).max(0.0);
+        self
+    }
+
     /// Whether its particle stands further off than one that counts in full: behind another it does not count.
     pub fn is_far(&self) -> bool {
         self.is_far

@@ -83,13 +83,15 @@ fn forces(text: &str) -> [f64; 2] {
 }
 
 /// GOAL: a held smooth wall carries soil at rest wherever its face lies in its cell, and goes on to carry it where nothing happens.
-/// CASE: ten places, two steps and ten, four and nine points, the soil on either side. A row of particles that the face cuts is thinner than
-/// half of those behind at some of them.
-/// ORACLE: elastic soil between smooth sides has K = ν / (1 − ν) throughout. What came to the wall stood off it by up to an eighth of a cell while the mean
-/// of all faces was taken over: 6 to 24 % were lost, more with every step.
+/// CASE: twelve places, two steps and ten, four and nine points, the soil on either side. A row of particles that the face cuts is thinner than
+/// half of those behind at some of them, and soil that joined the row behind, which holds a gap open that is not there, lies at the face at others.
+/// ORACLE: elastic soil between smooth sides has K = ν / (1 − ν) throughout. While the mean of all faces was taken over 6 to 24 % were lost, more with
+/// every step, and all of it where soil had joined the row behind.
 #[test]
 fn soil_at_rest_presses_on_a_held_wall_wherever_its_face_is() {
-    let places = [0.0, 0.05, 0.2, 0.24, 0.26, 0.3, 0.4, 0.5, 0.76, 0.95];
+    let places = [
+        0.0, 0.05, 0.2, 0.24, 0.26, 0.31, 0.4, 0.47, 0.5, 0.76, 0.95, 0.98,
+    ];
     for (k, place) in places.into_iter().enumerate() {
         for (points, steps) in [(4, 2), (4, 10), (9, 3)] {
             let found = forces(&text(place, (points, steps), k % 2 == 1, ""));
