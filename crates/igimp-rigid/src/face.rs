@@ -17,8 +17,9 @@ pub const ALONG_THE_GRID: f64 = 0.995;
 /// too stiff, in space a narrower one loses single steps.
 const FADED: [f64; 2] = [1.04, 1.2];
 
-/// A place this much of a length beyond an end is still at it: round-off \[-\].
-const ROUND_OFF: f64 = 1e-9;
+/// A particle hides what begins before it ends, by no more than this share of its thickness \[-\]. A choice: soil that is strained does not
+/// keep its domains end to end, and of those that are disordered each is to face the body.
+const OVERLAP: f64 = 0.1;
 
 /// The face of a particle, parallel to a side of the body.
 pub struct Face<const D: usize> {
@@ -111,14 +112,21 @@ impl<const D: usize> Face<D> {
         })
     }
 
+    /// The same of a particle whose soil reaches `beyond` its domain \[length\]: towards the side the face is that of the soil (theory, eq. 45i).
+    #[must_use]
+    pub fn grown(mut self, beyond: &[f64; D]) -> Self {
+        self.gap -= (-dot(beyond, &self.normal)).max(0.0);
+        self
+    }
+
     /// Whether its particle stands further off than one that counts in full: behind another it does not count.
     pub fn is_far(&self) -> bool {
         self.is_far
     }
 
-    /// Whether its particle ends before a face at a gap begins.
+    /// Whether its particle ends before a face at a gap begins, or hardly behind it.
     pub fn may_hide(&self, gap: f64) -> bool {
-        self.gap + 2.0 * self.thickness <= (1.0 + ROUND_OFF) * gap
+        self.gap + (1.0 - OVERLAP) * 2.0 * self.thickness <= gap
     }
 
     /// Whether its particle lies between the side and the middle of another face of that side (theory, eq. 45f).
@@ -296,6 +304,12 @@ mod tests {
             let beside = [2.0 * half, -2.0 * slice - half];
             let beside = Face::of(&body, 0, &beside, &[half; 2]).unwrap();
             assert!(front.hides(&behind) && !front.hides(&beside));
+            // Soil is strained: the slice has come on by so much of its thickness.
+            for (overlap, hides) in [(0.05, true), (0.15, false)] {
+                let on = [0.0, -(1.0 + 2.0 * overlap) * slice];
+                let on = Face::of(&body, 0, &on, &[half, slice]).unwrap();
+                assert_eq!(on.hides(&behind), hides, "{share} {overlap}");
+            }
         }
     }
     // GOAL: soil that moves off a side along the grid is lost by and by, that before a slanted one at once.

@@ -80,6 +80,13 @@ impl<const D: usize> Particles<D> {
             filled: self.volume0[particle] / (domain0 * section.thickness(radius0)),
         }
     }
+
+    /// How far soil that joined a particle as it was seeded, reaches beyond its domain \[length\] (theory, eq. 45i).
+    pub fn beyond_domain(&self, particle: usize, section: Section) -> [f64; D] {
+        let (site, own) = (self.pore_site(particle, section), &self.centroid[particle]);
+        let twice = if site.filled > 1.0 { 2.0 } else { 0.0 };
+        std::array::from_fn(|axis| twice * own[axis] * site.half_length[axis])
+    }
 }
 
 /// Given water. Pure: the same particle at the same place finds the same.

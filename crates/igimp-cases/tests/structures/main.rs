@@ -7,6 +7,7 @@ mod messages;
 
 mod closing;
 mod deep_push;
+mod held_wall;
 mod reinforcement;
 mod rigid;
 mod rigid_results;

@@ -108,10 +108,8 @@ impl<'a, const D: usize> Contact<'a, D> {
             }
             let mean = |sum: f64| sum / sums.area;
             let functional = |sum: &BTreeMap<usize, [f64; D]>| -> Functional<D> {
-                let terms = sum.iter();
-                terms
-                    .map(|(&node, share)| (node, share.map(mean)))
-                    .collect()
+                let terms = sum.iter().map(|(&node, share)| (node, share.map(mean)));
+                terms.collect()
             };
             let mut before = body.contact.knots[knot];
             let interface = &body.interfaces[surface.side_of(knot)];
@@ -142,7 +140,7 @@ impl<'a, const D: usize> Contact<'a, D> {
             row.carry_force(interface, &penalty, tents[knot] * (sums.area / sums.length));
             if interface.tension == Tension::None && !rolls {
                 let takes_time = conditions.time.is_some();
-                row.take_soil_that_came((sums.mean_gap(), takes_time), interface, &penalty);
+                row.take_soil_that_came((sums.gap_in_front(), takes_time), interface, &penalty);
             }
             if is_laid {
                 row.seat(&penalty);
@@ -232,12 +230,8 @@ impl<'a, const D: usize> Contact<'a, D> {
             body.pose = body.pose.moved(&u[node], &rotation);
             let knots = body.contact.knots.len();
             body.contact = ContactState::none(knots);
-            for (own, before) in body
-                .contact
-                .knots
-                .iter_mut()
-                .zip(&self.bodies[index].contact.knots)
-            {
+            let before = &self.bodies[index].contact.knots;
+            for (own, before) in body.contact.knots.iter_mut().zip(before) {
                 own.is_broken = before.is_broken;
             }
         }

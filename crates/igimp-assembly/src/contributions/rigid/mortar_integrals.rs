@@ -112,7 +112,8 @@ impl<'a, const D: usize> Gathering<'a, D> {
             }
             let sides = 0..body.surface.side_count();
             let own = sides.filter_map(|side| Face::of(body, side, x, half));
-            faces.extend(own.map(|face| (particle, face)));
+            let beyond = particles.beyond_domain(particle, self.section);
+            faces.extend(own.map(|face| (particle, face.grown(&beyond))));
         }
         faces
     }

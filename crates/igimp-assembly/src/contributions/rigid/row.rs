@@ -130,11 +130,7 @@ impl<const D: usize> Row<D> {
             return;
         }
         // Domains that overlap a side would throw soil off it.
-        let least = if takes_time {
-            self.gap
-        } else {
-            f64::NEG_INFINITY
-        };
+        let least = [f64::NEG_INFINITY, self.gap][usize::from(takes_time)];
         let measured = measured.max(least);
         let share = (self.before.way / self.cell).min(1.0);
         self.gap += share * (measured - self.gap);

@@ -5,7 +5,8 @@
 use std::collections::BTreeMap;
 
 use igimp_assembly::{
-    Drive, Interface, Particles, RigidBody, RigidMotion, Shear, Stencils, StepConditions, Tension,
+    Drive, Interface, Particles, RigidBody, RigidMotion, Section, Shear, Stencils, StepConditions,
+    Tension,
 };
 
 use super::outline::in_frame;
@@ -74,6 +75,8 @@ struct Face {
     tangent: [f64; 2],
     /// Half of the particle across the side, and along it.
     thickness: f64,
+    /// How far its soil reaches beyond its domain towards the side (theory, eq. 45i).
+    beyond: f64,
     reach: f64,
     middle: [f64; 2],
     /// Share by which it counts (theory, eq. 45b).
@@ -87,7 +90,7 @@ impl Face {
     }
 
     fn gap(&self) -> f64 {
-        self.height - self.thickness
+        self.height - self.thickness - self.beyond
     }
 
     /// Whether the particle ends between the side and the middle of another face (theory, eq. 45f).
@@ -96,7 +99,7 @@ impl Face {
             .map(|a| (other.middle[a] - self.middle[a]) * self.tangent[a])
             .sum();
         self.side == other.side
-            && self.gap() + 2.0 * self.thickness <= other.gap() * (1.0 + 1e-9)
+            && self.gap() + 2.0 * self.thickness <= other.gap() + 0.2 * self.thickness
             && along.abs() < self.reach
     }
 }
@@ -210,7 +213,7 @@ fn shear_by_law(
             let carried = growth * before.pressure;
             let now = slid(
                 carried,
-                sums.gap / sums.area,
+                sums.first_gap(),
                 before.way * sums.area / sums.cell,
                 [normal, depth],
             );
@@ -351,6 +354,7 @@ fn faces(particles: &Particles<2>, body: &RigidBody<2>, sides: &[Side]) -> Vec<F
     let mut faces = Vec::new();
     for particle in 0..particles.len() {
         let (x, half) = (particles.x[particle], particles.half_length[particle]);
+        let beyond = particles.beyond_domain(particle, Section::PlaneStrain);
         for (side, height, normal) in sides_near(body, sides, x) {
             let thickness = half[0] * normal[0].abs() + half[1] * normal[1].abs();
             let far = 0.5 * height / thickness;
@@ -372,6 +376,7 @@ fn faces(particles: &Particles<2>, body: &RigidBody<2>, sides: &[Side]) -> Vec<F
                 normal,
                 tangent,
                 thickness,
+                beyond: (0..2).map(|a| -beyond[a] * normal[a]).sum::<f64>().max(0.0),
                 reach: half[0] * tangent[0].abs() + half[1] * tangent[1].abs(),
                 middle: [0, 1].map(|a| x[a] - thickness * normal[a]),
                 share,
