@@ -73,15 +73,14 @@ pub(crate) fn run_out<const D: usize>(
             other => return Ok(other),
         }
         // What does not stand yet creeps on, as far as steps go.
-        match at.filter(|at| at.march.at < 1.0) {
-            Some(at) => left = Some(Resumption { end: None, ..at }),
-            None => {
-                session.warn_of_stage(
-                    number,
-                    "the slope all but rests, but no equilibrium without drag was found",
-                );
-                return Ok(StageEnd::Stopped(rest(false)));
-            }
+        if let Some(at) = at.filter(|at| at.march.at < 1.0) {
+            left = Some(Resumption { end: None, ..at });
+        } else {
+            session.warn_of_stage(
+                number,
+                "the slope all but rests, but no equilibrium without drag was found",
+            );
+            return Ok(StageEnd::Stopped(rest(false)));
         }
     }
 }
@@ -96,6 +95,8 @@ struct Creep<'a> {
     steps: usize,
     /// Nodes of the grid.
     nodes: usize,
+    /// Whether the way of a cut step is aimed at as that of a whole one: beside rigid bodies, where cuts are for contact.
+    is_beside_bodies: bool,
     /// The way of a node in a step that is aimed at \[m\].
     target: f64,
     /// The drag of the first step \[1/s²\].
@@ -119,6 +120,7 @@ impl<'a> Creep<'a> {
             run_out,
             steps: case.stages[number].steps,
             nodes: model.grid(model.lowered(&to))?.node_count(),
+            is_beside_bodies: !case.rigid.is_empty(),
             to,
             target,
             // The whole weight would move the body by the target.
@@ -167,7 +169,11 @@ impl<'a> Creep<'a> {
     fn drag_after<const D: usize>(&self, drag: f64, taken: &AcceptedStep<'_, D>) -> f64 {
         let moved = largest_motion(&taken.accepted.forces.u, self.nodes);
         let report = taken.accepted.report;
-        let share = (report.to - report.from) * self.steps as f64;
+        let share = if self.is_beside_bodies {
+            1.0
+        } else {
+            (report.to - report.from) * self.steps as f64
+        };
         (drag * change_of_drag(moved / self.target, share)).clamp(1e-9 * self.largest, self.largest)
     }
 
@@ -240,10 +246,11 @@ fn change_of_drag(moved: f64, share_of_step: f64) -> f64 {
     (moved / aimed).clamp(CHANGE[0], CHANGE[1])
 }
 
-/// The march of a body that flows: a step that finds no equilibrium is tried with guarded corrections before it is cut.
+/// The march of a body that flows: a step that finds no equilibrium is tried with guarded corrections before it is cut, save beside rigid
+/// bodies, where corrections are shortened in another way (theory, eq. 25f).
 fn marching<const D: usize>(model: &Model<'_, D>, steps: usize) -> MarchSettings {
     MarchSettings {
-        guards_again: true,
+        guards_again: model.case.rigid.is_empty(),
         ..model.march_settings(steps)
     }
 }

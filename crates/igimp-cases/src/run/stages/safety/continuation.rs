@@ -20,7 +20,7 @@ use super::{names, undeformed_or_found, weight_drains};
 use crate::error::{CaseError, on_one_line};
 use crate::limit::{self, Course};
 use crate::run::Event;
-use crate::run::model::displacement_scale;
+use crate::run::model::{Model, displacement_scale};
 use crate::run::resume::End;
 use crate::run::session::{Session, StageEnd, StagePath, march_path};
 use crate::run::stages::loading::begin;
@@ -45,6 +45,16 @@ impl Way {
         Self {
             first_change,
             direct_steps: Some(2),
+        }
+    }
+
+    /// The settings of a path; its peak is resolved where soil softens.
+    fn settings<const D: usize>(self, model: &Model<'_, D>) -> ContinuationSettings {
+        ContinuationSettings {
+            first_change: self.first_change,
+            direct_steps: self.direct_steps.unwrap_or(usize::MAX),
+            resolves_peak: (model.case.materials.iter()).any(|own| own.softening.is_some()),
+            ..ContinuationSettings::new(model.march_settings(1).newton)
         }
     }
 }
@@ -249,12 +259,7 @@ impl Search<'_> {
             let controls = (&self.at(from), &self.at(to));
             model.conditions_on(model.grid(lowered), controls, 0.0)
         };
-        let settings = ContinuationSettings {
-            first_change: way.first_change,
-            direct_steps: way.direct_steps.unwrap_or(usize::MAX),
-            resolves_peak: (model.case.materials.iter()).any(|own| own.softening.is_some()),
-            ..ContinuationSettings::new(model.march_settings(1).newton)
-        };
+        let settings = way.settings(model);
         let mut continuation = ContinuationState::start(from, None, &settings);
         let mut workspace = session.workspace();
         let mut watch = Watch::of(self, session, summary, &state.body);
