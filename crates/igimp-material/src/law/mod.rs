@@ -151,7 +151,7 @@ pub trait ConstitutiveModel: Strength + Send + Sync + Debug {
     fn has_symmetric_tangent(&self) -> bool;
 
     /// How near plastic flow is to associated flow, r of the law as it is given \[-\]: 1 where flow is associated, 0
-    /// where it keeps volume in spite of friction, as [`dilatancy`] has it. The law at reduced strength has that of the
+    /// where it keeps volume in spite of friction. The law at reduced strength has that of the
     /// law it was made of. Locking control goes by it (theory, eq. 8c).
     ///
     /// A law without ψ says by the symmetry of its tangent what its flow is.
