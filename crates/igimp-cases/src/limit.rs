@@ -270,7 +270,13 @@ fn above_peak(points: &[PathPoint], course: Course) -> f64 {
     let peak = points[at];
     let [rise, fall] = [before, *after].map(|own| course.beyond(peak.factor, own.factor));
     let (to, from) = (peak.work - before.work, after.work - peak.work);
-    (rise * from / to).max(fall * to / from) / course.scale(peak.factor)
+    let above = if to > 0.0 && from > 0.0 {
+        (rise * from / to).max(fall * to / from)
+    } else {
+        // A step without work has no chord: the peak is known to the step that came to it.
+        rise
+    };
+    above / course.scale(peak.factor)
 }
 
 /// The interval of the factor that a path tells: from the furthest up to the equilibrium that tells it, to where it would

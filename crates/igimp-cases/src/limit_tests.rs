@@ -180,3 +180,25 @@ fn a_factor_that_passes_zero_has_a_scale() {
     let way = 1.2 * (1.0 - 1.0 / 512.0);
     assert!((rise - 1.2 / 1024.0 / way).abs() < 1e-12, "{rise}");
 }
+
+/// GOAL: the interval of a factor that has fallen holds the peak between equilibria, and is finite where a step did no work.
+/// ORACLE: λ = 2 − (ω − 3)² with its peak of 2, sampled on either side of it in steps of other places.
+#[test]
+fn a_peak_between_equilibria_lies_in_the_interval() {
+    for offset in [0.0, 0.05, 0.15, 0.25, 0.3, 0.39] {
+        let works = (0..10).map(|k| 1.0 + offset + 0.4 * f64::from(k));
+        let points: Vec<_> = works
+            .map(|work| point(2.0 - (work - 3.0).powi(2), work, work, 1.0))
+            .collect();
+        let largest = points.iter().map(|own| own.factor).fold(0.0, f64::max);
+        let above = (1.0 + above_peak(&points, Course::RISING)) * largest;
+        assert!((2.0..2.5).contains(&above), "{offset} {largest} {above}");
+    }
+    let still = [
+        point(1.0, 1.0, 0.0, 0.0),
+        point(1.2, 1.0, 0.0, 0.0),
+        point(1.1, 2.0, 1.0, 1.0),
+    ];
+    assert!((above_peak(&still, Course::RISING) - 0.2 / 1.2).abs() < 1e-12);
+    assert!(above_peak(&still[..2], Course::RISING).abs() < 1e-12);
+}

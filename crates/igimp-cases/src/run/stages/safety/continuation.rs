@@ -415,7 +415,7 @@ impl<const D: usize> Observer<D> for Watch<'_, '_, D> {
 
     fn on_return(&mut self, body: &Body<D>, steps: usize) {
         self.points.truncate(self.points.len() - steps);
-        self.last = Arc::new(body.clone());
+        (self.before, self.last) = (None, Arc::new(body.clone()));
     }
 
     fn on_cut(&mut self, error: &StepError) {
