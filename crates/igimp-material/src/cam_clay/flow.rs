@@ -65,9 +65,11 @@ impl Flow {
         let log_p_c = p_c.ln();
         let at = |x: &Unknowns| self.system(elastic, trial, log_p_c, x);
         let first = [trial.volume, trial.shear, 0.0];
-        let found = newton(trial, at, first).or_else(|| {
+        // Roots of a multiplier below zero would flow against the stress.
+        let flows = |(x, _): &(Unknowns, System)| x[2] >= 0.0;
+        let found = newton(trial, at, first).filter(flows).or_else(|| {
             // Far from the surface: the root is enclosed, and Newton's method begins beside it.
-            newton(trial, at, self.enclosed(elastic, trial, log_p_c)?)
+            newton(trial, at, self.enclosed(elastic, trial, log_p_c)?).filter(flows)
         });
         found
             .and_then(|(x, system)| self.returned(elastic, trial, p_c, &x, &system))

@@ -9,7 +9,7 @@ use crate::random::Random;
 use crate::returns::{dot, size};
 
 /// λ*, κ*, M, shear stiffness, ratio of overconsolidation, reference pressure.
-const CAM_CLAY: [(f64, f64, f64, ShearStiffness, f64, f64); 6] = [
+const CAM_CLAY: [(f64, f64, f64, ShearStiffness, f64, f64); 7] = [
     (
         0.10,
         0.02,
@@ -23,6 +23,7 @@ const CAM_CLAY: [(f64, f64, f64, ShearStiffness, f64, f64); 6] = [
     (0.25, 0.05, 0.7, ShearStiffness::Poisson(0.0), 2.0, 5e4),
     (0.02, 0.004, 1.4, ShearStiffness::Poisson(0.45), 1.0, 1e5),
     (0.15, 0.05, 0.9, ShearStiffness::Constant(3e6), 30.0, 1e5),
+    (0.0248, 0.024, 1.0, ShearStiffness::Poisson(0.2), 1.0, 1e5),
 ];
 
 pub(crate) fn laws() -> Vec<ModifiedCamClay> {
