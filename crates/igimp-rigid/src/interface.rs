@@ -132,7 +132,7 @@ impl Default for Penalty {
     fn default() -> Self {
         Self {
             stiffness: 10.0,
-            smoothing: 1e-4,
+            smoothing: 1e-6,
             tangential: 0.5,
         }
     }

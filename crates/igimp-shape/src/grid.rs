@@ -88,6 +88,22 @@ impl<const D: usize> Grid<D> {
         Some(place)
     }
 
+    /// The cells that a point lies in, or on whose sides it does: on a line those before and behind it.
+    pub fn cells_around(&self, x: &[f64; D]) -> impl Iterator<Item = usize> {
+        let sides: [[Option<usize>; 2]; D] = std::array::from_fn(|axis| {
+            let own = &self.axes[axis];
+            let at = own.cell_at(x[axis]);
+            let before = at.filter(|&cell| cell > 0 && x[axis] <= own.nodes()[cell]);
+            [at, before.map(|cell| cell - 1)]
+        });
+        (0..1_usize << D).filter_map(move |corner| {
+            let place: [Option<usize>; D] =
+                std::array::from_fn(|axis| sides[axis][corner >> axis & 1]);
+            let is_there = place.iter().all(Option::is_some);
+            is_there.then(|| self.cell_index(place.map(Option::unwrap_or_default)))
+        })
+    }
+
     /// Edge lengths $`h_d`$ of the cell at a place \[length\].
     ///
     /// # Panics

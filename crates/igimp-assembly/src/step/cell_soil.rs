@@ -3,7 +3,7 @@
 //! gradients do not see (theory, eqs. 8a to 8h).
 
 use igimp_material::ConstitutiveModel;
-use igimp_shape::{CellPart, Grid, Support, cell_parts};
+use igimp_shape::{CellPart, Grid, Support, cell_parts, loose_cells};
 use rayon::prelude::*;
 
 use crate::body::particles::{CHUNK, Particles};
@@ -39,6 +39,8 @@ pub(crate) struct CellSoil<const D: usize> {
     parts: Vec<Parts<D>>,
     /// Whether a cell holds no more than a sliver, by cell.
     is_sliver: Vec<bool>,
+    /// Whether the mean strains of cells do not hold the nodes of a cell, by cell (theory, eq. 8i).
+    is_loose: Vec<bool>,
     /// Where the tents of a cell give the gradients that its particles share, from 0 to 1 in each
     /// direction, by cell: the centre X = 1/2, or the centroid of the soil \[-\].
     shared_at: Vec<[f64; D]>,
@@ -76,14 +78,13 @@ impl<const D: usize> CellSoil<D> {
     ///
     /// # Errors
     /// [`AssemblyError::Shape`] names the first particle whose centre left the grid.
-    pub(crate) fn build(
-        grid: &Grid<D>,
+    fn build(
         particles: &Particles<D>,
         method: &Method,
-        laws: &[SharedLaw],
+        conditions: &StepConditions<D>,
         points: &[LoadPoint<D>],
     ) -> Result<Self, AssemblyError> {
-        let len = particles.len();
+        let (grid, len) = (&conditions.grid, particles.len());
         let parts = (0..len.div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
@@ -111,16 +112,18 @@ impl<const D: usize> CellSoil<D> {
         let mut soil = Self {
             parts,
             is_sliver: vec![false; grid.cell_count()],
+            is_loose: vec![false; grid.cell_count()],
             shared_at: vec![[0.5; D]; grid.cell_count()],
             hoop_at: Vec::new(),
-            own_share: laws.iter().map(of_law).collect(),
+            own_share: conditions.laws.iter().map(of_law).collect(),
             locking: method.locking,
         };
         if method.section.is_axisymmetric() {
             soil.share_by_radius(grid);
         }
-        if method.geometry == Geometry::Given || !points.is_empty() {
-            soil.find_soil(grid, particles, method, &loaded_cells(grid, points));
+        let shares = soil.locking == Locking::SharedStrain;
+        if shares || method.geometry == Geometry::Given || !points.is_empty() {
+            soil.find_soil(particles, method, conditions, &loaded_cells(grid, points));
         }
         Ok(soil)
     }
@@ -141,15 +144,7 @@ impl<const D: usize> CellSoil<D> {
             || method.section.is_axisymmetric()
             || !points.is_empty();
         counts
-            .then(|| {
-                Self::build(
-                    &conditions.grid,
-                    particles,
-                    method,
-                    &conditions.laws,
-                    points,
-                )
-            })
+            .then(|| Self::build(particles, method, conditions, points))
             .transpose()
     }
 
@@ -169,15 +164,16 @@ impl<const D: usize> CellSoil<D> {
         }
     }
 
-    /// Finds slivers, and the centroid of the soil of the cells that share it: sums of volumes and first moments in
-    /// the order of the particles.
+    /// Finds slivers, loose cells, and the centroid of the soil of the cells that share it: sums of volumes and first moments
+    /// in the order of the particles.
     fn find_soil(
         &mut self,
-        grid: &Grid<D>,
         particles: &Particles<D>,
         method: &Method,
+        conditions: &StepConditions<D>,
         is_loaded: &[bool],
     ) {
+        let grid = &conditions.grid;
         let is_given = method.geometry == Geometry::Given;
         let all = is_given && self.locking == Locking::SharedStrain;
         let mut volume = vec![0.0; grid.cell_count()];
@@ -196,16 +192,32 @@ impl<const D: usize> CellSoil<D> {
                 }
             }
         }
+        let mut holds_soil = vec![false; grid.cell_count()];
         for (cell, (volume, moment)) in volume.into_iter().zip(moment).enumerate() {
             let size: f64 = grid.cell_size(grid.cell_place(cell)).iter().product();
             let thickness = (self.hoop_at.get(cell)).map_or(1.0, |&r| method.section.thickness(r));
-            self.is_sliver[cell] = is_given && volume < SLIVER * size * thickness;
+            holds_soil[cell] = volume >= SLIVER * size * thickness;
+            self.is_sliver[cell] = is_given && !holds_soil[cell];
             if volume > 0.0 && (all || is_loaded[cell]) {
                 self.shared_at[cell] = moment.map(|moment| moment / volume);
                 if let Some(area) = area.get(cell) {
                     self.hoop_at[cell] = volume / area;
                 }
             }
+        }
+        if self.locking == Locking::SharedStrain && self.own_share.iter().any(|&own| own < 1.0) {
+            let held = &conditions.constraints;
+            let free = |node| (0..D).filter(|&axis| held.of(node, axis).is_none()).count();
+            let strains = D * (D + 1) / 2 + usize::from(!self.hoop_at.is_empty());
+            self.is_loose = loose_cells(grid, &holds_soil, free, strains);
+        }
+    }
+
+    /// The share β of its own distortion that soil of a law keeps in a cell \[-\]: all of it in a loose one (theory, eqs. 8c and 8i).
+    fn own_share(&self, law: usize, cell: usize) -> f64 {
+        match self.locking {
+            Locking::SharedStrain if !self.is_loose[cell] => self.own_share[law],
+            _ => 1.0,
         }
     }
 
@@ -244,16 +256,14 @@ impl<const D: usize> CellSoil<D> {
         out: &mut Vec<Support<D>>,
         hoops: &mut Vec<Hoop>,
     ) {
-        let own = match self.locking {
-            Locking::SharedStrain => self.own_share[law],
-            Locking::None | Locking::BBar => 1.0,
-        };
         out.clear();
         for kept in self.kept(grid, particle) {
             let Kept { part, weight, .. } = kept;
+            let cell = grid.cell_index(part.cell);
+            let own = self.own_share(law, cell);
             let shared_at = match self.locking {
                 Locking::None => kept.centroid,
-                Locking::BBar | Locking::SharedStrain => self.shared_at[grid.cell_index(part.cell)],
+                Locking::BBar | Locking::SharedStrain => self.shared_at[cell],
             };
             let own_tents = grid.tents(part.cell, kept.centroid);
             for (tent, shared) in own_tents.zip(grid.tents(part.cell, shared_at)) {
@@ -273,16 +283,15 @@ impl<const D: usize> CellSoil<D> {
         out.truncate(count);
         hoops.clear();
         if !self.hoop_at.is_empty() {
-            self.add_hoops(grid, (particle, own), out, hoops);
+            self.add_hoops(grid, (particle, law), out, hoops);
         }
     }
 
-    /// Sets `hoops` to what the supports of a particle, which keeps a share `own` of its own, stretch it around the axis
-    /// (theory, eqs. 130a and 130b).
+    /// Sets `hoops` to what the supports of a particle of a law stretch it around the axis (theory, eqs. 130a and 130b).
     fn add_hoops(
         &self,
         grid: &Grid<D>,
-        (particle, own): (usize, f64),
+        (particle, law): (usize, usize),
         supports: &[Support<D>],
         hoops: &mut Vec<Hoop>,
     ) {
@@ -295,6 +304,7 @@ impl<const D: usize> CellSoil<D> {
         } in self.kept(grid, particle)
         {
             let (cell, [start, end]) = (grid.cell_index(part.cell), radii(grid, part.cell));
+            let own = self.own_share(law, cell);
             let at = |radius: f64, mut point: [f64; D]| {
                 point[0] = (radius - start) / (end - start);
                 grid.tents(part.cell, point)
@@ -367,12 +377,13 @@ impl<const D: usize> CellSoil<D> {
                 continue;
             }
             let density = particles.mass[particle] / particles.volume(particle);
-            let mass = (1.0 - self.own_share[law]) * particles.mass[particle];
             for kept in self.kept(grid, particle) {
                 let Kept { part, weight, .. } = kept;
                 let size = grid.cell_size(part.cell);
                 own.layer = own.layer.max(density * size[D - 1]);
-                let shared_at = self.shared_at[grid.cell_index(part.cell)];
+                let cell = grid.cell_index(part.cell);
+                let mass = (1.0 - self.own_share(law, cell)) * particles.mass[particle];
+                let shared_at = self.shared_at[cell];
                 let arm: [f64; D] = std::array::from_fn(|axis| {
                     weight * mass * (kept.centroid[axis] - shared_at[axis]) * size[axis]
                 });
@@ -394,21 +405,8 @@ impl<const D: usize> CellSoil<D> {
 /// Whether loaded points lie in a cell or on its sides, by cell (theory, eq. 8h).
 fn loaded_cells<const D: usize>(grid: &Grid<D>, points: &[LoadPoint<D>]) -> Vec<bool> {
     let mut is_loaded = vec![false; grid.cell_count()];
-    for point in points {
-        // A point on a line is of the cell before it and of the cell behind.
-        let sides: [[Option<usize>; 2]; D] = std::array::from_fn(|axis| {
-            let own = &grid.axes[axis];
-            let at = own.cell_at(point.x[axis]);
-            let before = at.filter(|&cell| cell > 0 && point.x[axis] <= own.nodes()[cell]);
-            [at, before.map(|cell| cell - 1)]
-        });
-        for corner in 0..1_usize << D {
-            let place: [Option<usize>; D] =
-                std::array::from_fn(|axis| sides[axis][corner >> axis & 1]);
-            if place.iter().all(Option::is_some) {
-                is_loaded[grid.cell_index(place.map(Option::unwrap_or_default))] = true;
-            }
-        }
+    for cell in points.iter().flat_map(|point| grid.cells_around(&point.x)) {
+        is_loaded[cell] = true;
     }
     is_loaded
 }

@@ -9,6 +9,17 @@ const AT_REST: f64 = 0.3 / 0.7;
 /// Elastic soil, 2 m high and 3 m wide, beside a smooth wall that is held; the face of the wall is so many cells off a line of the grid. On the
 /// right of the wall, or mirrored on its left.
 fn text(place: f64, (points, steps): (usize, usize), is_mirrored: bool, further: &str) -> String {
+    text_of(5.0, place, (points, steps), is_mirrored, further)
+}
+
+/// The same in soil of this Young's modulus \[MPa\].
+fn text_of(
+    young: f64,
+    place: f64,
+    (points, steps): (usize, usize),
+    is_mirrored: bool,
+    further: &str,
+) -> String {
     let at = |x: f64| if is_mirrored { 5.0 - x } else { x };
     let span = |a: f64, b: f64| [at(a).min(at(b)), at(a).max(at(b))];
     let face = 1.0 + 0.25 * place;
@@ -26,7 +37,7 @@ domain = {{ x = ["{grid0} m", "{grid1} m"], y = ["0 m", "3 m"] }}
 [materials.soil]
 model = "elastic"
 unit_weight = "20 kN/m3"
-young = "5 MPa"
+young = "{young} MPa"
 poisson = 0.3
 [[bodies]]
 name = "ground"
@@ -98,6 +109,21 @@ fn soil_at_rest_presses_on_a_held_wall_wherever_its_face_is() {
             let label = format!("{place}, {points} points, {steps} steps: {found:?}");
             assert!(found.iter().all(|own| (own - 1.0).abs() < 0.02), "{label}");
             assert!((found[1] / found[0] - 1.0).abs() < 1e-4, "{label}");
+        }
+    }
+}
+
+/// GOAL: a held smooth wall carries soil at rest however stiff the soil is.
+/// CASE: four places, soil of loose sand to that of sound rock.
+/// ORACLE: K = ν / (1 − ν) has no stiffness. Where contact closes over 1e-4 of a cell, and not over 1e-6 of one, 4 % is lost at 200 MPa and 10 % at 2000.
+#[test]
+fn stiff_soil_at_rest_presses_on_a_held_wall_as_soft_soil_does() {
+    for young in [20.0, 200.0, 2000.0] {
+        for place in [0.0, 0.26, 0.47, 0.95] {
+            let [weight, end] = forces(&text_of(young, place, (4, 5), false, ""));
+            let label = format!("{young} MPa, {place}: {weight} {end}");
+            assert!((weight - 1.0).abs() < 0.015, "{label}");
+            assert!((end / weight - 1.0).abs() < 1e-4, "{label}");
         }
     }
 }
