@@ -33,14 +33,17 @@ const OWN_MOVING: f64 = 0.1;
 /// where equilibrium is not unique, with more factors of safety rise (docs/src/comparisons.md: slopes with ψ = 0 at 0.3 and 1).
 const OWN_ISOCHORIC: f64 = 0.3;
 
+/// The least share in cells whose face is loaded, on both \[-\]: a load that ends within a cell pushes modes that the mean does not see.
+const OWN_LOADED: f64 = 0.3;
+
 /// The soil of every cell, and the parts of every particle.
 pub(crate) struct CellSoil<const D: usize> {
     /// The parts of `CHUNK` particles after `CHUNK` particles.
     parts: Vec<Parts<D>>,
     /// Whether a cell holds no more than a sliver, by cell.
     is_sliver: Vec<bool>,
-    /// Whether the mean strains of cells do not hold the nodes of a cell, by cell (theory, eq. 8i).
-    is_loose: Vec<bool>,
+    /// The least share β that soil keeps, by cell: more where a face is loaded or strains do not hold the nodes (theory, eq. 8i) \[-\].
+    least_share: Vec<f64>,
     /// Where the tents of a cell give the gradients that its particles share, from 0 to 1 in each
     /// direction, by cell: the centre X = 1/2, or the centroid of the soil \[-\].
     shared_at: Vec<[f64; D]>,
@@ -112,7 +115,7 @@ impl<const D: usize> CellSoil<D> {
         let mut soil = Self {
             parts,
             is_sliver: vec![false; grid.cell_count()],
-            is_loose: vec![false; grid.cell_count()],
+            least_share: vec![0.0; grid.cell_count()],
             shared_at: vec![[0.5; D]; grid.cell_count()],
             hoop_at: Vec::new(),
             own_share: conditions.laws.iter().map(of_law).collect(),
@@ -209,15 +212,22 @@ impl<const D: usize> CellSoil<D> {
             let held = &conditions.constraints;
             let free = |node| (0..D).filter(|&axis| held.of(node, axis).is_none()).count();
             let strains = D * (D + 1) / 2 + usize::from(!self.hoop_at.is_empty());
-            self.is_loose = loose_cells(grid, &holds_soil, free, strains);
+            let least = |(is_loose, is_loaded)| match (is_loose, is_loaded) {
+                (true, _) => 1.0,
+                (false, true) => OWN_LOADED,
+                (false, false) => 0.0,
+            };
+            let is_loose = loose_cells(grid, &holds_soil, free, strains);
+            let both = std::iter::zip(is_loose, is_loaded.iter().copied());
+            self.least_share = both.map(least).collect();
         }
     }
 
-    /// The share β of its own distortion that soil of a law keeps in a cell \[-\]: all of it in a loose one (theory, eqs. 8c and 8i).
+    /// The share β of its own distortion that soil of a law keeps in a cell \[-\].
     fn own_share(&self, law: usize, cell: usize) -> f64 {
         match self.locking {
-            Locking::SharedStrain if !self.is_loose[cell] => self.own_share[law],
-            _ => 1.0,
+            Locking::SharedStrain => self.own_share[law].max(self.least_share[cell]),
+            Locking::None | Locking::BBar => 1.0,
         }
     }
 

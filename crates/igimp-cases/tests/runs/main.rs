@@ -12,6 +12,7 @@ mod given_law;
 mod in_space;
 mod killed;
 mod mechanism;
+mod modes;
 mod remarks;
 mod revolution;
 mod run_out;

@@ -95,8 +95,6 @@ struct Creep<'a> {
     steps: usize,
     /// Nodes of the grid.
     nodes: usize,
-    /// Whether the way of a cut step is aimed at as that of a whole one: beside rigid bodies, where cuts are for contact.
-    is_beside_bodies: bool,
     /// The way of a node in a step that is aimed at \[m\].
     target: f64,
     /// The drag of the first step \[1/s²\].
@@ -120,7 +118,6 @@ impl<'a> Creep<'a> {
             run_out,
             steps: case.stages[number].steps,
             nodes: model.grid(model.lowered(&to))?.node_count(),
-            is_beside_bodies: !case.rigid.is_empty(),
             to,
             target,
             // The whole weight would move the body by the target.
@@ -169,11 +166,7 @@ impl<'a> Creep<'a> {
     fn drag_after<const D: usize>(&self, drag: f64, taken: &AcceptedStep<'_, D>) -> f64 {
         let moved = largest_motion(&taken.accepted.forces.u, self.nodes);
         let report = taken.accepted.report;
-        let share = if self.is_beside_bodies {
-            1.0
-        } else {
-            (report.to - report.from) * self.steps as f64
-        };
+        let share = (report.to - report.from) * self.steps as f64;
         (drag * change_of_drag(moved / self.target, share)).clamp(1e-9 * self.largest, self.largest)
     }
 
