@@ -17,3 +17,4 @@ mod revolution;
 mod run_out;
 mod swapped;
 mod unmet;
+mod without_hold;
