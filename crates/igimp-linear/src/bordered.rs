@@ -63,10 +63,11 @@ impl Elimination {
             .zip(&border.rows)
             .map(|(force, row)| force - product(row, grid))
             .collect();
-        let of_border =
-            eliminate(self.schur.clone(), left).map_err(|unknown| LinearSolverError::Singular {
-                unknown: Some(of_grid + unknown),
-            })?;
+        let of_border = eliminate(self.schur.clone(), left).map_err(|direction| {
+            LinearSolverError::Singular {
+                unknown: Some(of_grid + largest(&direction)),
+            }
+        })?;
         for (carried, by) in self.carried.iter().zip(&of_border) {
             for (own, share) in grid.iter_mut().zip(carried) {
                 *own -= by * share;
@@ -74,6 +75,11 @@ impl Elimination {
         }
         behind.copy_from_slice(&of_border);
         Ok(())
+    }
+
+    /// The motion of the border that meets no resistance, where there is one.
+    fn free_direction(&self) -> Option<Vec<f64>> {
+        eliminate(self.schur.clone(), vec![0.0; self.schur.len()]).err()
     }
 }
 
@@ -85,6 +91,11 @@ pub struct Bordered {
 }
 
 impl Bordered {
+    /// By unknown of the border, the motion that meets no resistance, where the last solution failed for that.
+    pub fn free_direction(&self) -> Option<Vec<f64>> {
+        self.elimination.as_ref()?.free_direction()
+    }
+
     /// Solves for all unknowns: those of the grid first, those of the border behind them. What a solver does not iterate
     /// for at once is eliminated. As for the grid alone, such a solution is checked against the whole matrix, and
     /// refined once where that helps.
@@ -185,9 +196,27 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Solves a small dense system by elimination with row pivots; the unknown without a pivot if there is
+/// The place of the largest entry.
+fn largest(direction: &[f64]) -> usize {
+    (0..direction.len())
+        .max_by(|&a, &b| direction[a].abs().total_cmp(&direction[b].abs()))
+        .unwrap_or(0)
+}
+
+/// Of rows that are eliminated up to `k`, where there is no pivot: the direction which they make nothing of.
+fn free_direction(rows: &[Vec<f64>], k: usize) -> Vec<f64> {
+    let mut direction = vec![0.0; rows.len()];
+    direction[k] = 1.0;
+    for i in (0..k).rev() {
+        let known = product(&rows[i][i + 1..=k], &direction[i + 1..=k]);
+        direction[i] = -known / rows[i][i];
+    }
+    direction
+}
+
+/// Solves a small dense system by elimination with row pivots; the direction that it makes nothing of if there is
 /// one.
-fn eliminate(mut rows: Vec<Vec<f64>>, mut rhs: Vec<f64>) -> Result<Vec<f64>, usize> {
+fn eliminate(mut rows: Vec<Vec<f64>>, mut rhs: Vec<f64>) -> Result<Vec<f64>, Vec<f64>> {
     let n = rhs.len();
     let sizes: Vec<f64> = rows
         .iter()
@@ -204,7 +233,7 @@ fn eliminate(mut rows: Vec<Vec<f64>>, mut rhs: Vec<f64>) -> Result<Vec<f64>, usi
         rhs.swap(k, pivot);
         let size = rows[k][k].abs();
         if size.is_nan() || size <= 1e-14 * sizes.iter().copied().fold(0.0, f64::max) {
-            return Err(k);
+            return Err(free_direction(&rows, k));
         }
         for i in k + 1..n {
             let factor = rows[i][k] / rows[k][k];
@@ -315,6 +344,7 @@ mod tests {
         let rows = vec![vec![0.0, 2.0], vec![4.0, 1.0]];
         assert_eq!(eliminate(rows, vec![4.0, 6.0]), Ok(vec![1.0, 2.0]));
         let rows = vec![vec![1.0, 2.0], vec![2.0, 4.0]];
-        assert_eq!(eliminate(rows, vec![1.0, 1.0]), Err(1));
+        let direction = eliminate(rows, vec![1.0, 1.0]).unwrap_err();
+        assert_eq!((largest(&direction), direction), (0, vec![-2.0, 1.0]));
     }
 }

@@ -517,15 +517,43 @@ impl<const D: usize> Corrector<'_, '_, D> {
             }
             LinearSolverError::Singular {
                 unknown: Some(unknown),
-            } => self.not_held(unknown).unwrap_or_else(|| error.into()),
+            } => self
+                .not_held(unknown)
+                .or_else(|| self.singular_at(unknown))
+                .unwrap_or_else(|| error.into()),
             other => other.into(),
         }
     }
 
-    /// The failure that names the rigid body of an unknown, if it is that of one.
-    fn not_held(&self, unknown: usize) -> Option<StepFailure> {
+    /// The failure that names the node of an unknown at which a system is singular, if it is that of one.
+    fn singular_at(&self, unknown: usize) -> Option<StepFailure> {
         let (node, axis) = self.system.unknowns().place(unknown)?;
-        let (body, component, touches) = self.system.rigid_body_of(node, axis)?;
+        (node < self.grid.node_count()).then(|| StepFailure::Singular {
+            position: self.system.node_position(node).to_vec(),
+            component: (axis < D).then_some(Component::Displacement(axis)),
+        })
+    }
+
+    /// The failure that names the rigid body of an unknown, if it is that of one: with what goes farthest of the motion that meets no
+    /// resistance, rotations by half the size of the body.
+    fn not_held(&self, unknown: usize) -> Option<StepFailure> {
+        let unknowns = self.system.unknowns();
+        let body_of = |unknown: usize| {
+            let (node, axis) = unknowns.place(unknown)?;
+            self.system.rigid_body_of(node, axis)
+        };
+        let own = body_of(unknown)?;
+        let direction = self.bordered.free_direction().unwrap_or_default();
+        let first = unknowns.len() - direction.len();
+        let ways = direction.iter().enumerate().filter_map(|(k, by)| {
+            let moved = body_of(first + k)?;
+            let is_displacement = moved.1 < D;
+            let half = 0.5 * moved.0.surface.size();
+            let arm = if is_displacement { 1.0 } else { half };
+            Some((arm * by.abs(), moved))
+        });
+        let farthest = ways.max_by(|a, b| a.0.total_cmp(&b.0));
+        let (body, component, touches) = farthest.map_or(own, |(_, moved)| moved);
         Some(StepFailure::NotHeld {
             body: body.name.clone(),
             component: match component.checked_sub(D) {

@@ -4,9 +4,9 @@
 use std::time::Instant;
 
 use igimp_assembly::{
-    AcceptedContact, AssemblyError, Geometry, LoadPoint, Method, OutOfBalance, Particles,
-    PoresAfter, Reach, Reinforcement, Stencils, StepConditions, StepWork, System, Trial,
-    WaterMoved,
+    AcceptedContact, AssemblyError, CutVolume, Geometry, LoadPoint, Method, OutOfBalance,
+    Particles, PoresAfter, Reach, Reinforcement, Remedy, SmallCuts, Stencils, StepConditions,
+    StepWork, System, Trial, WaterMoved,
 };
 use igimp_linear::{LinearEffort, SolverKind};
 use igimp_material::{Regime, TangentKind};
@@ -27,14 +27,17 @@ use crate::{NewtonSettings, Workspace};
 /// The ghost penalty of a step that is singular at a node which hardly touches soil \[-\].
 const GHOST_PENALTY: f64 = 1e-3;
 
+/// The fraction of a cell below which nodes are tied in a step on a given geometry that is singular at one which hardly touches soil \[-\].
+const TIED_BELOW: f64 = 0.02;
+
 /// Advances a body by one load step, from load factor `from` to `to`: the step displacements
 /// that bring internal and external force into balance are found, and the particles are moved.
 /// The body is untouched unless the step is accepted.
 ///
 /// A step whose system is singular before any soil has touched a rigid body is tried once more with bodies laid on the soil that stands
 /// at them (theory, eq. 46); one that is singular at a node that hardly touches soil with a ghost
-/// penalty (theory, eq. 28), and the report says so. On a given geometry the penalty would be a support at a limit load: where
-/// soil has no stiffness the step is tried once more with guarded corrections and regularised tangents (theory, eq. 25e),
+/// penalty (theory, eq. 28), and the report says so. On a given geometry the penalty would be a support at a limit load: there such
+/// nodes are tied (theory, eq. 63a), and where soil has no stiffness the step is tried once more with guarded corrections and regularised tangents (theory, eq. 25e),
 /// which change no equilibrium. In a step that takes time the free fields beside walls go ahead.
 ///
 /// # Errors
@@ -134,7 +137,7 @@ fn step_of_body<const D: usize>(
         settings,
         from,
         to,
-        ghost_penalty: 0.0,
+        is_held: false,
         is_guarded: false,
         on_path: None,
         measures_work: is_short_of_mechanism,
@@ -145,22 +148,19 @@ fn step_of_body<const D: usize>(
         Ok(accepted) => return Ok(accepted),
         Err(failure) => failure,
     };
-    let may_hold = method.geometry == Geometry::Moving && method.small_cuts.ghost_penalty == 0.0;
-    let mut held = method.clone();
-    held.small_cuts.ghost_penalty = GHOST_PENALTY;
+    let held = held_again(method, &history);
     let lies = failure.is_singular() && lies_on_nothing(body, conditions);
     let laid = lies.then(|| conditions.clone().with_bodies_laid());
     let on_bodies = laid.as_ref().map(|conditions| Attempt {
         conditions,
         ..attempt
     });
-    let again = if may_hold && history.is_weakly_held() {
-        Some(Attempt {
-            method: &held,
-            ghost_penalty: GHOST_PENALTY,
-            ..attempt
-        })
-    } else if guards_again && failure.is_want_of_equilibrium()
+    let firmly = held.as_ref().map(|method| Attempt {
+        method,
+        is_held: true,
+        ..attempt
+    });
+    let guarded = if guards_again && failure.is_want_of_equilibrium()
         || method.geometry == Geometry::Given && has_no_stiffness(&failure, &workspace.trial)
     {
         Some(Attempt {
@@ -170,7 +170,7 @@ fn step_of_body<const D: usize>(
     } else {
         None
     };
-    for attempt in on_bodies.into_iter().chain(again) {
+    for attempt in on_bodies.into_iter().chain(firmly).chain(guarded) {
         // What fails all the same fails for the first reason.
         let mut own = ResidualHistory::default();
         if let Ok(accepted) = equilibrium(&attempt, body, workspace, &mut own) {
@@ -184,6 +184,28 @@ fn step_of_body<const D: usize>(
         residuals: history.residuals,
         failure: Box::new(failure),
     })
+}
+
+/// The method with which a step is tried again that was singular at a node which hardly touches soil. On a given geometry nodes are
+/// tied, if the tangent at the start of the step, which is elastic, was singular: soil that yields is no matter of its nodes.
+fn held_again(method: &Method, history: &ResidualHistory) -> Option<Method> {
+    let own = &method.small_cuts;
+    let mut held = method.clone();
+    match method.geometry {
+        Geometry::Moving if own.ghost_penalty == 0.0 && history.is_weakly_held() => {
+            held.small_cuts.ghost_penalty = GHOST_PENALTY;
+        }
+        Geometry::Given if own.below < TIED_BELOW && history.begins_weakly_held() => {
+            held.small_cuts = SmallCuts {
+                below: TIED_BELOW,
+                of: CutVolume::Cell,
+                remedy: Remedy::Extrapolate,
+                ..*own
+            };
+        }
+        Geometry::Moving | Geometry::Given => return None,
+    }
+    Some(held)
 }
 
 /// Whether a step in statics begins before any soil has touched a rigid body: at no gap and no pressure contact has no stiffness, and
@@ -226,7 +248,7 @@ pub(crate) fn step_on_path<const D: usize>(
                 settings,
                 from,
                 to,
-                ghost_penalty: 0.0,
+                is_held: false,
                 is_guarded: false,
                 on_path: match target {
                     Target::Factor { .. } => None,
@@ -241,7 +263,21 @@ pub(crate) fn step_on_path<const D: usize>(
                     }
                 ),
             };
-            let (report, forces) = equilibrium(&attempt, body, workspace, &mut history)?;
+            let found = equilibrium(&attempt, body, workspace, &mut history);
+            let again = found
+                .is_err()
+                .then(|| held_again(method, &history))
+                .flatten();
+            let firmly = again.as_ref().map(|method| Attempt {
+                method,
+                is_held: true,
+                ..attempt
+            });
+            let mut own = ResidualHistory::default();
+            let held = firmly
+                .filter(|own| own.method.geometry == Geometry::Given)
+                .and_then(|attempt| equilibrium(&attempt, body, workspace, &mut own).ok());
+            let (report, forces) = held.map_or(found, Ok)?;
             let conditions = load_path.conditions(from, report.to)?;
             Ok((conditions, report, forces))
         });
@@ -281,8 +317,8 @@ struct Attempt<'a, const D: usize> {
     /// Load factors at the start and at the end \[-\].
     from: f64,
     to: f64,
-    /// The ghost penalty of a step that is tried again \[-\].
-    ghost_penalty: f64,
+    /// Whether nodes that hardly touch soil are held in a step that is tried again: by a ghost penalty, or tied.
+    is_held: bool,
     /// Whether corrections are guarded and tangents regularised.
     is_guarded: bool,
     /// Where the load factor at the end is unknown: its path, the work asked for \[force·length\], and a guess.
@@ -413,7 +449,14 @@ impl<const D: usize> Found<'_, D> {
             unknowns: system.unknowns().len(),
             plastic_share: plastic_share(trial),
             false_support: system.false_support(&self.reactions),
-            ghost_penalty: attempt.ghost_penalty,
+            ghost_penalty: match attempt.method.geometry {
+                Geometry::Moving if attempt.is_held => GHOST_PENALTY,
+                Geometry::Moving | Geometry::Given => 0.0,
+            },
+            tied_below: match attempt.method.geometry {
+                Geometry::Given if attempt.is_held => TIED_BELOW,
+                Geometry::Moving | Geometry::Given => 0.0,
+            },
             moves_by_means: system.moves_by_means(),
             drag_share: system.drag_share(u),
             work,

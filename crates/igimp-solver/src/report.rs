@@ -29,6 +29,12 @@ impl Component {
     }
 }
 
+/// A place as it is told, to a millionth of its unit.
+fn told(position: &[f64]) -> String {
+    let rounded = { position.iter() }.map(|own| ((own * 1e6).round() / 1e6).to_string());
+    rounded.collect::<Vec<_>>().join(", ")
+}
+
 /// Why a step found no equilibrium.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum StepFailure {
@@ -133,6 +139,14 @@ pub enum StepFailure {
         /// The component, from 0.
         axis: usize,
     },
+    /// The linear system is singular at a node, which nothing holds.
+    #[error("the linear system is singular at ({}) m, in the {}: nothing holds that node", told(position), component.map_or("scalar of the node", Component::name))]
+    Singular {
+        /// Place of the node \[length\].
+        position: Vec<f64>,
+        /// The component of its displacement; none for its pore pressure or nonlocal strain.
+        component: Option<Component>,
+    },
     /// The equations could not be formed.
     #[error("the equations could not be formed")]
     Assembly(#[source] AssemblyError),
@@ -167,6 +181,7 @@ impl StepFailure {
             Self::MaxIterations { .. }
             | Self::Diverged
             | Self::Stagnated
+            | Self::Singular { .. }
             | Self::Thrown { .. }
             | Self::MechanismAtOnce
             | Self::NotHeld { .. } => true,
@@ -188,7 +203,11 @@ impl StepFailure {
 
     /// Whether a linear system had no solution: a node without soil that holds it, or soil that has lost its stiffness.
     pub fn is_singular(&self) -> bool {
-        matches!(self, Self::Linear(error) if error.is_singular())
+        match self {
+            Self::Singular { .. } => true,
+            Self::Linear(error) => error.is_singular(),
+            _ => false,
+        }
     }
 
     /// How long a step may be that is made again, as a share of this one, where the failure tells \[-\].
@@ -279,6 +298,9 @@ pub struct StepReport {
     /// The ghost penalty that the step was given because a node that hardly touches soil left its
     /// system singular; zero in a step that did without \[-\].
     pub ghost_penalty: f64,
+    /// The fraction of a cell below which nodes were tied, of a step on a given geometry that was singular at one which hardly touches
+    /// soil; zero in a step that did without \[-\].
+    pub tied_below: f64,
     /// Whether the grid took over means of the motion of the particles, which lose energy, as no motion that comes closest to it
     /// was found.
     pub moves_by_means: bool,

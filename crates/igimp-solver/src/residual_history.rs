@@ -10,6 +10,9 @@ use crate::settings::NewtonSettings;
 /// A node hardly touches soil when less of the cells around it is full than this \[-\].
 const HARDLY_FULL: f64 = 0.01;
 
+/// The same of one of two nodes that the soil of a corner holds by one gradient: the other is less full \[-\].
+const CORNER_FULL: f64 = 0.05;
+
 /// Iterations without a new smallest residual after which a step is given up.
 const STAGNATION: usize = 8;
 
@@ -73,6 +76,12 @@ impl ResidualHistory {
     /// particles, seen by their gradients alone, cannot hold it.
     pub(crate) fn is_weakly_held(&self) -> bool {
         self.fill_of_singular.is_some_and(|fill| fill < HARDLY_FULL)
+    }
+
+    /// Whether the first system, of the elastic tangent, was singular at a node that touches little soil.
+    pub(crate) fn begins_weakly_held(&self) -> bool {
+        let is_first = self.residuals.len() <= 1;
+        is_first && self.fill_of_singular.is_some_and(|fill| fill < CORNER_FULL)
     }
 }
 

@@ -36,7 +36,12 @@ pub(crate) fn tells_no_limit(
         }
         _ => false,
     };
-    path_is_lost || is_driven || matches!(failure, StepFailure::Linear(_))
+    path_is_lost
+        || is_driven
+        || matches!(
+            failure,
+            StepFailure::Linear(_) | StepFailure::Singular { .. }
+        )
 }
 
 /// Describes the step that ended a stage.
@@ -88,7 +93,7 @@ pub(crate) fn is_loss_of_strength(error: &StepError, near: Option<&NearWorst>) -
             LinearSolverError::Singular { .. }
                 | LinearSolverError::NotPositiveDefinite { .. }
                 | LinearSolverError::Inaccurate { .. }
-        )
+        ) | StepFailure::Singular { .. }
     );
     is_singular && error.residuals.len() > 1 && near.is_some_and(NearWorst::is_at_strength)
 }

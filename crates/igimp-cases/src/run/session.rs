@@ -158,7 +158,7 @@ impl<const D: usize> Session<'_, D> {
             add_energy(stage, energy, report.duration);
         }
         stage.at_round_off += usize::from(report.at_round_off);
-        stage.ghost_steps += usize::from(report.ghost_penalty > 0.0);
+        stage.ghost_steps += usize::from(report.ghost_penalty > 0.0 || report.tied_below > 0.0);
         self.tally_means(stage, report);
         stage.plastic_share = report.plastic_share;
         let before = stage.false_support;

@@ -1,5 +1,6 @@
 //! What is said of slips of syntax, of keys and of values.
 
+use igimp_input::shipped::find;
 use igimp_input::{CaseFile, InputError};
 
 use crate::edits::edited;
@@ -172,6 +173,16 @@ fn implausible_values_are_told() {
         ("friction", "0.35 deg", "0.35 rad are 20 deg"),
         ("friction", "80 deg", "`clay` has friction = 80 deg"),
         ("young", "20000 GPa", "steel 210 GPa"),
+        (
+            "young",
+            "20 kPa",
+            "young = 20 kPa, 2 times its cohesion = 10 kPa",
+        ),
+        (
+            "permeability",
+            "1 m/s",
+            "`clay` has permeability = 1 m/s, outside the range",
+        ),
     ];
     for (key, value, expected) in told {
         let file = overridden(SLOPE, &[&format!("materials.clay.{key}={value}")]).unwrap();
@@ -186,11 +197,74 @@ fn implausible_values_are_told() {
         ("friction", "1.1 deg"),
         ("friction", "69 deg"),
         ("young", "210 GPa"),
+        ("young", "101 kPa"),
+        ("permeability", "1e-2 m/s"),
     ];
     for (key, value) in quiet {
         let file = overridden(SLOPE, &[&format!("materials.clay.{key}={value}")]).unwrap();
         let warnings = file.warnings();
         assert!(!warnings.contains("outside the range"), "{warnings}");
+        let is_soft = warnings.contains("hardly yields");
+        assert!(!is_soft || key == "cohesion", "{warnings}");
+    }
+}
+
+/// GOAL: values that are possible and hardly meant are told, with their places and remedies; those next to them are not.
+/// ORACLE: by hand: tan 20° = 0.364; K₀ of soil without cohesion at 20° lies between 0.49 and 2.04; E / (3 (1 − 2 ν)) of 20 MPa
+/// and 0.3 is 16.7 MPa.
+#[test]
+fn values_that_are_hardly_meant_are_told() {
+    let of = |key: &str, value: &str| {
+        let impact = find("impact").unwrap();
+        let (file, set) = match key {
+            "rigid" => (
+                ("impact.toml", impact.text),
+                format!("rigid.0.interface={value}"),
+            ),
+            "damping" => (
+                ("impact.toml", impact.text),
+                format!(
+                    "stages.fall.rayleigh={{ ratio = {value}, periods = [\"0.1 s\", \"1 s\"] }}"
+                ),
+            ),
+            "water" => (
+                SLOPE,
+                format!(
+                    "materials.clay={{ model = \"mohr-coulomb\", unit_weight = \"20 kN/m3\", young = \"20 MPa\", poisson = 0.3, \
+                     cohesion = \"10 kPa\", friction = \"20 deg\", dilation = \"0 deg\", drainage = \"undrained\", pore_water = \"{value}\" }}"
+                ),
+            ),
+            key => (SLOPE, format!("{key}={value}")),
+        };
+        overridden(file, &[&set]).map(|file| file.warnings())
+    };
+    let said = [
+        (
+            "rigid",
+            "{ friction = 20 }",
+            "{ friction = 0.4 }",
+            "angle = \"20 deg\"",
+        ),
+        (
+            "rigid",
+            "{ adhesion_share = 1.5 }",
+            "{ adhesion_share = 1 }",
+            "more than the strength of the soil",
+        ),
+        (
+            "water",
+            "10 kPa",
+            "17 MPa",
+            "softer than the soil around it",
+        ),
+        ("damping", "5", "0.05", "0.05 are 5 %"),
+        ("materials.clay.k0", "8", "0.6", "beyond its strength"),
+    ];
+    for (key, slip, meant, told) in said {
+        let warnings = of(key, slip).unwrap();
+        assert!(warnings.contains(told), "{key}: {warnings}");
+        let warnings = of(key, meant).unwrap();
+        assert!(!warnings.contains(told), "{key}: {warnings}");
     }
 }
 

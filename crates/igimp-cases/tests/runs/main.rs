@@ -18,3 +18,4 @@ mod revolution;
 mod run_out;
 mod swapped;
 mod unmet;
+mod without_hold;

@@ -130,6 +130,26 @@ fn material<const D: usize>(
     );
     if problems.errors() == before {
         plausible::check(name, &constants(own, common), problems);
+        let varies = [&cohesive, &friction].map(|own| profile(own.as_ref()).is_some());
+        let stated = common.k0.as_ref().ok().and_then(Option::as_ref);
+        if let (Some(stated), Some(strength), Some(weight), [false, false]) =
+            (stated, strength, unit_weight, varies)
+            && let Either::First(value) = **stated
+        {
+            let of_body = |body: &BodyPart<D>| {
+                let (lower, upper) = body.region.bounds();
+                (body.material == extent.material).then(|| upper[D - 1] - lower[D - 1])
+            };
+            let heights = extent.bodies.iter().flatten().filter_map(of_body);
+            let height = heights.fold(0.0, f64::max);
+            let k0 = At {
+                value,
+                place: stated.place,
+                key_place: stated.key_place,
+                written: stated.written,
+            };
+            plausible::check_k0(name, &k0, (strength, height * weight.constant), problems);
+        }
     }
     let saturated = saturated(name, common, unit_weight, problems);
     let stiffness = match (linear, strength) {
@@ -312,6 +332,9 @@ fn constants(own: &keys::Material, common: &MaterialCommon) -> Vec<(&'static str
     if let Some(own) = frictional::keys_of(&own.form) {
         all.push(("cohesion", constant(&own.cohesion)));
         all.push(("friction", constant(&own.friction)));
+    }
+    if let Ok(Some(own)) = &common.permeability {
+        all.push(("permeability", water::greatest(own)));
     }
     let stated = all.into_iter().filter_map(|(key, own)| Some((key, own?)));
     stated.collect()

@@ -161,7 +161,10 @@ fn shear(
                 .help("keep one of them");
             return None;
         }
-        (Some(friction), None) => **friction,
+        (Some(friction), None) => {
+            check_coefficient(friction, problems);
+            **friction
+        }
         (None, angle) => angle.as_ref().map_or(0.0, |angle| angle.tan()),
     };
     if !(0.0..=1e3).contains(&friction) {
@@ -180,6 +183,15 @@ fn shear(
             return None;
         }
         (None, Some(share)) => {
+            if **share > 1.0 {
+                let message = format!(
+                    "adhesion_share = {} is more than the strength of the soil, which yields first",
+                    number(**share)
+                );
+                problems
+                    .warning(share.place, message)
+                    .help("it is a share: 1 is all of the strength, 0.5 half of it");
+            }
             for material in materials.iter().flatten() {
                 let what = match material.strength {
                     Strength::Elastic => "is elastic and has no strength",
@@ -198,6 +210,31 @@ fn shear(
         (stress, None) => Adhesion::Stress(stress.as_ref().map_or(0.0, |own| **own)),
     };
     Some(RigidShear::Limited { friction, adhesion })
+}
+
+/// Coefficients of friction above this are told of \[-\]: 56 deg.
+const MOST_FRICTION: f64 = 1.5;
+
+/// Warns of a coefficient of friction that may be meant to be an angle.
+fn check_coefficient(friction: &At<f64>, problems: &mut Problems) {
+    let value = **friction;
+    if value <= MOST_FRICTION {
+        return;
+    }
+    let message = format!(
+        "friction = {} is a coefficient, that of an angle of {} deg",
+        number(value),
+        number(value.atan().to_degrees())
+    );
+    let help = match value < 80.0 && value >= 5.0 {
+        true => format!(
+            "it is the tangent of the angle: {0} deg are friction = {1}; or write angle = \"{0} deg\"",
+            number(value),
+            number(value.to_radians().tan())
+        ),
+        false => "it is the tangent of the angle: 20 deg are friction = 0.364".to_owned(),
+    };
+    problems.warning(friction.place, message).help(help);
 }
 
 /// The interface of each side.

@@ -120,6 +120,9 @@ pub fn step(number: usize, steps: usize, progress: f64, report: &StepReport) -> 
     if report.ghost_penalty > 0.0 {
         line += "  (with a ghost penalty)";
     }
+    if report.tied_below > 0.0 {
+        line += "  (with corners tied)";
+    }
     if report.moves_by_means {
         line += "  (from means of the motion)";
     }
@@ -325,6 +328,7 @@ mod tests {
             plastic_share: 0.031,
             false_support: 0.0,
             ghost_penalty: 0.0,
+            tied_below: 0.0,
             moves_by_means: false,
             drag_share: 0.0,
             work: None,

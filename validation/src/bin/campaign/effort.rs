@@ -78,7 +78,8 @@ fn cause(failure: &StepFailure) -> &'static str {
         StepFailure::Assembly(_) => "no equations",
         StepFailure::Linear(
             LinearSolverError::Singular { .. } | LinearSolverError::NotPositiveDefinite { .. },
-        ) => "singular tangent",
+        )
+        | StepFailure::Singular { .. } => "singular tangent",
         StepFailure::Linear(LinearSolverError::Inaccurate { .. }) => "inaccurate solution",
         StepFailure::Linear(_) => "linear solver fails",
         StepFailure::FreeField(within) => cause(within),

@@ -65,9 +65,14 @@ pub(crate) fn advice<const D: usize>(
             LinearSolverError::Singular { .. }
             | LinearSolverError::NotPositiveDefinite { .. }
             | LinearSolverError::Inaccurate { .. },
-        ) if yielding => no_equilibrium(case, (number, stage), error, seen),
+        )
+        | StepFailure::Singular { .. }
+            if yielding => no_equilibrium(case, (number, stage), error, seen),
         StepFailure::Assembly(assembly) => unformed(case, stage, assembly),
-        StepFailure::Linear(linear) => unsolved(case, stage, linear),
+        StepFailure::Linear(LinearSolverError::OutOfMemory { .. }) => {
+            vec!["a coarser cell in [grid], or a computer with more memory".to_owned()]
+        }
+        StepFailure::Linear(_) | StepFailure::Singular { .. } => unsolved(case, stage),
         StepFailure::TooDeep { body, .. } => too_deep(case, stage, body),
         StepFailure::Penetration(Penetration { body, position, .. }) => {
             swallowed(case, stage, body, *position)
@@ -256,11 +261,16 @@ fn not_held<const D: usize>(
         axis(D - 1)
     );
     if touches {
-        return vec![
-            hold,
-            format!("a stage before \"{name}\" that presses it on: {down}"),
-            "an interface with friction or adhesion, if it slides".to_owned(),
-        ];
+        let slides = matches!(component, Component::Displacement(k) if k + 1 < D);
+        let pressed = format!("a stage before \"{name}\" that presses it on: {down}");
+        return match slides {
+            true => vec![
+                "less that pushes it, or an interface with more friction or adhesion: it slides, as the push exceeds what its base carries"
+                    .to_owned(),
+                hold,
+            ],
+            false => vec![hold, pressed],
+        };
     }
     vec![
         format!("a stage before \"{name}\" that moves it until soil touches it: {down}"),
@@ -297,14 +307,7 @@ fn unformed<const D: usize>(case: &Case<D>, stage: &Stage, error: &AssemblyError
     }
 }
 
-fn unsolved<const D: usize>(
-    case: &Case<D>,
-    stage: &Stage,
-    error: &LinearSolverError,
-) -> Vec<String> {
-    if matches!(error, LinearSolverError::OutOfMemory { .. }) {
-        return vec!["a coarser cell in [grid], or a computer with more memory".to_owned()];
-    }
+fn unsolved<const D: usize>(case: &Case<D>, stage: &Stage) -> Vec<String> {
     let sides = &case.boundaries;
     let mut out = Vec::new();
     if let StageKind::Dynamic(own) = &stage.kind

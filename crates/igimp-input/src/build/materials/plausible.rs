@@ -1,6 +1,7 @@
 //! Warnings about constant values outside the range of soil, rock and structures: mostly a slip of the unit, of a thousand
 //! or of rad for deg. Values that vary in space are not looked at.
 
+use igimp_model::Strength;
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::read::At;
@@ -15,7 +16,7 @@ struct Plausible {
     help: &'static str,
 }
 
-const PLAUSIBLE: [Plausible; 5] = [
+const PLAUSIBLE: [Plausible; 6] = [
     Plausible {
         key: "unit_weight",
         between: [0.2e3, 200e3],
@@ -46,7 +47,16 @@ const PLAUSIBLE: [Plausible; 5] = [
         unit: (1.0_f64.to_radians(), "deg"),
         help: "soil has 15 to 45 deg; 0.35 rad are 20 deg",
     },
+    Plausible {
+        key: "permeability",
+        between: [1e-16, 0.1],
+        unit: (1.0, "m/s"),
+        help: "clay has 1e-11 to 1e-8 m/s, sand 1e-6 to 1e-3, gravel up to 0.1",
+    },
 ];
+
+/// Young's modulus of soil over its undrained strength or its cohesion, at least \[-\].
+const LEAST_STIFFNESS: f64 = 10.0;
 
 /// Checks the constants of a material, with their keys; zero is plausible for all of them.
 pub(super) fn check(name: &str, constants: &[(&str, At<f64>)], problems: &mut Problems) {
@@ -71,4 +81,72 @@ pub(super) fn check(name: &str, constants: &[(&str, At<f64>)], problems: &mut Pr
                 .help(plausible.help);
         }
     }
+    check_stiffness(name, constants, problems);
+}
+
+/// Warns of soil that would have to be strained by tenths before it yields.
+fn check_stiffness(name: &str, constants: &[(&str, At<f64>)], problems: &mut Problems) {
+    let of = |key: &str| constants.iter().find(|(own, _)| *own == key);
+    let strength = of("cu").or_else(|| of("cohesion"));
+    let (Some((_, young)), Some((key, strength))) = (of("young"), strength) else {
+        return;
+    };
+    if **young >= LEAST_STIFFNESS * **strength {
+        return;
+    }
+    let message = format!(
+        "`{}` has young = {} kPa, {} times its {key} = {} kPa: it hardly yields",
+        clip(name, 40),
+        number(**young / 1e3),
+        number(**young / **strength),
+        number(**strength / 1e3)
+    );
+    problems
+        .warning(young.place, message)
+        .help("soil has 50 to 1000 times its strength; the unit of young may be meant to be MPa");
+}
+
+/// Warns of a K₀ at which soil is beyond its strength under half of the weight \[Pa\] at the bottom of its bodies, so that water below
+/// a table is no matter. Strength that varies is not looked at.
+pub(super) fn check_k0(
+    name: &str,
+    k0: &At<f64>,
+    (strength, weight): (Strength, f64),
+    problems: &mut Problems,
+) {
+    let (cohesion, friction_angle) = match strength {
+        Strength::MohrCoulomb {
+            cohesion,
+            friction_angle,
+            ..
+        } => (cohesion, friction_angle),
+        Strength::Tresca { undrained_strength } => (undrained_strength, 0.0),
+        _ => return,
+    };
+    let upright = 0.5 * weight;
+    let level = **k0 * upright;
+    let (sin, cos) = friction_angle.sin_cos();
+    let resistance = cohesion * cos + 0.5 * (upright + level) * sin;
+    if 0.5 * (level - upright).abs() <= 1.001 * resistance {
+        return;
+    }
+    let ends = [(1.0 - sin) / (1.0 + sin), (1.0 + sin) / (1.0 - sin)];
+    let help = match friction_angle > 0.0 {
+        true => format!(
+            "soil without cohesion has {} to {}; k0 = \"jaky\" is {}",
+            number(ends[0]),
+            number(ends[1]),
+            number(1.0 - sin)
+        ),
+        false => "undrained clay has stresses that differ by twice its cu at most: k0 closer to 1"
+            .to_owned(),
+    };
+    let message = format!(
+        "`{}` with k0 = {} is beyond its strength: {} kPa upright and {} kPa level in its lower half",
+        clip(name, 40),
+        number(**k0),
+        number(upright / 1e3),
+        number(level / 1e3)
+    );
+    problems.warning(k0.place, message).help(help);
 }

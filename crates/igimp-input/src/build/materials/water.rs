@@ -27,6 +27,26 @@ pub(super) struct Permeability {
     pub(super) void_law: Option<VoidLaw>,
 }
 
+/// The permeability along the bedding as it is stated, if it is one number.
+pub(super) fn greatest(stated: &At<Either<f64, keys::Permeability>>) -> Option<At<f64>> {
+    let at = |value: f64, place, key_place, written| At {
+        value,
+        place,
+        key_place,
+        written,
+    };
+    match &**stated {
+        Either::First(own) => Some(at(*own, stated.place, stated.key_place, stated.written)),
+        Either::Second(own) => {
+            let along = &own.horizontal;
+            let Either::First(value) = along.value else {
+                return None;
+            };
+            Some(at(value, along.place, along.key_place, along.written))
+        }
+    }
+}
+
 /// The permeability, if the material states one.
 pub(super) fn permeability<const D: usize>(
     common: &MaterialCommon,
@@ -207,6 +227,9 @@ pub(super) fn drainage(
     if strength.is_some() {
         frictional::never_fails(model, problems)?;
     }
+    if let Some(water) = pore_water {
+        softer_than_soil(water, stiffness, problems);
+    }
     if let Some(stiffness) = pore_water {
         return Some(Drainage::Undrained {
             stiffness: (**stiffness).into(),
@@ -219,6 +242,26 @@ pub(super) fn drainage(
         goes_with_soil: true,
     };
     Some(Drainage::Undrained { stiffness, flows })
+}
+
+/// Warns of water that is softer than the skeleton of the given Young's modulus and Poisson's ratio: the skeleton carries what is put on
+/// at once.
+fn softer_than_soil(water: &At<f64>, stiffness: Option<[f64; 2]>, problems: &mut Problems) {
+    let Some([young, poisson]) = stiffness else {
+        return;
+    };
+    let bulk = young / (3.0 * (1.0 - 2.0 * poisson));
+    if **water >= bulk {
+        return;
+    }
+    let message = format!(
+        "the water in the pores has {} kPa and is softer than the soil around it, whose bulk modulus is {} kPa",
+        number(**water / 1e3),
+        number(bulk / 1e3)
+    );
+    problems
+        .warning(water.place, message)
+        .help("pore_water is the bulk modulus of water over the porosity: \"5.5 GPa\" is 2.2 GPa over 0.4");
 }
 
 /// The stiffness of the pore water \[Pa\] that makes undrained soil as incompressible as its Poisson's ratio says, from Young's

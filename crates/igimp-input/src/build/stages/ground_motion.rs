@@ -325,6 +325,15 @@ pub(super) fn rayleigh(own: &keys::Rayleigh, problems: &mut Problems) -> Option<
             .help("name two periods between which the motion has most of its energy");
         return None;
     }
+    if *own.ratio > 1.0 {
+        let message = format!(
+            "a damping ratio of {} is so many times the critical one: nothing swings",
+            short(*own.ratio)
+        );
+        problems
+            .warning(own.ratio.place, message)
+            .help("it is a share: 0.05 are 5 %; soil has 0.01 to 0.05 beside its plastic work");
+    }
     Some(Rayleigh::at(
         [*own.ratio; 2],
         periods.map(|period| 1.0 / period),
