@@ -192,7 +192,10 @@ fn held_again(method: &Method, history: &ResidualHistory) -> Option<Method> {
     let own = &method.small_cuts;
     let mut held = method.clone();
     match method.geometry {
-        Geometry::Moving if own.ghost_penalty == 0.0 && history.is_weakly_held() => {
+        Geometry::Moving
+            if own.ghost_penalty == 0.0
+                && (history.is_weakly_held() || history.begins_weakly_held()) =>
+        {
             held.small_cuts.ghost_penalty = GHOST_PENALTY;
         }
         Geometry::Given if own.below < TIED_BELOW && history.begins_weakly_held() => {
