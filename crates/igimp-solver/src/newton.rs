@@ -137,8 +137,7 @@ fn step_of_body<const D: usize>(
         settings,
         from,
         to,
-        is_held: false,
-        is_guarded: false,
+        again: None,
         on_path: None,
         measures_work: is_short_of_mechanism,
         is_short_of_mechanism,
@@ -157,14 +156,14 @@ fn step_of_body<const D: usize>(
     });
     let firmly = held.as_ref().map(|method| Attempt {
         method,
-        is_held: true,
+        again: Some(Again::Held),
         ..attempt
     });
     let guarded = if guards_again && failure.is_want_of_equilibrium()
         || method.geometry == Geometry::Given && has_no_stiffness(&failure, &workspace.trial)
     {
         Some(Attempt {
-            is_guarded: true,
+            again: Some(Again::Guarded),
             ..attempt
         })
     } else {
@@ -251,8 +250,7 @@ pub(crate) fn step_on_path<const D: usize>(
                 settings,
                 from,
                 to,
-                is_held: false,
-                is_guarded: false,
+                again: None,
                 on_path: match target {
                     Target::Factor { .. } => None,
                     Target::Work { work, guess } => Some((load_path, *work, guess)),
@@ -273,7 +271,7 @@ pub(crate) fn step_on_path<const D: usize>(
                 .flatten();
             let firmly = again.as_ref().map(|method| Attempt {
                 method,
-                is_held: true,
+                again: Some(Again::Held),
                 ..attempt
             });
             let mut own = ResidualHistory::default();
@@ -312,6 +310,15 @@ pub(crate) enum Target<const D: usize> {
     },
 }
 
+/// How a step is tried that failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Again {
+    /// Nodes that hardly touch soil are held: by a ghost penalty, or tied.
+    Held,
+    /// Corrections are guarded, and tangents regularised.
+    Guarded,
+}
+
 /// What one search for equilibrium is given.
 struct Attempt<'a, const D: usize> {
     method: &'a Method,
@@ -320,10 +327,8 @@ struct Attempt<'a, const D: usize> {
     /// Load factors at the start and at the end \[-\].
     from: f64,
     to: f64,
-    /// Whether nodes that hardly touch soil are held in a step that is tried again: by a ghost penalty, or tied.
-    is_held: bool,
-    /// Whether corrections are guarded and tangents regularised.
-    is_guarded: bool,
+    /// How a step is tried that failed.
+    again: Option<Again>,
     /// Where the load factor at the end is unknown: its path, the work asked for \[force·length\], and a guess.
     on_path: Option<(&'a dyn LoadPath<D>, f64, &'a Guess<D>)>,
     /// Whether the work of the step is measured.
@@ -355,7 +360,7 @@ fn equilibrium<const D: usize>(
     let mut u = vec![[0.0; D]; system.node_count()];
     let of_step = (system, &stencils);
     let mut corrector = Corrector::new(of_step, grid, settings, workspace, history, set_up)
-        .guarded_if(attempt.is_guarded);
+        .guarded_if(attempt.again == Some(Again::Guarded));
     if let Some((load_path, work, guess)) = attempt.on_path {
         let points = &body.load_points;
         let asked = (attempt.from, work);
@@ -442,6 +447,10 @@ impl<const D: usize> Found<'_, D> {
         if attempt.is_short_of_mechanism && work.as_ref().is_some_and(is_mechanism) {
             return Err(StepFailure::MechanismAtOnce);
         }
+        let held = |by: f64, geometry: Geometry| {
+            let is_held = attempt.again == Some(Again::Held) && attempt.method.geometry == geometry;
+            if is_held { by } else { 0.0 }
+        };
         Ok(StepReport {
             from: attempt.from,
             to: attempt.to,
@@ -452,14 +461,8 @@ impl<const D: usize> Found<'_, D> {
             unknowns: system.unknowns().len(),
             plastic_share: plastic_share(trial),
             false_support: system.false_support(&self.reactions),
-            ghost_penalty: match attempt.method.geometry {
-                Geometry::Moving if attempt.is_held => GHOST_PENALTY,
-                Geometry::Moving | Geometry::Given => 0.0,
-            },
-            tied_below: match attempt.method.geometry {
-                Geometry::Given if attempt.is_held => TIED_BELOW,
-                Geometry::Moving | Geometry::Given => 0.0,
-            },
+            ghost_penalty: held(GHOST_PENALTY, Geometry::Moving),
+            tied_below: held(TIED_BELOW, Geometry::Given),
             moves_by_means: system.moves_by_means(),
             drag_share: system.drag_share(u),
             work,

@@ -131,24 +131,8 @@ fn material<const D: usize>(
     if problems.errors() == before {
         plausible::check(name, &constants(own, common), problems);
         let varies = [&cohesive, &friction].map(|own| profile(own.as_ref()).is_some());
-        let stated = common.k0.as_ref().ok().and_then(Option::as_ref);
-        if let (Some(stated), Some(strength), Some(weight), [false, false]) =
-            (stated, strength, unit_weight, varies)
-            && let Either::First(value) = **stated
-        {
-            let of_body = |body: &BodyPart<D>| {
-                let (lower, upper) = body.region.bounds();
-                (body.material == extent.material).then(|| upper[D - 1] - lower[D - 1])
-            };
-            let heights = extent.bodies.iter().flatten().filter_map(of_body);
-            let height = heights.fold(0.0, f64::max);
-            let k0 = At {
-                value,
-                place: stated.place,
-                key_place: stated.key_place,
-                written: stated.written,
-            };
-            plausible::check_k0(name, &k0, (strength, height * weight.constant), problems);
+        if let (Some(strength), Some(weight), [false, false]) = (strength, unit_weight, varies) {
+            check_at_rest(common, strength, weight, extent, problems);
         }
     }
     let saturated = saturated(name, common, unit_weight, problems);
@@ -338,6 +322,37 @@ fn constants(own: &keys::Material, common: &MaterialCommon) -> Vec<(&'static str
     }
     let stated = all.into_iter().filter_map(|(key, own)| Some((key, own?)));
     stated.collect()
+}
+
+/// Warns of a K₀ that the strength of the bodies of a material does not allow.
+fn check_at_rest<const D: usize>(
+    common: &MaterialCommon,
+    strength: Strength,
+    weight: &Property,
+    extent: Extent<'_, D>,
+    problems: &mut Problems,
+) {
+    let Ok(Some(stated)) = &common.k0 else {
+        return;
+    };
+    let Either::First(value) = **stated else {
+        return;
+    };
+    let height = |body: &BodyPart<D>| {
+        let (lower, upper) = body.region.bounds();
+        upper[D - 1] - lower[D - 1]
+    };
+    let bodies = extent.bodies.iter().flatten();
+    let own = bodies.filter(|body| body.material == extent.material);
+    let highest = own.map(height).fold(0.0, f64::max);
+    let k0 = At {
+        value,
+        place: stated.place,
+        key_place: stated.key_place,
+        written: stated.written,
+    };
+    let loaded = (strength, highest * weight.constant);
+    plausible::check_k0(extent.name, &k0, loaded, problems);
 }
 
 /// K₀ of a material, if it states one.

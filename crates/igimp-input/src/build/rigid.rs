@@ -226,13 +226,14 @@ fn check_coefficient(friction: &At<f64>, problems: &mut Problems) {
         number(value),
         number(value.atan().to_degrees())
     );
-    let help = match value < 80.0 && value >= 5.0 {
-        true => format!(
+    let help = if (5.0..80.0).contains(&value) {
+        format!(
             "it is the tangent of the angle: {0} deg are friction = {1}; or write angle = \"{0} deg\"",
             number(value),
             number(value.to_radians().tan())
-        ),
-        false => "it is the tangent of the angle: 20 deg are friction = 0.364".to_owned(),
+        )
+    } else {
+        "it is the tangent of the angle: 20 deg are friction = 0.364".to_owned()
     };
     problems.warning(friction.place, message).help(help);
 }

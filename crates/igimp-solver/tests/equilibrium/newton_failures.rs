@@ -11,7 +11,6 @@ use crate::body_support::{
     unit_grid, von_mises,
 };
 use igimp_assembly::{AssemblyError, Constraints, LoadPoint, Method, SharedLaw, StepConditions};
-use igimp_linear::LinearSolverError;
 use igimp_material::MaterialError;
 use igimp_shape::Grid;
 use igimp_solver::{Body, NewtonSettings, StepError, StepFailure};

@@ -67,7 +67,10 @@ pub(crate) fn advice<const D: usize>(
             | LinearSolverError::Inaccurate { .. },
         )
         | StepFailure::Singular { .. }
-            if yielding => no_equilibrium(case, (number, stage), error, seen),
+            if yielding =>
+        {
+            no_equilibrium(case, (number, stage), error, seen)
+        }
         StepFailure::Assembly(assembly) => unformed(case, stage, assembly),
         StepFailure::Linear(LinearSolverError::OutOfMemory { .. }) => {
             vec!["a coarser cell in [grid], or a computer with more memory".to_owned()]
@@ -82,18 +85,7 @@ pub(crate) fn advice<const D: usize>(
             component,
             touches,
         } => not_held::<D>(stage, body, *component, *touches),
-        StepFailure::Thrown { body, .. } => vec![
-            format!(
-                "{} for the rigid body \"{body}\" in stage \"{}\", in place of moment or free: that holds it",
-                if D == 2 {
-                    "rotation = \"0 deg\""
-                } else {
-                    "rotation_x = \"0 deg\", rotation_y = \"0 deg\""
-                },
-                stage.name
-            ),
-            "a stage of type dynamic: a body that falls over or slides away has no equilibrium to go on in".to_owned(),
-        ],
+        StepFailure::Thrown { body, .. } => thrown::<D>(stage, body),
         StepFailure::TooLong { .. } if stage.consolidation.is_some() => vec![
             format!("a longer duration in stage \"{}\"", stage.name),
             finer_cell(case),
@@ -116,9 +108,7 @@ pub(crate) fn advice<const D: usize>(
         StepFailure::MaxIterations { .. }
         | StepFailure::Diverged
         | StepFailure::Stagnated
-        | StepFailure::MechanismAtOnce => {
-            no_equilibrium(case, (number, stage), error, seen)
-        }
+        | StepFailure::MechanismAtOnce => no_equilibrium(case, (number, stage), error, seen),
     };
     try_this.truncate(MOST);
     try_this
@@ -232,6 +222,19 @@ fn swallowed<const D: usize>(
     ]
 }
 
+/// A rigid body that a step would carry far.
+fn thrown<const D: usize>(stage: &Stage, body: &str) -> Vec<String> {
+    let key = match D {
+        2 => "rotation = \"0 deg\"",
+        _ => "rotation_x = \"0 deg\", rotation_y = \"0 deg\"",
+    };
+    let name = &stage.name;
+    vec![
+        format!("{key} for the rigid body \"{body}\" in stage \"{name}\", in place of moment or free: that holds it"),
+        "a stage of type dynamic: a body that falls over or slides away has no equilibrium to go on in".to_owned(),
+    ]
+}
+
 /// A rigid body that is free, or has a force, where nothing holds it.
 fn not_held<const D: usize>(
     stage: &Stage,
@@ -261,16 +264,12 @@ fn not_held<const D: usize>(
         axis(D - 1)
     );
     if touches {
-        let slides = matches!(component, Component::Displacement(k) if k + 1 < D);
-        let pressed = format!("a stage before \"{name}\" that presses it on: {down}");
-        return match slides {
-            true => vec![
-                "less that pushes it, or an interface with more friction or adhesion: it slides, as the push exceeds what its base carries"
-                    .to_owned(),
-                hold,
-            ],
-            false => vec![hold, pressed],
-        };
+        if matches!(component, Component::Displacement(k) if k + 1 < D) {
+            let less = "less that pushes it, or an interface with more friction or adhesion: it slides, as the push exceeds what its base carries";
+            return vec![less.to_owned(), hold];
+        }
+        let press = format!("a stage before \"{name}\" that presses it on: {down}");
+        return vec![hold, press];
     }
     vec![
         format!("a stage before \"{name}\" that moves it until soil touches it: {down}"),

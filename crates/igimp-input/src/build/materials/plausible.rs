@@ -131,15 +131,15 @@ pub(super) fn check_k0(
         return;
     }
     let ends = [(1.0 - sin) / (1.0 + sin), (1.0 + sin) / (1.0 - sin)];
-    let help = match friction_angle > 0.0 {
-        true => format!(
+    let help = if friction_angle > 0.0 {
+        format!(
             "soil without cohesion has {} to {}; k0 = \"jaky\" is {}",
             number(ends[0]),
             number(ends[1]),
             number(1.0 - sin)
-        ),
-        false => "undrained clay has stresses that differ by twice its cu at most: k0 closer to 1"
-            .to_owned(),
+        )
+    } else {
+        "undrained clay has stresses that differ by twice its cu at most: k0 closer to 1".to_owned()
     };
     let message = format!(
         "`{}` with k0 = {} is beyond its strength: {} kPa upright and {} kPa level in its lower half",
