@@ -149,6 +149,9 @@ impl<const D: usize> Stages<D> {
         for text in std::mem::take(&mut output.notes_for_user) {
             session.tell(&Event::Warning { text: &text });
         }
+        for text in std::mem::take(&mut output.warnings) {
+            session.warn(text);
+        }
         session.output = Some(output);
         if let Some(systems) = &target.systems {
             session.export = Some(Export::open(systems, stages.first)?);
@@ -370,6 +373,10 @@ impl<const D: usize> Stages<D> {
         let rows = checks::at_end_of_stage(case, &session.records, &moment, is_reached);
         session.summary.checks.extend(rows);
         let rows = checks::of_sections(case, number, &tables, is_reached);
+        if let Some(output) = &mut session.output {
+            output.note_readings(case, &session.records, number, &rows);
+        }
+        let rows = rows.into_iter().map(|(_, row)| row);
         session.summary.checks.extend(rows);
         if let Some(output) = &mut session.output {
             output.end_of_stage(session.model, number, state, summary, &tables)?;
@@ -387,8 +394,10 @@ impl<const D: usize> Stages<D> {
     ) -> Result<Run<D>, CaseError> {
         let case = session.model.case;
         if !session.summary.interrupted {
-            let of_curves =
-                checks::of_curves(case, &session.records.curves, &session.summary.stages);
+            let since = session.output.as_ref();
+            let since = since.map_or_else(Vec::new, |output| output.curves_since(case));
+            let (tables, stages) = (&session.records.curves, &session.summary.stages);
+            let of_curves = checks::of_curves(case, tables, stages, &since);
             for stage in session.summary.stages.len()..case.stages.len() {
                 let rows = checks::beyond(case, &session.records, stage);
                 session.summary.checks.extend(rows);

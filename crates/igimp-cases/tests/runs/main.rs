@@ -8,6 +8,7 @@ mod resuming;
 mod column;
 mod engine;
 mod factors;
+mod from_stage;
 mod given_law;
 mod in_space;
 mod killed;

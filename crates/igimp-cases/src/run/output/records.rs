@@ -3,12 +3,11 @@
 use igimp_assembly::{Particles, SharedLaw};
 use igimp_geometry::SeedError;
 use igimp_model::{Case, CheckTime, Field, Quantity, StageKind};
-use igimp_results::fields;
+use igimp_results::fields::{self, place::Place};
 use igimp_results::summary::EnergySummary;
 use igimp_results::tables::table::Table;
 
 use super::moment::{Moment, kinetic_energy, moment_columns};
-use super::place::Place;
 use crate::error::CaseError;
 use crate::run::model::reduced;
 use crate::run::{reinforcement, rigid};

@@ -2,7 +2,7 @@
 //! the particles around it best (theory, eq. 40h). Fields that are linear are exact.
 
 use igimp_assembly::Particles;
-use igimp_results::measure::nearest;
+use crate::measure::nearest;
 
 /// Particles are around another one as far as their domains reach, and by this share further \[-\].
 const MARGIN: f64 = 0.25;
@@ -18,9 +18,9 @@ const FLAT: f64 = 1e-12;
 
 /// A place in a body: the particles nearest to it.
 #[derive(Clone, Debug)]
-pub(crate) struct Place {
+pub struct Place {
     /// The number of the nearest particle.
-    pub(crate) nearest: usize,
+    pub nearest: usize,
     /// That particle, and those of the same soil that are as near.
     anchors: Vec<Anchor>,
 }
@@ -39,7 +39,7 @@ struct Anchor {
 
 impl Place {
     /// The place of a point \[m\], where the particles stand now; none without a particle within reach \[m\].
-    pub(crate) fn of<const D: usize>(
+    pub fn of<const D: usize>(
         particles: &Particles<D>,
         point: &[f64; D],
         reach: f64,
@@ -48,7 +48,7 @@ impl Place {
     }
 
     /// The place of a point near a particle.
-    pub(crate) fn near<const D: usize>(
+    pub fn near<const D: usize>(
         particles: &Particles<D>,
         particle: usize,
         point: &[f64; D],
@@ -75,7 +75,7 @@ impl Place {
 
     /// The value of a field of particles at the place, the mean of those that its nearest particles tell; not a number where none
     /// of them is there.
-    pub(crate) fn value<const D: usize>(
+    pub fn value<const D: usize>(
         &self,
         particles: &Particles<D>,
         field: impl Fn(usize) -> f64,
