@@ -357,10 +357,12 @@ impl<const D: usize> Stages<D> {
             _ => sections::read(session.model, state, number)?,
         };
         let resistance = session.last_resistance;
+        let model = session.model;
         let moment = Moment {
             stage: number,
             number: summary.steps,
             progress: summary.reached,
+            grid: &model.grid(model.lowered(&state.controls))?,
             particles: &state.body.particles,
             rigid: &state.body.rigid,
             reinforcement: &state.body.reinforcement,

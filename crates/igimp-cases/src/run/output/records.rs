@@ -3,7 +3,7 @@
 use igimp_assembly::{Particles, SharedLaw};
 use igimp_geometry::SeedError;
 use igimp_model::{Case, CheckTime, Field, Quantity, StageKind};
-use igimp_results::fields::{self, place::Place};
+use igimp_results::fields::place::Place;
 use igimp_results::summary::EnergySummary;
 use igimp_results::tables::table::Table;
 
@@ -153,8 +153,7 @@ impl Records {
         reduced(case, &self.laws, &moment.controls.srf).unwrap_or_else(|_| self.laws.clone())
     }
 
-    /// A field at the material point of a monitor; not a number while that is not there. The length of a vector is that of its
-    /// components there.
+    /// A field at the material point of a monitor; not a number while that is not there.
     fn at_monitor<const D: usize>(
         &self,
         monitor: usize,
@@ -162,18 +161,7 @@ impl Records {
         moment: &Moment<'_, D>,
         laws: &[SharedLaw],
     ) -> f64 {
-        let (place, particles) = (&self.watched[monitor], moment.particles);
-        let vectors = match field {
-            Field::Displacement => Some(&particles.displacement),
-            Field::Speed => Some(&particles.velocity),
-            Field::Acceleration => Some(&particles.acceleration),
-            _ => None,
-        };
-        if let Some(vectors) = vectors {
-            let component = |axis: usize| place.value(particles, |p| vectors[p][axis]);
-            return fields::length::<D>(&std::array::from_fn(component));
-        }
-        place.value(particles, |p| fields::value(field, particles, p, laws))
+        self.watched[monitor].field(field, moment.particles, laws, moment.grid)
     }
 
     /// A quantity of a moment, in SI units.
