@@ -146,6 +146,11 @@ impl<const D: usize> Stages<D> {
                 session.warn(text);
             }
         }
+        for text in &target.warnings {
+            if !session.summary.warnings.contains(text) {
+                session.summary.warnings.push(text.clone());
+            }
+        }
         for text in std::mem::take(&mut output.notes_for_user) {
             session.tell(&Event::Warning { text: &text });
         }
