@@ -3,8 +3,6 @@
 //! Where there is water, normal stresses are total (σ) or effective (σ′ = σ + u I, tension positive) by name; without it the
 //! two are the same numbers. Shear stress, deviatoric stress, plastic strain and mobilised strength are those of the law.
 
-pub mod place;
-
 use igimp_assembly::{Particles, SharedLaw};
 use igimp_material::{
     ConstitutiveModel, InternalVariable, Principal, ShearStrength, Tensor, principal_values,

@@ -1,5 +1,7 @@
 //! Measurements on a body of particles: oscillation of a field, values along a line, averages.
 
+pub mod place;
+
 use igimp_assembly::Particles;
 
 use crate::fields::length;

@@ -3,7 +3,7 @@
 use igimp_assembly::{Particles, SharedLaw};
 use igimp_geometry::SeedError;
 use igimp_model::{Case, CheckTime, Field, Quantity, StageKind};
-use igimp_results::fields::place::Place;
+use igimp_results::measure::place::Place;
 use igimp_results::summary::EnergySummary;
 use igimp_results::tables::table::Table;
 

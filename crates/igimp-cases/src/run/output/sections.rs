@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use igimp_assembly::{AssemblyError, Particles, SharedLaw};
 use igimp_model::{Average, Case, Cut, Section};
 use igimp_report::pictures::file_name;
-use igimp_results::fields::{self, place::Place};
-use igimp_results::measure::nearest;
+use igimp_results::fields;
+use igimp_results::measure::{nearest, place::Place};
 use igimp_results::tables::table::Table;
 use igimp_shape::Grid;
 

@@ -6,8 +6,8 @@ use igimp_assembly::{Particles, SharedLaw};
 use igimp_model::Field;
 use igimp_shape::Grid;
 
+use super::nearest;
 use crate::fields::{length, value};
-use crate::measure::nearest;
 
 /// Particles are around another one as far as their domains reach, and by this share further \[-\].
 const MARGIN: f64 = 0.25;
