@@ -105,7 +105,8 @@ impl<'g, const D: usize> Survey<'g, D> {
         for body in &case.bodies {
             let drainage = &case.materials[body.material].drainage;
             let flows = consolidates && matches!(drainage, Drainage::Undrained { flows: true, .. });
-            let seeds = fill(grid, &*body.region, body.per_direction, 1.0, 0)?;
+            let seeds = fill(grid, &*body.region, body.per_direction, 1.0, 0);
+            let seeds = seeds.map_err(|error| error.of_body(&body.name))?;
             for seed in &seeds {
                 let (basis, domain) = (&*case.method.basis, (&seed.x, &seed.half_length));
                 supports(grid, basis, domain.0, domain.1, &mut scratch, &mut list)?;

@@ -12,6 +12,23 @@ pub enum SeedError {
     /// A body has no volume.
     #[error("the body is empty: it has no volume on the grid")]
     EmptyBody,
+    /// The same of a body that has a name.
+    #[error("the body `{name}` is empty: it has no volume on the grid")]
+    Empty {
+        /// Its name.
+        name: String,
+    },
+}
+
+impl SeedError {
+    /// The same error of a body that has a name.
+    #[must_use]
+    pub fn of_body(self, name: &str) -> Self {
+        match self {
+            Self::EmptyBody => Self::Empty { name: name.into() },
+            other => other,
+        }
+    }
 }
 
 /// A point in a message.

@@ -204,6 +204,17 @@ impl CaseFile {
         self.warnings.clone()
     }
 
+    /// Warnings in a sentence each, as they stand in summaries and reports: what is wrong, and what to do about it.
+    pub fn told(&self) -> Vec<String> {
+        let told = self.diagnostics.iter();
+        told.map(|own| {
+            [std::slice::from_ref(&own.message), &own.help]
+                .concat()
+                .join("; ")
+        })
+        .collect()
+    }
+
     /// Warnings as data.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.diagnostics

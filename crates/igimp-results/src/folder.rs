@@ -369,6 +369,26 @@ fn clear(root: &Path) -> Result<(), ResultsError> {
     Ok(())
 }
 
+/// Removes the tables of a folder of tables whose name without extension is one that goes.
+///
+/// # Errors
+/// [`ResultsError::File`].
+pub fn clear_tables(folder: &Path, goes: &dyn Fn(&str) -> bool) -> Result<(), ResultsError> {
+    remove_files(folder, |name| name.strip_suffix(".csv").is_some_and(goes))
+}
+
+/// Removes both files of a picture, by its path in the results folder without extension.
+///
+/// # Errors
+/// [`ResultsError::File`].
+pub fn remove_picture(root: &Path, file: &str) -> Result<(), ResultsError> {
+    let name = file.strip_prefix("figures/").unwrap_or(file);
+    let files = [format!("{name}.svg"), format!("{name}.png")];
+    remove_files(&root.join(FIGURES), |name| {
+        files.iter().any(|own| own == name)
+    })
+}
+
 fn has_extension(name: &str, extensions: &[&str]) -> bool {
     let extension = Path::new(name).extension().and_then(|end| end.to_str());
     extension.is_some_and(|extension| extensions.contains(&extension))

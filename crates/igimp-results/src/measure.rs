@@ -1,8 +1,28 @@
 //! Measurements on a body of particles: oscillation of a field, values along a line, averages.
 
+pub mod place;
+
 use igimp_assembly::Particles;
 
 use crate::fields::length;
+
+/// Levels between which the soil of a particle lies along an axis \[length\], by its centroid in its domain: exact where a face
+/// across the axis cuts the domain.
+pub fn soil_ends<const D: usize>(
+    particles: &Particles<D>,
+    particle: usize,
+    axis: usize,
+) -> [f64; 2] {
+    let (x, half) = (
+        particles.x[particle][axis],
+        particles.half_length[particle][axis],
+    );
+    let off = particles.centroid[particle][axis];
+    [
+        x - half * (1.0 - 2.0 * off.max(0.0)),
+        x + half * (1.0 + 2.0 * off.min(0.0)),
+    ]
+}
 
 /// Particles sorted into square buckets, for finding neighbours.
 #[derive(Clone, Debug)]

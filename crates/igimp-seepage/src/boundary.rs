@@ -88,8 +88,8 @@ fn at<const D: usize>(
         Some((index, OnFaces::Closed)) => return (At::Closed, index),
         _ => {}
     }
-    if let Some(level) = free(&facet.x).filter(|level| *level >= facet.x[D - 1] && rises > UPRIGHT)
-    {
+    let wets = |level: &f64| *level >= facet.x[D - 1] - reach && rises > UPRIGHT;
+    if let Some(level) = free(&facet.x).filter(wets) {
         return (At::Head(level), faces);
     }
     match last.map(|(index, own)| (index, own.what)) {

@@ -146,8 +146,16 @@ impl<const D: usize> Stages<D> {
                 session.warn(text);
             }
         }
+        for text in &target.warnings {
+            if !session.summary.warnings.contains(text) {
+                session.summary.warnings.push(text.clone());
+            }
+        }
         for text in std::mem::take(&mut output.notes_for_user) {
             session.tell(&Event::Warning { text: &text });
+        }
+        for text in std::mem::take(&mut output.warnings) {
+            session.warn(text);
         }
         session.output = Some(output);
         if let Some(systems) = &target.systems {
@@ -354,10 +362,12 @@ impl<const D: usize> Stages<D> {
             _ => sections::read(session.model, state, number)?,
         };
         let resistance = session.last_resistance;
+        let model = session.model;
         let moment = Moment {
             stage: number,
             number: summary.steps,
             progress: summary.reached,
+            grid: &model.grid(model.lowered(&state.controls))?,
             particles: &state.body.particles,
             rigid: &state.body.rigid,
             reinforcement: &state.body.reinforcement,
@@ -370,6 +380,10 @@ impl<const D: usize> Stages<D> {
         let rows = checks::at_end_of_stage(case, &session.records, &moment, is_reached);
         session.summary.checks.extend(rows);
         let rows = checks::of_sections(case, number, &tables, is_reached);
+        if let Some(output) = &mut session.output {
+            output.note_readings(case, &session.records, number, &rows);
+        }
+        let rows = rows.into_iter().map(|(_, row)| row);
         session.summary.checks.extend(rows);
         if let Some(output) = &mut session.output {
             output.end_of_stage(session.model, number, state, summary, &tables)?;
@@ -387,8 +401,10 @@ impl<const D: usize> Stages<D> {
     ) -> Result<Run<D>, CaseError> {
         let case = session.model.case;
         if !session.summary.interrupted {
-            let of_curves =
-                checks::of_curves(case, &session.records.curves, &session.summary.stages);
+            let since = session.output.as_ref();
+            let since = since.map_or_else(Vec::new, |output| output.curves_since(case));
+            let (tables, stages) = (&session.records.curves, &session.summary.stages);
+            let of_curves = checks::of_curves(case, tables, stages, &since);
             for stage in session.summary.stages.len()..case.stages.len() {
                 let rows = checks::beyond(case, &session.records, stage);
                 session.summary.checks.extend(rows);

@@ -221,6 +221,8 @@ pub struct Target {
     pub origin: Origin,
     /// What the run may replace in its folder.
     pub replace: Replace,
+    /// Warnings of the case file, in a sentence each: its summary and its report have them, and listeners are not told.
+    pub warnings: Vec<String>,
 }
 
 impl Target {
@@ -236,6 +238,7 @@ impl Target {
             meshes: file.explain_meshes(),
             origin: file.origin().clone(),
             replace: Replace::default(),
+            warnings: file.told(),
         }
     }
 }

@@ -11,6 +11,7 @@ use igimp_assembly::{
 use igimp_linear::LinearSolver;
 use igimp_model::{Case, Drainage, LoadKind, Material, OfCase, Side};
 use igimp_results::fields;
+use igimp_results::measure::soil_ends;
 use igimp_results::model_size::ModelSize;
 use igimp_shape::{Grid, ShapeError};
 use igimp_solver::{Body, MarchSettings, NewtonSettings};
@@ -474,13 +475,9 @@ pub(crate) fn displacement_scale<const D: usize>(
     (scale > 0.0).then_some(scale)
 }
 
-/// Height of the bodies \[m\].
+/// Height of the soil \[m\].
 pub(crate) fn height<const D: usize>(state: &State<D>) -> f64 {
     let particles = &state.body.particles;
-    let levels = || {
-        let edges = particles.x.iter().zip(&particles.half_length);
-        let up = D - 1;
-        edges.flat_map(move |(x, half_length)| [x[up] - half_length[up], x[up] + half_length[up]])
-    };
+    let levels = || (0..particles.len()).flat_map(|k| soil_ends(particles, k, D - 1));
     levels().fold(f64::NEG_INFINITY, f64::max) - levels().fold(f64::INFINITY, f64::min)
 }

@@ -14,7 +14,7 @@ use igimp_results::checkpoint;
 use igimp_results::folder::provenance::Claim;
 use igimp_results::folder::{self, Folder, write_summary};
 use igimp_results::paraview::frames::{Frames, Scene};
-use igimp_results::summary::{FigureNote, StageSummary, Summary};
+use igimp_results::summary::{CheckRow, FigureNote, StageSummary, Summary};
 use igimp_results::tables::rows::RowWriter;
 use igimp_results::tables::table::Table;
 use igimp_solver::Body;
@@ -22,6 +22,7 @@ use rayon::prelude::*;
 
 use super::Target;
 use super::model::Model;
+use super::resume::readings::Readings;
 use super::resume::{End, Notes, Resumption, Search};
 use super::state::State;
 use crate::error::CaseError;
@@ -29,7 +30,6 @@ use crate::run::output::moment::AcceptedStep;
 use records::{Records, Rows};
 
 pub(crate) mod checks;
-mod difference;
 mod drawn;
 pub(crate) mod entry;
 pub(crate) mod export;
@@ -37,7 +37,7 @@ mod in_time;
 pub(crate) mod moment;
 mod motion;
 pub(crate) mod outlines;
-pub(crate) mod place;
+mod readings;
 pub(crate) mod records;
 mod resume;
 mod saved;
@@ -77,6 +77,10 @@ pub(crate) struct Output<const D: usize> {
     /// What was found when the run was taken up, to be told and not kept: a resumed run leaves the files
     /// of one that was never stopped.
     pub(crate) notes_for_user: Vec<String>,
+    /// What was found when the run began with a later stage, to be told and kept.
+    pub(crate) warnings: Vec<String>,
+    /// What tables, sections and checks are read from.
+    readings: Readings,
 }
 
 /// Names of the equilibria before those at the ends of a search, in a checkpoint.
@@ -114,40 +118,15 @@ impl<const D: usize> Output<D> {
         records: &Records,
         notes: Option<&Notes>,
     ) -> Result<Self, CaseError> {
-        let open = |path: PathBuf, header: &[String], rows: usize| match rows {
-            0 => RowWriter::create(&path, header),
-            rows => RowWriter::resume(&path, header, rows),
-        };
-        let rows = |of: fn(&Notes) -> &Vec<usize>, k: usize| {
-            notes
-                .and_then(|notes| of(notes).get(k).copied())
-                .unwrap_or(0)
-        };
-        let curves = std::iter::zip(&records.curves, 0..)
-            .map(|(table, k)| {
-                let path = folder.curves().join(csv(&table.name));
-                open(path, &table.header, rows(|notes| &notes.curve_rows, k))
-            })
-            .collect::<Result<_, _>>()?;
-        let monitors = std::iter::zip(&records.monitors, 0..)
-            .map(|(table, k)| {
-                let path = folder.monitors().join(csv(&table.name));
-                open(path, &table.header, rows(|notes| &notes.monitor_rows, k))
-            })
-            .collect::<Result<_, _>>()?;
-        let rigid = std::iter::zip(&records.rigid, 0..)
-            .map(|(table, k)| {
-                let path = folder.rigid().join(csv(&table.name));
-                open(path, &table.header, rows(|notes| &notes.rigid_rows, k))
-            })
-            .collect::<Result<_, _>>()?;
+        let [curves, monitors, rigid] = growing(&folder, records, notes);
+        let [curves, monitors, rigid] = [open_all(curves)?, open_all(monitors)?, open_all(rigid)?];
         let moves = |stage: &Stage| matches!(stage.kind, StageKind::Dynamic(_));
         let energy = case.stages.iter().any(moves).then(|| {
             let rows = notes.map_or(0, |notes| notes.energy_rows);
-            open(folder.energy(), &records.energy.header, rows)
+            RowWriter::resume(&folder.energy(), &records.energy.header, rows)
         });
-        let convergence = open(
-            folder.convergence(),
+        let convergence = RowWriter::resume(
+            &folder.convergence(),
             &CONVERGENCE.map(str::to_owned),
             notes.map_or(0, |notes| notes.convergence_rows),
         )?;
@@ -156,6 +135,14 @@ impl<const D: usize> Output<D> {
             notes.map_or(0, |notes| notes.frames),
             case,
         )?;
+        let mut readings = readings::of_case(case, records);
+        if let Some(notes) = notes {
+            readings.checks.clone_from(&notes.readings.checks);
+            for (name, own) in &mut readings.tables {
+                let before = notes.readings.tables.get(name);
+                own.since = before.map_or(0, |before| before.since);
+            }
+        }
         Ok(Self {
             folder,
             claim,
@@ -178,7 +165,26 @@ impl<const D: usize> Output<D> {
             pieces: None,
             seconds: 0.0,
             notes_for_user: Vec::new(),
+            warnings: Vec::new(),
+            readings,
         })
+    }
+
+    /// Notes what the checks at the end of a stage were read from.
+    pub(crate) fn note_readings(
+        &mut self,
+        case: &Case<D>,
+        records: &Records,
+        stage: usize,
+        of_sections: &[(usize, CheckRow)],
+    ) {
+        let rows = readings::of_rows(case, records, stage, of_sections);
+        self.readings.checks.extend(rows);
+    }
+
+    /// By curve, the first stage whose rows it has.
+    pub(crate) fn curves_since(&self, case: &Case<D>) -> Vec<usize> {
+        readings::curves_since(case, &self.readings)
     }
 
     /// Appends the rows of a moment.
@@ -485,6 +491,43 @@ impl<const D: usize> Output<D> {
     fn write_summary(&self, summary: &Summary) -> Result<(), CaseError> {
         Ok(write_summary(self.folder.root(), summary)?)
     }
+}
+
+/// A table that grows: its file, its header, and the rows that are kept of it.
+type Growing<'r> = (PathBuf, &'r [String], usize);
+
+/// The tables of curves, monitors and rigid bodies, with the rows that a checkpoint tells of.
+fn growing<'r>(
+    folder: &Folder,
+    records: &'r Records,
+    notes: Option<&Notes>,
+) -> [Vec<Growing<'r>>; 3] {
+    let none = Vec::new();
+    let of = |of: fn(&Notes) -> &Vec<usize>| notes.map_or(&none, of);
+    [
+        (&records.curves, folder.curves(), of(|own| &own.curve_rows)),
+        (
+            &records.monitors,
+            folder.monitors(),
+            of(|own| &own.monitor_rows),
+        ),
+        (&records.rigid, folder.rigid(), of(|own| &own.rigid_rows)),
+    ]
+    .map(|(tables, folder, rows)| {
+        let tables = tables.iter().enumerate();
+        let table = |(k, table): (usize, &'r Table)| {
+            let rows = rows.get(k).copied().unwrap_or(0);
+            (folder.join(csv(&table.name)), &table.header[..], rows)
+        };
+        tables.map(table).collect()
+    })
+}
+
+fn open_all(tables: Vec<Growing<'_>>) -> Result<Vec<RowWriter>, CaseError> {
+    let opened = tables
+        .into_iter()
+        .map(|(path, header, rows)| Ok(RowWriter::resume(&path, header, rows)?));
+    opened.collect()
 }
 
 /// The pictures of curves and monitors.

@@ -3,6 +3,7 @@
 pub(crate) mod fingerprint;
 pub(crate) mod free_field;
 pub(crate) mod last_step;
+pub(crate) mod readings;
 pub(crate) mod reinforcement;
 pub(crate) mod rigid;
 
@@ -20,6 +21,7 @@ use serde::{Deserialize, Serialize};
 use super::state::{Controls, State};
 use free_field::SavedFreeField;
 use last_step::SavedStep;
+use readings::Readings;
 use reinforcement::SavedMember;
 use rigid::SavedBody;
 
@@ -119,6 +121,9 @@ pub(crate) struct Notes {
     pub(crate) history: String,
     pub(crate) stages: Vec<StageSummary>,
     pub(crate) checks: Vec<CheckRow>,
+    /// What tables, sections and checks were read from.
+    #[serde(default)]
+    pub(crate) readings: Readings,
     pub(crate) warnings: Vec<String>,
     pub(crate) unknowns: usize,
     pub(crate) figures: Vec<FigureNote>,

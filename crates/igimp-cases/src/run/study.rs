@@ -96,6 +96,8 @@ pub(super) fn run<const D: usize>(
     summary.cpu_seconds = processor::seconds();
     if let Some(target) = target {
         summary.input_sha256 = Some(sha256(target.completed.as_bytes()));
+        let of_file = target.warnings.iter().cloned();
+        summary.warnings.splice(0..0, of_file);
         write(case, &target.folder, summary, clock)?;
         if !summary.interrupted && run.lost.is_empty() {
             folder::mark(&target.folder, &target.claim(case), true)?;
@@ -124,6 +126,8 @@ fn of_mesh(target: &Target, number: usize) -> Target {
         meshes: Vec::new(),
         origin: target.origin.clone(),
         replace: target.replace,
+        // They are those of the cells of the case, and stand in the summary of the study.
+        warnings: Vec::new(),
     }
 }
 

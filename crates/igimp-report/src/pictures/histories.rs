@@ -180,9 +180,9 @@ pub fn section_pictures<const D: usize>(
             Average::Cell => ", means over cells",
         };
         let caption = format!(
-            "{} along section “{}” at the end of stage “{stage}”{of}.{sources}",
+            "{} {}{of}.{sources}",
             group.words(),
-            section.name
+            along_at_end(&section.name, stage)
         );
         let name = format!(
             "section-{}-{}-{}",
@@ -193,6 +193,16 @@ pub fn section_pictures<const D: usize>(
         notes.push(write(folder, &name, &plot.draw()?, caption)?);
     }
     Ok(notes)
+}
+
+/// What the caption of a picture of a section says of where and when.
+fn along_at_end(section: &str, stage: &str) -> String {
+    format!("along section “{section}” at the end of stage “{stage}”")
+}
+
+/// Whether a picture is one of a section at the end of a stage.
+pub fn is_of_section(figure: &FigureNote, section: &str, stage: &str) -> bool {
+    figure.caption.contains(&along_at_end(section, stage))
 }
 
 /// Where the rows of a section stand.

@@ -41,7 +41,7 @@ pub use curve::curve_picture;
 pub use energy::energy_pictures;
 pub use field::{Canvas, Over, Seen, Shown, field_picture};
 pub(crate) use field::{Colours, edges};
-pub use histories::{monitor_pictures, section_pictures};
+pub use histories::{is_of_section, monitor_pictures, section_pictures};
 pub use in_time::{SafetyInTime, safety_in_time_picture};
 pub use mechanism::{Failing, Mechanism, mechanism, mechanism_picture};
 pub use meshes::mesh_pictures;

@@ -39,6 +39,7 @@ use crate::atomic::{create, sync_folder, sync_together};
 use crate::error::ResultsError;
 
 mod arrays;
+pub mod difference;
 mod in_memory;
 mod manifest;
 

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::cells::{cell, number, text_of};
 use crate::atomic::{at, create, temporary_name};
+use crate::checkpoint::sha256;
 use crate::error::ResultsError;
 use crate::tables::table::Table;
 
@@ -48,27 +49,18 @@ impl RowWriter {
         if rows == 0 {
             return Self::create(path, header);
         }
-        let unusable = |why: String| ResultsError::Unusable {
-            path: path.to_path_buf(),
-            why,
-        };
-        let file = File::open(path).map_err(at(path))?;
-        let mut lines = Lines::new(&file);
-        if lines.next_line().map_err(at(path))? != Some(&text_line(path, header)?[..]) {
-            return Err(unusable("its header is not the one of this case".into()));
-        }
-        for kept in 0..rows {
-            if lines.next_line().map_err(at(path))?.is_none() {
-                return Err(unusable(format!("it holds {kept} of {rows} rows")));
-            }
-        }
-        let end = lines.end;
+        let (file, end) = kept(path, header, rows)?;
         Ok(Self {
             path: path.to_path_buf(),
             file: beginning(path, file, end).map_err(at(path))?,
             columns: header.to_vec(),
             rows,
         })
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// Appends a row, formatted as by [`Table::write_csv`].
@@ -123,6 +115,50 @@ impl RowWriter {
     pub fn sync(&self) -> Result<(), ResultsError> {
         self.file.sync_data().map_err(at(&self.path))
     }
+}
+
+/// Asks whether [`RowWriter::resume`] can go on after the first `rows` rows of a file; nothing is changed.
+///
+/// # Errors
+/// [`ResultsError::File`]; [`ResultsError::Unusable`] when the file has another header or fewer rows.
+pub fn holds(path: &Path, header: &[String], rows: usize) -> Result<(), ResultsError> {
+    match rows {
+        0 => Ok(()),
+        rows => kept(path, header, rows).map(|_| ()),
+    }
+}
+
+/// Fingerprint of the header and the first `rows` rows of a file; none where they are not there.
+///
+/// # Errors
+/// [`ResultsError::File`].
+pub fn digest(path: &Path, rows: usize) -> Result<Option<String>, ResultsError> {
+    let bytes = match fs::read(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        bytes => bytes.map_err(at(path))?,
+    };
+    let mut ends = (0..bytes.len()).filter(|&k| bytes[k] == b'\n');
+    Ok(ends.nth(rows).map(|end| sha256(&bytes[..=end])))
+}
+
+/// A file with the header and the first `rows` rows of a table, and where they end in it.
+fn kept(path: &Path, header: &[String], rows: usize) -> Result<(File, u64), ResultsError> {
+    let unusable = |why: String| ResultsError::Unusable {
+        path: path.to_path_buf(),
+        why,
+    };
+    let file = File::open(path).map_err(at(path))?;
+    let mut lines = Lines::new(&file);
+    if lines.next_line().map_err(at(path))? != Some(&text_line(path, header)?[..]) {
+        return Err(unusable("its header is not the one of this case".into()));
+    }
+    for kept in 0..rows {
+        if lines.next_line().map_err(at(path))?.is_none() {
+            return Err(unusable(format!("it holds {kept} of {rows} rows")));
+        }
+    }
+    let end = lines.end;
+    Ok((file, end))
 }
 
 /// Reads a table back, with the name of its file; a last line that was written in part is left

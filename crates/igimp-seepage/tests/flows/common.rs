@@ -37,6 +37,16 @@ pub(crate) fn flow(
     polygons: &[Vec<[f64; 2]>],
     conditions: &Conditions<2>,
 ) -> Result<Seepage<2>, SeepageError> {
+    flow_below(grid, polygons, conditions, None)
+}
+
+/// The same below free water at a level, if there is any.
+pub(crate) fn flow_below(
+    grid: &Grid<2>,
+    polygons: &[Vec<[f64; 2]>],
+    conditions: &Conditions<2>,
+    level: Option<f64>,
+) -> Result<Seepage<2>, SeepageError> {
     let bodies: Vec<SeepageBody<'_, 2>> = (polygons.iter().enumerate())
         .map(|(soil, region)| SeepageBody {
             region: region as &dyn Region<2>,
@@ -44,7 +54,7 @@ pub(crate) fn flow(
             scale: None,
         })
         .collect();
-    solve(grid, &bodies, conditions, &|_| None)
+    solve(grid, &bodies, conditions, &|_| level)
 }
 
 /// A dam with vertical faces at x = 0 and `length` on an impervious base, water at `high` and `low`, the grid laid so that

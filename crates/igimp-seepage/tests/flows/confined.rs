@@ -1,6 +1,6 @@
 //! Flow that fills all pores, against exact and published values.
 
-use crate::common::{faces, flow, grid, rectangle};
+use crate::common::{faces, flow, flow_below, grid, rectangle};
 use igimp_seepage::{
     Conditions, Extent, InGround, Named, OnFaces, SeepageBody, SeepageError, Soil, solve,
 };
@@ -261,6 +261,24 @@ fn what_makes_no_flow_is_refused() {
     conditions.confined = false;
     let error = flow(&grid, &ground, &conditions).unwrap_err();
     assert!(matches!(error, SeepageError::NotFed), "{error}");
+}
+
+/// GOAL: free water that stands just at the level of the ground touches it, wherever that lies in its cell.
+/// ORACLE: water at rest, one head all over, as with water a tenth of a millimetre higher.
+#[test]
+fn free_water_at_the_level_of_the_ground_touches_it() {
+    let grid = grid([0.0, 0.0], 0.5, [4, 8]);
+    let mut conditions = confined(&[1e-4]);
+    conditions.confined = false;
+    for level in [1.0, 1.15, 1.3, 2.3] {
+        let ground = [rectangle([0.0, 0.0], [2.0, level])];
+        for above in [0.0, 1e-4] {
+            let head = level + above;
+            let found = flow_below(&grid, &ground, &conditions, Some(head)).unwrap();
+            let off = found.heads.iter().map(|own| (own - head).abs());
+            assert!(off.fold(0.0, f64::max) < 1e-6, "{level} {above}");
+        }
+    }
 }
 
 /// GOAL: water at rest says how well its heads balance, though nothing flows. ORACLE: one head all over; round-off.

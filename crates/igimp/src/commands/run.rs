@@ -64,7 +64,7 @@ pub(crate) fn run(
     let run = engine::run_any(&case, Some(&target), start, &mut progress, &flag);
     progress.finish();
     match run {
-        Ok(run) => tell(&run, &folder, arguments),
+        Ok(run) => tell(&run, &folder, arguments, &file.told()),
         Err(error) => Ok(give_up(&error.into(), &folder, arguments)),
     }
 }
@@ -107,7 +107,7 @@ fn task(
         let run = sweep.run_task(task, Start::Afresh, replace, &mut progress, &flag);
         progress.finish();
         let (run, _) = run?;
-        return tell(&run, &task.folder, arguments);
+        return tell(&run, &task.folder, arguments, &[]);
     }
     let turn = sweep.take_up(task, &mut progress, &flag, |folder| {
         output::print_message(&format!(
@@ -117,7 +117,7 @@ fn task(
     });
     progress.finish();
     match turn? {
-        TaskLock::Ran(run, _) => tell(&run, &task.folder, arguments),
+        TaskLock::Ran(run, _) => tell(&run, &task.folder, arguments, &[]),
         TaskLock::Done(ending) => {
             output::say(&format!("task {number} is done already: {ending}"))?;
             Ok(ending.into())
@@ -149,16 +149,18 @@ fn afresh_or_resume(arguments: &RunArguments) -> Start {
     }
 }
 
-/// Says how a run ended.
+/// Says how a run ended; warnings of the case file that were printed are not said again.
 fn tell(
     run: &engine::Account,
     folder: &Path,
     arguments: &RunArguments,
+    printed: &[String],
 ) -> Result<Exit, ProgramError> {
     let summary = &run.summary;
     let ending = summary.ending();
     if arguments.quiet {
-        for warning in &summary.warnings {
+        let unsaid = |text: &&String| !printed.contains(*text);
+        for warning in summary.warnings.iter().filter(unsaid) {
             output::print_message(&format!("warning: {warning}"));
         }
     }

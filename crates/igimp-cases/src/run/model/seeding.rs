@@ -54,7 +54,8 @@ fn bodies_filled<const D: usize>(
         let material = &case.materials[part.material];
         let density = material.unit_weight / gravity;
         let parts = part.per_direction;
-        let mut own = fill(grid, &*part.region, parts, density, part.material)?;
+        let filled = fill(grid, &*part.region, parts, density, part.material);
+        let mut own = filled.map_err(|error| error.of_body(&part.name))?;
         let section = case.method.section;
         for seed in &mut own {
             // A ring has the volume of its section times the way of its centroid.

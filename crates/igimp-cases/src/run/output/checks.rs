@@ -35,14 +35,44 @@ pub(crate) fn beyond<const D: usize>(
         _ => f64::NAN,
     };
     let mut rows = of_stage(case, stage, false, &found);
-    let nothing = Table {
-        name: String::new(),
-        header: Vec::new(),
-        rows: Vec::new(),
-    };
-    let nothing = vec![nothing; case.sections.len()];
-    rows.extend(of_sections(case, stage, &nothing, false));
+    let nothing = vec![Table::new("", &[]); case.sections.len()];
+    let of_sections = of_sections(case, stage, &nothing, false);
+    rows.extend(of_sections.into_iter().map(|(_, row)| row));
     rows
+}
+
+/// The checks of quantities at the end of a stage, without values.
+pub(super) fn not_held<const D: usize>(case: &Case<D>, stage: usize) -> Vec<CheckRow> {
+    of_stage(case, stage, false, &|_, _| f64::NAN)
+}
+
+/// A check held against the value of an earlier row, of which its band may be another one; as it is without one.
+pub(super) fn held_again(row: CheckRow, earlier: Option<&CheckRow>) -> CheckRow {
+    let Some(earlier) = earlier else {
+        return row;
+    };
+    let check = Check {
+        measured: earlier.check.measured,
+        ..row.check
+    };
+    if !earlier.is_reached() {
+        return CheckRow::not_reached(check);
+    }
+    CheckRow {
+        standing: earlier.standing,
+        ..CheckRow::held(check)
+    }
+}
+
+/// The checks of quantities that the case asks for at a stage, with their numbers.
+pub(super) fn asked<const D: usize>(
+    case: &Case<D>,
+    stage: usize,
+) -> impl Iterator<Item = (usize, &CaseCheck)> {
+    let last = case.stages.len() - 1;
+    let of_stage = move |check: &CaseCheck| check.stage.unwrap_or(last) == stage;
+    let checks = case.checks.iter().enumerate();
+    checks.filter(move |(_, check)| of_stage(check))
 }
 
 /// The checks of a stage with the values that were found.
@@ -52,10 +82,7 @@ fn of_stage<const D: usize>(
     is_reached: bool,
     found: &dyn Fn(usize, &CaseCheck) -> f64,
 ) -> Vec<CheckRow> {
-    let last = case.stages.len() - 1;
-    let asked = case.checks.iter().enumerate();
-    asked
-        .filter(|(_, check)| check.stage.unwrap_or(last) == stage)
+    asked(case, stage)
         .map(|(k, check)| {
             let value = found(k, check);
             let is_factor = check.of == Quantity::FactorOfSafety;
@@ -83,25 +110,30 @@ fn of_stage<const D: usize>(
 }
 
 /// The checks of curves against their references. A curve that was not recorded misses its own, and the end of one whose
-/// stage did not come to its end is held against nothing.
+/// stage did not come to its end is held against nothing; so is one without the rows of stages before the first that `since` tells.
 pub(crate) fn of_curves<const D: usize>(
     case: &Case<D>,
     tables: &[Table],
     stages: &[StageSummary],
+    since: &[usize],
 ) -> Vec<CheckRow> {
     let mut rows = Vec::new();
-    for (curve, table) in case.curves.iter().zip(tables) {
+    for (k, (curve, table)) in case.curves.iter().zip(tables).enumerate() {
         let Some(reference) = &curve.reference else {
             continue;
         };
-        let own = against(case, &curve.name, &table.points(0, 1), reference);
+        // A run that is taken up reads its rows from files.
+        let points = table.as_written().points(0, 1);
+        let own = against(case, &curve.name, &points, reference);
         let ran = |stage: usize| stages.get(stage).is_some_and(is_reached);
         let came_to_end = match curve.stage {
             Some(stage) => ran(stage),
             None => (0..case.stages.len()).all(ran),
         };
         let is_of_end = matches!(reference.values, ReferenceValues::Level { at: None, .. });
-        if is_of_end && !came_to_end {
+        let since = since.get(k).copied().unwrap_or(0);
+        let is_whole = since <= curve.stage.unwrap_or(0) || (is_of_end && curve.stage.is_none());
+        if (is_of_end && !came_to_end) || !is_whole {
             rows.extend(own.into_iter().map(|row| CheckRow::not_reached(row.check)));
         } else {
             rows.extend(own);
@@ -115,29 +147,29 @@ pub(crate) fn is_reached(stage: &StageSummary) -> bool {
     stage.outcome != StageOutcome::NotConverged
 }
 
-/// The checks of fields along sections at the end of a stage; `tables` are those of the sections.
+/// The checks of fields along sections at the end of a stage, with the numbers of those; `tables` are those of the sections.
 pub(crate) fn of_sections<const D: usize>(
     case: &Case<D>,
     stage: usize,
     tables: &[Table],
     is_reached: bool,
-) -> Vec<CheckRow> {
+) -> Vec<(usize, CheckRow)> {
     let mut rows = Vec::new();
-    for (section, table) in case.sections.iter().zip(tables) {
+    for (k, (section, table)) in case.sections.iter().zip(tables).enumerate() {
         for held in section.references_at(case, stage) {
             let Some(recorded) = section.record.iter().position(|&field| field == held.of) else {
                 continue;
             };
             let name = format!("{}, {}", section.name, held.of.name());
             let points = table.points(0, before_fields::<D>() + recorded);
-            rows.extend(against(case, &name, &points, &held.reference));
+            let own = against(case, &name, &points, &held.reference).into_iter();
+            rows.extend(own.map(|row| match is_reached {
+                true => (k, row),
+                false => (k, CheckRow::not_reached(row.check)),
+            }));
         }
     }
-    if is_reached {
-        return rows;
-    }
-    let rows = rows.into_iter();
-    rows.map(|row| CheckRow::not_reached(row.check)).collect()
+    rows
 }
 
 /// Points held against a reference; nothing where it is drawn only.

@@ -4,13 +4,12 @@
 use std::path::Path;
 
 use igimp_model::Case;
-use igimp_results::checkpoint::CheckpointError;
+use igimp_results::checkpoint::{CheckpointError, difference};
 use igimp_results::folder::lock::Lock;
 use igimp_results::folder::overwrite_guard::{admit, refuse_links};
 use igimp_results::folder::provenance::Owner;
 use igimp_results::folder::{self, holds_checkpoints, owner, refuse_foreign};
 
-use super::difference;
 use crate::error::CaseError;
 use crate::run::resume::fingerprint;
 use crate::run::{Start, Target};

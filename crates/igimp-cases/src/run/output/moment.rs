@@ -4,6 +4,7 @@ use igimp_assembly::{Particles, Reinforcement, RigidBody};
 use igimp_model::Case;
 use igimp_results::fields;
 use igimp_results::summary::EnergySummary;
+use igimp_shape::Grid;
 use igimp_solver::Accepted;
 
 use crate::run::state::Controls;
@@ -17,6 +18,8 @@ pub(crate) struct Moment<'a, const D: usize> {
     pub number: usize,
     /// Share of the stage that is done \[-\].
     pub(crate) progress: f64,
+    /// The grid of the step that led to it, or of the next one.
+    pub(crate) grid: &'a Grid<D>,
     /// The particles.
     pub(crate) particles: &'a Particles<D>,
     /// The rigid bodies that are there.
@@ -85,6 +88,7 @@ impl<'a, const D: usize> AcceptedStep<'a, D> {
             stage,
             number,
             progress: self.accepted.report.to,
+            grid: &self.accepted.conditions.grid,
             particles: &self.accepted.body.particles,
             rigid: &self.accepted.body.rigid,
             reinforcement: &self.accepted.body.reinforcement,

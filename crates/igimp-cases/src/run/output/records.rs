@@ -3,12 +3,11 @@
 use igimp_assembly::{Particles, SharedLaw};
 use igimp_geometry::SeedError;
 use igimp_model::{Case, CheckTime, Field, Quantity, StageKind};
-use igimp_results::fields;
+use igimp_results::measure::place::Place;
 use igimp_results::summary::EnergySummary;
 use igimp_results::tables::table::Table;
 
 use super::moment::{Moment, kinetic_energy, moment_columns};
-use super::place::Place;
 use crate::error::CaseError;
 use crate::run::model::reduced;
 use crate::run::{reinforcement, rigid};
@@ -154,8 +153,7 @@ impl Records {
         reduced(case, &self.laws, &moment.controls.srf).unwrap_or_else(|_| self.laws.clone())
     }
 
-    /// A field at the material point of a monitor; not a number while that is not there. The length of a vector is that of its
-    /// components there.
+    /// A field at the material point of a monitor; not a number while that is not there.
     fn at_monitor<const D: usize>(
         &self,
         monitor: usize,
@@ -163,18 +161,7 @@ impl Records {
         moment: &Moment<'_, D>,
         laws: &[SharedLaw],
     ) -> f64 {
-        let (place, particles) = (&self.watched[monitor], moment.particles);
-        let vectors = match field {
-            Field::Displacement => Some(&particles.displacement),
-            Field::Speed => Some(&particles.velocity),
-            Field::Acceleration => Some(&particles.acceleration),
-            _ => None,
-        };
-        if let Some(vectors) = vectors {
-            let component = |axis: usize| place.value(particles, |p| vectors[p][axis]);
-            return fields::length::<D>(&std::array::from_fn(component));
-        }
-        place.value(particles, |p| fields::value(field, particles, p, laws))
+        self.watched[monitor].field(field, moment.particles, laws, moment.grid)
     }
 
     /// A quantity of a moment, in SI units.

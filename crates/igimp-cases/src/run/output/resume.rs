@@ -7,13 +7,13 @@ use std::sync::Arc;
 use igimp_model::Case;
 use igimp_results::ResultsError;
 use igimp_results::atomic::write_whole;
-use igimp_results::checkpoint::{self, Checkpoint, CheckpointError};
-use igimp_results::folder::provenance::Claim;
+use igimp_results::checkpoint::{self, Checkpoint, CheckpointError, difference};
 use igimp_results::folder::{self, Folder};
 use igimp_results::tables::rows;
 use igimp_solver::{Body, FreeField};
 
-use super::{BEFORE, Output, csv, difference};
+use super::readings::Beginning;
+use super::{BEFORE, CONVERGENCE, Output, csv, growing};
 use crate::error::CaseError;
 use crate::run::Target;
 use crate::run::output::records::Records;
@@ -45,15 +45,13 @@ impl<const D: usize> Output<D> {
                 difference::named(error, &folder.completed_case(), &target.completed)
             })?;
         let passed_over = checkpoint::passed_over(&path)?;
-        checkpoint::discard_after(&path)?;
-        write_whole(&folder.case(), &target.source)?;
-        write_whole(&folder.completed_case(), &target.completed)?;
-        let (mut output, left) =
-            Self::resume_from(folder, target.claim(case), case, records, &found)?;
+        let notes = notes_of(&path, &found.meta)?;
+        let left = taken_up(&folder, case, records, &found, &notes)?;
+        let mut output = Self::go_on(folder, target, &path, case, records, &notes)?;
         let taken = path.file_name().unwrap_or_default().to_string_lossy();
         let note = |error| format!("{error}; the run goes on from {taken}, the last whole one");
         output.notes_for_user = passed_over.into_iter().map(note).collect();
-        Ok((output, left))
+        Ok((output, Some(left)))
     }
 
     /// A results folder taken up at the beginning of a stage.
@@ -83,60 +81,44 @@ impl<const D: usize> Output<D> {
             let kept = folder.completed_case();
             return Err(difference::named(other, &kept, &target.completed).into());
         }
-        checkpoint::discard_after(&path)?;
-        write_whole(&folder.case(), &target.source)?;
-        write_whole(&folder.completed_case(), &target.completed)?;
-        Self::resume_from(folder, target.claim(case), case, records, &found)
+        let beginning = Beginning {
+            folder: &folder,
+            case,
+            records,
+            stage,
+        };
+        let kept = beginning.kept(&notes)?;
+        let left = taken_up(&folder, case, records, &found, &kept.notes)?;
+        // Nothing was changed so far, and nothing is refused from here on.
+        beginning.clear(&notes, &kept)?;
+        let mut output = Self::go_on(folder, target, &path, case, records, &kept.notes)?;
+        output.warnings = kept.warnings;
+        Ok((output, Some(left)))
     }
 
-    fn resume_from(
+    /// Opens a results folder after the rows that a checkpoint tells of; what came after is gone.
+    fn go_on(
         folder: Folder,
-        claim: Claim,
+        target: &Target,
+        path: &Path,
         case: &Case<D>,
         records: &mut Records,
-        found: &Checkpoint<D>,
-    ) -> Result<(Self, Option<ResumePoint<D>>), CaseError> {
-        let path = folder.checkpoint();
-        let notes: Notes = notes_of(&path, &found.meta)?;
-        let saved = SavedStates {
-            case,
-            path: &path,
-            notes: &notes,
-            found,
-            laws: records.law_count(),
-        };
-        let mut current = saved.body("current", &notes.controls)?;
-        current.free_fields = saved.free_fields()?;
-        for (name, body) in &found.states {
-            saved.fits(records, name, body)?;
-        }
-        if let Some(why) = notes.resumption.as_ref().and_then(impossible_march) {
-            return Err(saved.damaged(META, why).into());
-        }
-        let search = saved.search()?;
-        let left = ResumePoint {
-            stages: notes.stages.clone(),
-            checks: notes.checks.clone(),
-            warnings: notes.warnings.clone(),
-            unknowns: notes.unknowns,
-            stage: notes.stage.clone(),
-            state: State {
-                body: current,
-                controls: notes.controls.clone(),
-            },
-            resumption: notes.resumption.clone(),
-            search,
-        };
+        notes: &Notes,
+    ) -> Result<Self, CaseError> {
+        checkpoint::discard_after(path)?;
+        write_whole(&folder.case(), &target.source)?;
+        write_whole(&folder.completed_case(), &target.completed)?;
         // From a stage on, the checks may be others than they were.
         if notes.peaks.len() == records.peaks.len() {
             let peaks = notes.peaks.iter().map(|peak| peak.unwrap_or(f64::NAN));
             records.peaks = peaks.collect();
         }
+        let claim = target.claim(case);
         folder::mark(folder.root(), &claim, false)?;
-        let output = Self::open(folder, claim, case, records, Some(&notes))?;
+        let output = Self::open(folder, claim, case, records, Some(notes))?;
         records.factor_of_safety = notes.factor_of_safety.unwrap_or(f64::NAN);
         output.read_tables(records)?;
-        Ok((output, Some(left)))
+        Ok(output)
     }
 
     /// Reads the rows of the tables so far.
@@ -194,6 +176,53 @@ impl<const D: usize> Output<D> {
         }
         Ok(ends)
     }
+}
+
+/// Where a checkpoint says that its run was left. The folder is read, held against the notes, and not changed.
+fn taken_up<const D: usize>(
+    folder: &Folder,
+    case: &Case<D>,
+    records: &Records,
+    found: &Checkpoint<D>,
+    notes: &Notes,
+) -> Result<ResumePoint<D>, CaseError> {
+    let path = folder.checkpoint();
+    let saved = SavedStates {
+        case,
+        path: &path,
+        notes,
+        found,
+        laws: records.law_count(),
+    };
+    let mut current = saved.body("current", &notes.controls)?;
+    current.free_fields = saved.free_fields()?;
+    for (name, body) in &found.states {
+        saved.fits(records, name, body)?;
+    }
+    if let Some(why) = notes.resumption.as_ref().and_then(impossible_march) {
+        return Err(saved.damaged(META, why).into());
+    }
+    let search = saved.search()?;
+    let convergence = CONVERGENCE.map(str::to_owned);
+    let mut tables = growing(folder, records, Some(notes)).concat();
+    tables.push((folder.convergence(), &convergence, notes.convergence_rows));
+    tables.push((folder.energy(), &records.energy.header, notes.energy_rows));
+    for (path, header, rows) in tables {
+        rows::holds(&path, header, rows)?;
+    }
+    Ok(ResumePoint {
+        stages: notes.stages.clone(),
+        checks: notes.checks.clone(),
+        warnings: notes.warnings.clone(),
+        unknowns: notes.unknowns,
+        stage: notes.stage.clone(),
+        state: State {
+            body: current,
+            controls: notes.controls.clone(),
+        },
+        resumption: notes.resumption.clone(),
+        search,
+    })
 }
 
 /// The file of a checkpoint with its notes.

@@ -6,11 +6,11 @@ use igimp_model::Case;
 use igimp_results::ResultsError;
 use igimp_results::checkpoint::{self, Meta};
 use igimp_results::summary::Summary;
-use igimp_results::tables::rows::RowWriter;
+use igimp_results::tables::rows::{self, RowWriter};
 use igimp_solver::Body;
 use rayon::prelude::*;
 
-use super::Output;
+use super::{Output, csv};
 use crate::error::CaseError;
 use crate::run::resume::{Notes, end_of_stage, fingerprint, free_field, reinforcement, rigid};
 use crate::run::state::Controls;
@@ -28,6 +28,7 @@ impl<const D: usize> Output<D> {
             stages: run.stages.clone(),
             checks: run.checks.clone(),
             warnings: run.warnings.clone(),
+            readings: self.readings.clone(),
             unknowns: run.size.unknowns,
             figures: self.figures.clone(),
             factor_of_safety: self.factor_of_safety,
@@ -111,13 +112,20 @@ impl<const D: usize> Output<D> {
             .chain(&self.rigid)
             .chain([&self.convergence])
             .collect();
-        let (rows, frames) = rayon::join(
+        let (synced, frames) = rayon::join(
             || tables.par_iter().try_for_each(|table| table.sync()),
             || self.frames.sync(),
         );
-        rows.and(frames)?;
+        synced.and(frames)?;
+        let mut notes = notes.clone();
+        for (name, own) in &mut notes.readings.tables {
+            let path = self.folder.root().join(csv(name));
+            let table = tables.iter().find(|table| table.path() == path);
+            own.rows = table.map_or(0, |table| table.len());
+            own.digest = rows::digest(&path, own.rows)?.unwrap_or_default();
+        }
         let states = [("current", body)];
-        let (folder, meta) = (self.folder.checkpoint(), self.meta(notes, &states)?);
+        let (folder, meta) = (self.folder.checkpoint(), self.meta(&notes, &states)?);
         let columns = free_field::states(body);
         let states = with_columns(&states, &columns);
         checkpoint::write(&folder, &end_of_stage(stage), &states, &meta, 1)?;

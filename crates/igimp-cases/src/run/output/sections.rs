@@ -6,11 +6,10 @@ use igimp_assembly::{AssemblyError, Particles, SharedLaw};
 use igimp_model::{Average, Case, Cut, Section};
 use igimp_report::pictures::file_name;
 use igimp_results::fields;
-use igimp_results::measure::nearest;
+use igimp_results::measure::{nearest, place::Place};
 use igimp_results::tables::table::Table;
 use igimp_shape::Grid;
 
-use super::place::Place;
 use crate::run::model::Model;
 use crate::run::state::State;
 
@@ -31,7 +30,7 @@ pub(crate) const fn before_fields<const D: usize>() -> usize {
 /// mobilised strength is that of the strength that acts.
 ///
 /// Values are those at the feet, on the line, of the particles nearest to equally spaced places along it, each once,
-/// interpolated from the particles around; places without a particle within a cell are left out. Or they are means over the
+/// carried there from the particles and cells around; places without a particle within a cell are left out. Or they are means over the
 /// cells of the grid that the places lie in, of all particles there by their volume.
 pub(crate) fn read<const D: usize>(
     model: &Model<'_, D>,
@@ -68,7 +67,7 @@ pub(crate) fn read<const D: usize>(
                 }
             };
             for group in groups {
-                table.push(row(section, &group, particles, &laws));
+                table.push(row(section, &group, particles, (&laws, &grid)));
             }
             table
         })
@@ -179,7 +178,7 @@ fn row<const D: usize>(
     section: &Section<D>,
     group: &[usize],
     particles: &Particles<D>,
-    laws: &[SharedLaw],
+    (laws, grid): (&[SharedLaw], &Grid<D>),
 ) -> Vec<f64> {
     let way: [f64; D] = std::array::from_fn(|axis| section.to[axis] - section.from[axis]);
     let length = fields::length(&way);
@@ -196,7 +195,7 @@ fn row<const D: usize>(
             let foot: [f64; D] =
                 std::array::from_fn(|axis| section.from[axis] + distance / length * way[axis]);
             let place = Place::near(particles, only, &foot);
-            let values = recorded.map(|&field| place.value(particles, |p| value(field, p)));
+            let values = recorded.map(|&field| place.field(field, particles, laws, grid));
             std::iter::once(distance)
                 .chain(foot)
                 .chain(values)

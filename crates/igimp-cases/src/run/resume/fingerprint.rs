@@ -1,6 +1,6 @@
 //! Fingerprints of cases: a saved state is taken up only for the input that it came from.
 
-use igimp_model::{Case, Every, Output, SolverSettings, TitleBlock};
+use igimp_model::{Case, Every, Monitor, Output, SolverSettings, StageKind, TitleBlock};
 use igimp_results::checkpoint::sha256;
 
 /// Of everything but the place and frequency of output, and the title block.
@@ -13,7 +13,20 @@ pub(crate) fn of_history<const D: usize>(case: &Case<D>, stages: usize) -> Strin
     let mut history = whole(case);
     history.stages.truncate(stages);
     history.title.clear();
-    history.monitors.clear();
+    let named = history.stages.iter().flat_map(|stage| {
+        let search = match &stage.kind {
+            StageKind::StrengthReduction(own) => own.monitor,
+            _ => None,
+        };
+        [stage.stop_when.monitor, search]
+    });
+    // What a stage ends by is part of it, whatever else is recorded there.
+    let named = named.flatten().map(|monitor| Monitor {
+        name: String::new(),
+        record: Vec::new(),
+        ..case.monitors[monitor].clone()
+    });
+    history.monitors = named.collect();
     history.sections.clear();
     history.curves.clear();
     history.checks.clear();

@@ -237,6 +237,7 @@ impl<const D: usize> Watch<'_, '_, D> {
             stage: self.number,
             number: self.summary.steps,
             progress: report.to,
+            grid: &accepted.conditions.grid,
             particles,
             rigid: &accepted.body.rigid,
             reinforcement: &accepted.body.reinforcement,

@@ -156,10 +156,12 @@ pub(crate) fn begin<const D: usize>(
     state: &State<D>,
     number: usize,
 ) -> Result<(), CaseError> {
+    let grid = session.model.grid(session.model.lowered(&state.controls))?;
     session.record(&Moment {
         stage: number,
         number: 0,
         progress: 0.0,
+        grid: &grid,
         particles: &state.body.particles,
         rigid: &state.body.rigid,
         reinforcement: &state.body.reinforcement,

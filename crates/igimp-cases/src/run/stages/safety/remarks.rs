@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use igimp_assembly::Particles;
 use igimp_model::{Case, Drainage, Material, ReductionPath, Strength, StrengthReduction};
 use igimp_results::fields::length;
+use igimp_results::measure::soil_ends;
 use igimp_results::summary::SafetySummary;
 use igimp_text::short;
 
@@ -29,20 +30,20 @@ pub(super) fn few_cells<const D: usize>(
 ) -> Option<String> {
     let axes = &case.grid.axes;
     let mut surface: HashMap<[i64; D], f64> = HashMap::new();
-    for (x, half_length) in std::iter::zip(&particles.x, &particles.half_length) {
+    for (k, x) in particles.x.iter().enumerate() {
         let mut strip = [0; D];
         for axis in 0..D - 1 {
             strip[axis] = (STRIPS * axes[axis].place(x[axis])).floor() as i64;
         }
-        let top = axes[D - 1].place(x[D - 1] + half_length[D - 1]);
+        let top = axes[D - 1].place(soil_ends(particles, k, D - 1)[1]);
         let highest = surface.entry(strip).or_insert(top);
         *highest = highest.max(top);
     }
     let least = surface.values().copied().fold(f64::INFINITY, f64::min);
     let most = surface.values().copied().fold(f64::NEG_INFINITY, f64::max);
-    // A face that ends at the side of the grid leaves part of a cell in the last strip.
-    let cells = (most - least - 1e-6).ceil();
-    (cells > 1.0 && cells < ENOUGH).then(|| {
+    let cells = most - least;
+    (cells > 1.0 + 1e-6 && cells < ENOUGH * (1.0 - 1e-6)).then(|| {
+        let cells = short(cells);
         format!(
             "the slope is {cells} cells high: with fewer than {ENOUGH} cells over the height a factor of safety is several \
              per cent too high; a study of meshes (--meshes 2) tells by how much"

@@ -81,10 +81,12 @@ impl<const D: usize> Trials<'_, D> {
         state: &State<D>,
         plastic_share: f64,
     ) -> Result<(), CaseError> {
+        let grid = session.model.grid(session.model.lowered(&state.controls))?;
         session.record(&Moment {
             stage: self.number,
             number: self.made.len(),
             progress: 1.0,
+            grid: &grid,
             particles: &state.body.particles,
             rigid: &state.body.rigid,
             reinforcement: &state.body.reinforcement,

@@ -1,8 +1,13 @@
-//! Fields at a place that is no particle: the nearest particle's value, and from there on along the plane that fits it and
-//! the particles around it best (theory, eq. 40h). Fields that are linear are exact.
+//! Fields at a place that is no particle (theory, eqs. 40h and 40i). Motion: the nearest particle's value, and from there on along
+//! the plane that fits it and the particles around it best. What follows from strain: the same of means over cells of the grid,
+//! for it is nearly constant in a cell. Fields that are linear are exact either way.
 
-use igimp_assembly::Particles;
-use igimp_results::measure::nearest;
+use igimp_assembly::{Particles, SharedLaw};
+use igimp_model::Field;
+use igimp_shape::Grid;
+
+use super::nearest;
+use crate::fields::{length, value};
 
 /// Particles are around another one as far as their domains reach, and by this share further \[-\].
 const MARGIN: f64 = 0.25;
@@ -18,9 +23,9 @@ const FLAT: f64 = 1e-12;
 
 /// A place in a body: the particles nearest to it.
 #[derive(Clone, Debug)]
-pub(crate) struct Place {
+pub struct Place {
     /// The number of the nearest particle.
-    pub(crate) nearest: usize,
+    pub nearest: usize,
     /// That particle, and those of the same soil that are as near.
     anchors: Vec<Anchor>,
 }
@@ -39,7 +44,7 @@ struct Anchor {
 
 impl Place {
     /// The place of a point \[m\], where the particles stand now; none without a particle within reach \[m\].
-    pub(crate) fn of<const D: usize>(
+    pub fn of<const D: usize>(
         particles: &Particles<D>,
         point: &[f64; D],
         reach: f64,
@@ -48,7 +53,7 @@ impl Place {
     }
 
     /// The place of a point near a particle.
-    pub(crate) fn near<const D: usize>(
+    pub fn near<const D: usize>(
         particles: &Particles<D>,
         particle: usize,
         point: &[f64; D],
@@ -73,18 +78,73 @@ impl Place {
         }
     }
 
+    /// A field at the place, in SI units; stresses compression positive. `laws` are those that the particles refer to, and `grid` is
+    /// that of their last step. The length of a vector is that of its components there.
+    pub fn field<const D: usize>(
+        &self,
+        field: Field,
+        particles: &Particles<D>,
+        laws: &[SharedLaw],
+        grid: &Grid<D>,
+    ) -> f64 {
+        let own = |p: usize| value(field, particles, p, laws);
+        let vector = |vectors: &[[f64; D]]| {
+            let component = |axis: usize| self.value(particles, |p| vectors[p][axis]);
+            length::<D>(&std::array::from_fn(component))
+        };
+        match field {
+            Field::Displacement => vector(&particles.displacement),
+            Field::Speed => vector(&particles.velocity),
+            Field::Acceleration => vector(&particles.acceleration),
+            Field::DisplacementX
+            | Field::DisplacementY
+            | Field::DisplacementZ
+            | Field::X
+            | Field::Y
+            | Field::Z
+            | Field::VelocityX
+            | Field::VelocityY
+            | Field::VelocityZ
+            | Field::AccelerationX
+            | Field::AccelerationY
+            | Field::AccelerationZ => self.value(particles, own),
+            // Given pore pressure is known at every particle.
+            Field::U => {
+                let excess = self.by_cells(particles, grid, |p| particles.excess[p]);
+                self.value(particles, |p| particles.pore_pressure[p]) + excess
+            }
+            _ => self.by_cells(particles, grid, own),
+        }
+    }
+
+    /// The value at the place of a field that is nearly constant in a cell: the mean of the cells that the nearest particles lie
+    /// in, each carried on along the plane through the means around.
+    fn by_cells<const D: usize>(
+        &self,
+        particles: &Particles<D>,
+        grid: &Grid<D>,
+        field: impl Fn(usize) -> f64,
+    ) -> f64 {
+        let values = self.anchors.iter();
+        mean(values.filter_map(|anchor| anchor.by_cells(particles, grid, &field)))
+    }
+
     /// The value of a field of particles at the place, the mean of those that its nearest particles tell; not a number where none
     /// of them is there.
-    pub(crate) fn value<const D: usize>(
+    pub fn value<const D: usize>(
         &self,
         particles: &Particles<D>,
         field: impl Fn(usize) -> f64,
     ) -> f64 {
         let values = self.anchors.iter();
-        let values = values.filter_map(|anchor| anchor.value(particles, &field));
-        let (sum, count) = values.fold((0.0, 0.0), |(sum, count), own| (sum + own, count + 1.0));
-        sum / count
+        mean(values.filter_map(|anchor| anchor.value(particles, &field)))
     }
+}
+
+/// The mean of values; not a number without any.
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), own| (sum + own, count + 1.0));
+    sum / count
 }
 
 impl Anchor {
@@ -125,9 +185,93 @@ impl Anchor {
         }
         let changes = self.around.iter().filter_map(|(number, way)| {
             let change = field(particles.place_of(*number)?) - own;
-            change.is_finite().then_some((*way, change))
+            change.is_finite().then_some((*way, change, 1.0))
         });
-        Some(own + along_plane(&self.offset, &changes.collect::<Vec<_>>()))
+        Some(own + along_plane(&self.offset, 1.0, &changes.collect::<Vec<_>>()))
+    }
+
+    /// The value at the place by the means of the particle's cell and of those around it; none where the particle is not there.
+    fn by_cells<const D: usize>(
+        &self,
+        particles: &Particles<D>,
+        grid: &Grid<D>,
+        field: impl Fn(usize) -> f64,
+    ) -> Option<f64> {
+        let particle = particles.place_of(self.number)?;
+        let Some(own_cell) = grid.cell_at(&particles.x[particle]) else {
+            return Some(field(particle));
+        };
+        let mut cells = means_around(particles, grid, (particle, own_cell), field);
+        let Some(own) = cells.iter().position(|(cell, _)| *cell == own_cell) else {
+            return Some(f64::NAN);
+        };
+        let own = cells.swap_remove(own).1.finished();
+        let offset = std::array::from_fn(|axis| self.offset[axis] - own.place[axis]);
+        let changes = cells.into_iter().map(|(_, other)| {
+            let other = other.finished();
+            let way = std::array::from_fn(|axis| other.place[axis] - own.place[axis]);
+            (way, other.value - own.value, other.volume)
+        });
+        let change = along_plane(&offset, own.volume, &changes.collect::<Vec<_>>());
+        Some(own.value + change)
+    }
+}
+
+/// Sums over the soil of a particle in its cell and in those around it, with places seen from the particle.
+fn means_around<const D: usize>(
+    particles: &Particles<D>,
+    grid: &Grid<D>,
+    (particle, own_cell): (usize, [usize; D]),
+    field: impl Fn(usize) -> f64,
+) -> Vec<([usize; D], CellMean)> {
+    let is_around = |cell: &[usize; D]| (0..D).all(|axis| cell[axis].abs_diff(own_cell[axis]) <= 1);
+    let mut cells: Vec<([usize; D], CellMean)> = Vec::new();
+    for other in 0..particles.len() {
+        if particles.law[other] != particles.law[particle] {
+            continue;
+        }
+        let Some(cell) = grid.cell_at(&particles.x[other]).filter(is_around) else {
+            continue;
+        };
+        let own = field(other);
+        if !own.is_finite() {
+            continue;
+        }
+        let found = cells.iter().position(|(known, _)| *known == cell);
+        let found = found.unwrap_or_else(|| {
+            cells.push((cell, CellMean::default()));
+            cells.len() - 1
+        });
+        let place = way(&particles.x[particle], &particles.x[other]);
+        cells[found].1.add(particles.volume(other), place, own);
+    }
+    cells
+}
+
+/// The mean of a field over the particles of a cell by their volume, and its place seen from a particle \[m\].
+#[derive(Clone, Copy, Debug, Default)]
+struct CellMean {
+    volume: f64,
+    place: [f64; 3],
+    value: f64,
+}
+
+impl CellMean {
+    fn add(&mut self, volume: f64, place: [f64; 3], value: f64) {
+        self.volume += volume;
+        self.value += volume * value;
+        for axis in 0..3 {
+            self.place[axis] += volume * place[axis];
+        }
+    }
+
+    /// The sums over the volume.
+    fn finished(self) -> Self {
+        Self {
+            volume: self.volume,
+            place: self.place.map(|sum| sum / self.volume),
+            value: self.value / self.volume,
+        }
     }
 }
 
@@ -140,26 +284,27 @@ fn way<const D: usize>(from: &[f64; D], to: &[f64; D]) -> [f64; 3] {
     way
 }
 
-/// How much a field changes on the way to an offset \[m\], from its changes on the ways to others: along the plane with the
-/// least squares through all of them and the start, and by no more than on any of the ways. Directions that no way has have
-/// no slope.
-fn along_plane(offset: &[f64; 3], changes: &[([f64; 3], f64)]) -> f64 {
+/// How much a field changes on the way to an offset \[m\], from its changes on the ways to others, each with its weight: along the
+/// plane with the least squares through all of them and the start, and by no more than on any of the ways. Directions that no way
+/// has have no slope.
+fn along_plane(offset: &[f64; 3], weight: f64, changes: &[([f64; 3], f64, f64)]) -> f64 {
     // The start is one of the points, without way and change.
-    let count = changes.len() as f64 + 1.0;
+    let weights = changes.iter().map(|(.., own)| own);
+    let total = weights.fold(weight, |sum, own| sum + own);
     let (mut middle, mut mean) = ([0.0; 3], 0.0);
-    for (way, change) in changes {
-        mean += change / count;
+    for (way, change, own) in changes {
+        mean += own * change / total;
         for axis in 0..3 {
-            middle[axis] += way[axis] / count;
+            middle[axis] += own * way[axis] / total;
         }
     }
     let (mut squares, mut products) = ([[0.0; 3]; 3], [0.0; 3]);
-    for (way, change) in changes.iter().chain(&[([0.0; 3], 0.0)]) {
+    for (way, change, own) in changes.iter().chain(&[([0.0; 3], 0.0, weight)]) {
         let from_middle: [f64; 3] = std::array::from_fn(|axis| way[axis] - middle[axis]);
         for row in 0..3 {
-            products[row] += from_middle[row] * (change - mean);
+            products[row] += own * from_middle[row] * (change - mean);
             for column in 0..3 {
-                squares[row][column] += from_middle[row] * from_middle[column];
+                squares[row][column] += own * from_middle[row] * from_middle[column];
             }
         }
     }
@@ -172,9 +317,9 @@ fn along_plane(offset: &[f64; 3], changes: &[([f64; 3], f64)]) -> f64 {
     }
     let slope = solved(squares, products);
     let change: f64 = std::iter::zip(slope, offset).map(|(s, o)| s * o).sum();
-    let largest = changes
-        .iter()
-        .fold(0.0, |largest: f64, (_, change)| largest.max(change.abs()));
+    let largest = changes.iter().fold(0.0, |largest: f64, (_, change, _)| {
+        largest.max(change.abs())
+    });
     change.clamp(-largest, largest)
 }
 
@@ -202,6 +347,7 @@ fn solved(mut matrix: [[f64; 3]; 3], mut right: [f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use igimp_assembly::ParticleSeed;
+    use igimp_shape::Axis;
 
     use super::*;
 
@@ -296,8 +442,38 @@ mod tests {
     #[test]
     fn what_is_not_known_is_flat() {
         let offset = [0.1, 0.2, 0.0];
-        let row = [([0.5, 0.0, 0.0], 1.0), ([-0.5, 0.0, 0.0], -1.0)];
-        assert!((along_plane(&offset, &row) - 0.2).abs() < 1e-9);
-        assert!(along_plane(&offset, &[]).abs() < 1e-15);
+        let row = [([0.5, 0.0, 0.0], 1.0, 1.0), ([-0.5, 0.0, 0.0], -1.0, 1.0)];
+        assert!((along_plane(&offset, 1.0, &row) - 0.2).abs() < 1e-9);
+        assert!(along_plane(&offset, 1.0, &[]).abs() < 1e-15);
+    }
+
+    /// GOAL: stress that is the same all over a cell is read as the linear field whose mean in the cell it is, within, at sides, at
+    /// lines of the grid and in corners. A linear field is exact, too. ORACLE: the field, and no new extremes beside a jump.
+    #[test]
+    fn a_stair_of_a_linear_field_is_exact() {
+        let particles = body();
+        let axis = |cells: usize| Axis::uniform(0.0, 0.5, cells).unwrap();
+        let grid = Grid {
+            axes: [axis(6), axis(5)],
+        };
+        let linear = |x: [f64; 2]| 70.0 + 3.0 * x[0] - 18.0 * x[1];
+        let middle = |p: usize| particles.x[p].map(|x| 0.5 * (x / 0.5).floor() + 0.25);
+        for point in [
+            [1.3, 0.77],
+            [0.0, 1.1],
+            [3.0, 2.0],
+            [0.0, 0.0],
+            [1.5, 1.0],
+            [0.02, 1.99],
+        ] {
+            let place = Place::of(&particles, &point, 1.0).unwrap();
+            let stair = place.by_cells(&particles, &grid, |p| linear(middle(p)));
+            let exact = place.by_cells(&particles, &grid, |p| linear(particles.x[p]));
+            assert!((stair - linear(point)).abs() < 1e-9, "{point:?}: {stair}");
+            assert!((exact - linear(point)).abs() < 1e-9, "{point:?}: {exact}");
+            let jump = |p: usize| f64::from(u8::from(particles.x[p][0] > 1.5));
+            let jump = place.by_cells(&particles, &grid, jump);
+            assert!((-1.0..=2.0).contains(&jump), "{point:?}: {jump}");
+        }
     }
 }

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use igimp_results::checkpoint::CheckpointError;
 use igimp_text::on_a_line;
+
+use super::CheckpointError;
 
 /// Tables that say nothing of what is computed.
 const BESIDE: [&str; 1] = ["output"];
@@ -23,7 +24,7 @@ const SHOWN: usize = 60;
 
 /// The same error with the first key that differs between the completed case in a results folder and another one, if there is
 /// such a file and such a key.
-pub(crate) fn named(error: CheckpointError, kept: &Path, completed: &str) -> CheckpointError {
+pub fn named(error: CheckpointError, kept: &Path, completed: &str) -> CheckpointError {
     match error {
         CheckpointError::OtherCase { path, .. } => {
             let kept = std::fs::read_to_string(kept).ok();
