@@ -27,9 +27,12 @@ fn ground(dimension: &str, stage: &str, points: usize, locking: &str) -> CaseFil
             "zz",
         )
     };
-    let point = |height: f64| match is_plane {
-        true => format!(r#"["0.7 m", "{height} m"]"#),
-        false => format!(r#"["0.3 m", "0.2 m", "{height} m"]"#),
+    let point = |height: f64| {
+        if is_plane {
+            format!(r#"["0.7 m", "{height} m"]"#)
+        } else {
+            format!(r#"["0.3 m", "0.2 m", "{height} m"]"#)
+        }
     };
     let monitors = HEIGHTS.iter().enumerate().map(|(k, &height)| {
         format!(

@@ -163,10 +163,14 @@ pub(crate) fn of_sections<const D: usize>(
             let name = format!("{}, {}", section.name, held.of.name());
             let points = table.points(0, before_fields::<D>() + recorded);
             let own = against(case, &name, &points, &held.reference).into_iter();
-            rows.extend(own.map(|row| match is_reached {
-                true => (k, row),
-                false => (k, CheckRow::not_reached(row.check)),
-            }));
+            let row = |row: CheckRow| {
+                if is_reached {
+                    row
+                } else {
+                    CheckRow::not_reached(row.check)
+                }
+            };
+            rows.extend(own.map(|own| (k, row(own))));
         }
     }
     rows

@@ -258,9 +258,12 @@ impl<const D: usize> Beginning<'_, D> {
         stage: usize,
         stays: &[String],
     ) -> Result<Vec<(usize, CheckRow)>, CaseError> {
-        let read = |name: &String| match stays.contains(name) {
-            true => rows::read(&self.table_of_section(name, stage)),
-            false => Ok(Table::new("", &[])),
+        let read = |name: &String| {
+            if stays.contains(name) {
+                rows::read(&self.table_of_section(name, stage))
+            } else {
+                Ok(Table::new("", &[]))
+            }
         };
         let sections = self.case.sections.iter();
         let tables: Result<Vec<Table>, _> = sections.map(|own| read(&own.name)).collect();
