@@ -47,12 +47,12 @@ pub use igimp_rigid::{
     ContactChange, ContactNode, ContactState, Interface, Penalty, Penetration, Pose, RigidBody,
     RigidInertia, Shear, Tension,
 };
-pub use igimp_shape::continuation::Carrier;
 pub use igimp_surface::{CarryingTriangle, Surface, SurfaceError, SurfaceTriangle};
 pub use laws::SharedLaw;
 pub use method::{
     CutVolume, DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, Section, SmallCuts,
 };
 pub use step::stencils::Stencils;
+pub use step::ties::Carrier;
 pub use step::unknowns::Unknowns;
 pub use work::{PlasticFlow, StepWork};

@@ -10,7 +10,6 @@
 //! | one direction of the grid | [`Axis`] |
 //! | tensor product of axes, node and cell numbering | [`Grid`] |
 //! | weights of one direction: linear (iMPM) and GIMP | [`Basis`], [`Linear`], [`Gimp`], [`NodeWeight`] |
-//! | functions of a cell beyond its faces, nodes that move with others | [`continuation`] |
 //! | small dense matrices as plain arrays | [`matrices`] |
 //! | tensor product of weights | [`supports`], [`Support`], [`Scratch`] |
 //! | what can go wrong | [`ShapeError`] |
@@ -51,7 +50,6 @@
 
 mod axis;
 mod basis;
-pub mod continuation;
 mod error;
 mod grid;
 mod loose;

@@ -12,10 +12,10 @@ use crate::conditions::loads::LoadPoint;
 use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
 use crate::method::{Geometry, Locking, Method, Section};
+use crate::step::continuation::followers;
 use crate::step::domain::{capped_half_length, merge_equal_nodes, off_grid};
 use crate::step::hoops::{Hoop, RadialPart, centroid_of_cell, weigh_by_radius};
-use igimp_shape::continuation::Ties;
-use igimp_shape::continuation::followers;
+use crate::step::ties::Ties;
 
 /// A cell that is filled to less than this share holds a sliver of soil that reached over its face
 /// \[-\]. A choice: less leaves nodes with so little soil that they climb without end at a limit load, more takes weight

@@ -1,6 +1,7 @@
 //! What holds during a step: shape functions, supports, loads and the cells that hold soil.
 
 pub(crate) mod cell_soil;
+pub(crate) mod continuation;
 pub(crate) mod domain;
 pub(crate) mod hoops;
 pub(crate) mod node_shares;

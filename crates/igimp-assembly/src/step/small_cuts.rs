@@ -1,18 +1,17 @@
 //! Nodes that a body only touches at a corner, and the nodes that they are tied to (theory, eqs. 26
 //! and 27), or that their motion is extrapolated from (theory, eq. 63a).
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use igimp_shape::Grid;
-use igimp_shape::continuation::{
-    ALIKE, Carrier, REACH, Ties, Way, carried_beyond, cells_around, nearest,
-};
 
 use crate::conditions::StepConditions;
 use crate::conditions::walls::AbsorbingWall;
 use crate::method::{CutVolume, SmallCuts};
+use crate::step::continuation::{REACH, carried_beyond, cells_around};
 use crate::step::node_shares::NodeShare;
 use crate::step::supports::Supports;
+use crate::step::ties::{Carrier, Ties};
 
 /// What extrapolation leaves to a node that it rests on, of the volume below which a node is a small cut \[-\].
 const KEPT: f64 = 0.5;
@@ -32,89 +31,55 @@ pub(crate) fn small_cuts<const D: usize>(
         .collect()
 }
 
-/// Ties small cuts to the nearest cells whose nodes all carry enough soil, by their linear functions beyond their faces. What a cut
-/// is held by holds all nodes that it is tied to. Weights below zero leave these half of what makes a cut at least: of the cuts that
-/// take from a node too much together, those that take most go on from elsewhere. Cuts without such a cell find none.
+/// Ties small cuts to the nearest cell whose nodes all carry enough soil, by its linear functions beyond its faces: of equally near
+/// ones to that with most soil. What a cut is held by holds all nodes that it is tied to, and weights below zero leave these half of
+/// what makes a cut at least. Cuts without such a cell find none.
 pub(crate) fn extrapolations<const D: usize>(
     conditions: &StepConditions<D>,
     shares: &[NodeShare],
     (cuts, method): (&[bool], &SmallCuts),
 ) -> Ties {
-    let kept = |node: usize| KEPT * least_volume(&conditions.grid, method, node);
-    let is_held = |cut, axis| conditions.constraints.of(cut, axis).is_some();
-    let own = (0..cuts.len())
-        .filter(|&node| cuts[node] && !(0..D).all(|axis| is_held(node, axis)))
-        .map(|cut| {
-            let mut ways = ways_on(conditions, shares, (cuts, cut));
-            let leaves_enough = |own: &Carrier| {
-                shares[own.node].volume + own.weight * shares[cut].volume > kept(own.node)
-            };
-            ways.retain(|way| way.carriers.iter().all(leaves_enough));
-            (cut, ways)
-        });
-    let mut ways: BTreeMap<usize, Vec<Way>> = own.collect();
-    loop {
-        let nearest = |(&cut, ways): (&usize, &Vec<Way>)| Some((cut, nearest(ways)?));
-        let ties: Ties = ways.iter().filter_map(nearest).collect();
-        let mut left: Vec<f64> = shares.iter().map(|share| share.volume).collect();
-        // What the cut that takes most from a node takes.
-        let mut most = BTreeMap::new();
-        for (&cut, own) in carriers_of(&ties) {
-            let gain = own.weight * shares[cut].volume;
-            left[own.node] += gain;
-            let most = most.entry(own.node).or_insert(0.0_f64);
-            *most = most.max(-gain);
+    let (grid, constraints) = (&conditions.grid, &conditions.constraints);
+    let mut ties = Ties::new();
+    let mut left: Vec<f64> = shares.iter().map(|share| share.volume).collect();
+    for cut in (0..cuts.len()).filter(|&node| cuts[node]) {
+        let held = |axis: usize| constraints.of(cut, axis);
+        if (0..D).all(|axis| held(axis).is_some()) {
+            continue;
         }
-        let mut is_done = true;
-        for (cut, own) in carriers_of(&ties) {
-            let taken = -own.weight * shares[*cut].volume;
-            let takes_most = taken > 0.0 && taken >= (1.0 - ALIKE) * most[&own.node];
-            if takes_most && left[own.node] <= kept(own.node) {
-                let takes = |other: &Carrier| other.node == own.node && other.weight < 0.0;
-                if let Some(ways) = ways.get_mut(cut) {
-                    ways.retain(|way| !way.carriers.iter().any(takes));
-                    is_done = false;
-                }
+        let mut nearest: Option<(f64, f64, Vec<Carrier>)> = None;
+        for cell in cells_around(grid, cut, REACH) {
+            let carriers = carried_beyond(grid, cell, cut);
+            let is_firm = carriers.iter().all(|own| {
+                let then = left[own.node] + own.weight * shares[cut].volume;
+                !cuts[own.node]
+                    && stays_on_walls(conditions, cut, own.node)
+                    && then > KEPT * least_volume(grid, method, own.node)
+                    && (0..D).all(|axis| {
+                        held(axis).is_none() || held(axis) == constraints.of(own.node, axis)
+                    })
+            });
+            if !is_firm {
+                continue;
+            }
+            // The sum of the magnitudes of weights grows with the distance.
+            let distance: f64 = carriers.iter().map(|own| own.weight.abs()).sum();
+            let soil: f64 = carriers.iter().map(|own| shares[own.node].volume).sum();
+            let is_nearer = (nearest.as_ref()).is_none_or(|&(other, most, _)| {
+                distance < other || (distance <= other && soil > most)
+            });
+            if is_nearer {
+                nearest = Some((distance, soil, carriers));
             }
         }
-        if is_done {
-            return ties;
+        if let Some((_, _, carriers)) = nearest {
+            for own in &carriers {
+                left[own.node] += own.weight * shares[cut].volume;
+            }
+            ties.insert(cut, carriers);
         }
     }
-}
-
-/// Tied nodes with each of the nodes that they move with.
-fn carriers_of(ties: &Ties) -> impl Iterator<Item = (&usize, &Carrier)> {
-    let own = |(cut, carriers)| std::iter::repeat(cut).zip(carriers);
-    ties.iter().flat_map(own)
-}
-
-/// Cells near a small cut whose nodes all carry enough soil, and are held by what holds it.
-fn ways_on<const D: usize>(
-    conditions: &StepConditions<D>,
-    shares: &[NodeShare],
-    (cuts, cut): (&[bool], usize),
-) -> Vec<Way> {
-    let (grid, constraints) = (&conditions.grid, &conditions.constraints);
-    let is_held_alike = |node: usize, axis: usize| {
-        let held = constraints.of(cut, axis);
-        held.is_none() || held == constraints.of(node, axis)
-    };
-    let is_firm = |own: &Carrier| {
-        !cuts[own.node]
-            && stays_on_walls(conditions, cut, own.node)
-            && (0..D).all(|axis| is_held_alike(own.node, axis))
-    };
-    cells_around(grid, cut, REACH)
-        .map(|cell| carried_beyond(grid, cell, cut))
-        .filter(|carriers| carriers.iter().all(is_firm))
-        .map(|carriers| Way {
-            // The sum of the magnitudes of weights grows with the distance.
-            distance: carriers.iter().map(|own| own.weight.abs()).sum(),
-            soil: carriers.iter().map(|own| shares[own.node].volume).sum(),
-            carriers,
-        })
-        .collect()
+    ties
 }
 
 /// Whether a node lies on all walls with dashpots that another lies on: a wall holds its nodes as supports do, and what moved off
@@ -132,41 +97,41 @@ fn stays_on_walls<const D: usize>(
 }
 
 /// The master of every node that is a small cut: the nearest node that shares a particle with it, carries enough soil and has the
-/// same constraints and walls; of equally near ones that with most soil, or the mean.
+/// same constraints and walls; of equally near ones that with most soil.
 pub(crate) fn masters_of_cuts<const D: usize>(
     conditions: &StepConditions<D>,
     supports: &Supports<D>,
     shares: &[NodeShare],
     cuts: &[bool],
-) -> Ties {
+) -> BTreeMap<usize, usize> {
     let (grid, constraints) = (&conditions.grid, &conditions.constraints);
     let fixed = |node: usize| (0..D).all(|axis| constraints.of(node, axis).is_some());
-    let mut candidates: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
+    let distance = |a: usize, b: usize| {
+        let (a, b) = (grid.node_position(a), grid.node_position(b));
+        std::iter::zip(a, b)
+            .map(|(a, b)| (a - b) * (a - b))
+            .sum::<f64>()
+    };
+    let mut masters = BTreeMap::new();
     for particle in supports.touching(cuts) {
-        let nodes = supports.of(particle).iter().map(|support| support.node);
+        let own = supports.of(particle);
+        let nodes = own.iter().map(|support| support.node);
         for cut in nodes.clone().filter(|&node| cuts[node] && !fixed(node)) {
-            let is_alike = |&node: &usize| {
-                let is_held_alike = |axis| constraints.of(cut, axis) == constraints.of(node, axis);
-                !cuts[node] && (0..D).all(is_held_alike) && stays_on_walls(conditions, cut, node)
-            };
-            let own = candidates.entry(cut).or_default();
-            own.extend(nodes.clone().filter(is_alike));
+            for candidate in nodes.clone() {
+                let alike =
+                    (0..D).all(|axis| constraints.of(cut, axis) == constraints.of(candidate, axis));
+                if cuts[candidate] || !alike || !stays_on_walls(conditions, cut, candidate) {
+                    continue;
+                }
+                let key = |master: usize| (distance(cut, master), -shares[master].volume);
+                let master = masters.entry(cut).or_insert(candidate);
+                if key(candidate) < key(*master) {
+                    *master = candidate;
+                }
+            }
         }
     }
-    let way = |cut: usize, node: usize| {
-        let apart = std::iter::zip(grid.node_position(cut), grid.node_position(node));
-        Way {
-            distance: apart.map(|(a, b)| (a - b) * (a - b)).sum(),
-            soil: shares[node].volume,
-            carriers: vec![Carrier { node, weight: 1.0 }],
-        }
-    };
-    { candidates.into_iter() }
-        .filter_map(|(cut, nodes)| {
-            let ways: Vec<Way> = nodes.into_iter().map(|node| way(cut, node)).collect();
-            Some((cut, nearest(&ways)?))
-        })
-        .collect()
+    masters
 }
 
 /// The volume below which a node is a small cut \[length^D\].

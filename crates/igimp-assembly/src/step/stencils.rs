@@ -1,7 +1,6 @@
 //! Who touches what: the supports of every particle, frozen for one step, with small cuts tied,
 //! and what follows from them for the nodes.
 
-use igimp_shape::continuation::{Carrier, Ties};
 use igimp_shape::{Grid, Support};
 
 use crate::body::particles::Particles;
@@ -16,7 +15,7 @@ use crate::step::node_shares::{NodeShare, node_shares};
 use crate::step::small_cuts::{extrapolations, masters_of_cuts, small_cuts, volume_at};
 use crate::step::strips::Strips;
 use crate::step::supports::Supports;
-use crate::step::ties::carried;
+use crate::step::ties::{Carrier, Ties, carried};
 
 /// Basis values S, gradients ∇S and cell-averaged centre gradients ∇S̄ of all particles.
 ///
@@ -248,8 +247,11 @@ fn ties<const D: usize>(
         Remedy::Extrapolate => extrapolations(conditions, shares, (&cuts, own)),
         Remedy::Tie | Remedy::Drop => Ties::new(),
     };
-    for (cut, masters) in masters_of_cuts(conditions, supports, shares, &cuts) {
-        ties.entry(cut).or_insert(masters);
+    let masters = masters_of_cuts(conditions, supports, shares, &cuts);
+    for (cut, node) in masters {
+        let weight = 1.0;
+        ties.entry(cut)
+            .or_insert_with(|| vec![Carrier { node, weight }]);
     }
     ties
 }

@@ -9,8 +9,7 @@ use crate::method::{Locking, Method};
 use crate::step::cell_soil::CellSoil;
 use crate::step::domain::{bounds, capped_half_length, merge_equal_nodes, off_grid};
 use crate::step::hoops::Hoop;
-use crate::step::ties::carried;
-use igimp_shape::continuation::Ties;
+use crate::step::ties::{Ties, carried};
 
 /// The supports of each particle, nodes ascending.
 #[derive(Clone, Debug)]

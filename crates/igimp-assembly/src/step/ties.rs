@@ -1,7 +1,20 @@
-//! Supports on the nodes that others move with (theory, eqs. 27 and 63a).
+//! Nodes that move with others, and supports on those (theory, eqs. 27 and 63a).
+
+use std::collections::BTreeMap;
 
 use igimp_shape::Support;
-use igimp_shape::continuation::{Carrier, Ties};
+
+/// A node that a small cut moves with, and by how much.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carrier {
+    /// The node.
+    pub node: usize,
+    /// What its displacement counts; the weights of a tie sum to one \[-\].
+    pub weight: f64,
+}
+
+/// Tied nodes with the nodes that they move with.
+pub(crate) type Ties = BTreeMap<usize, Vec<Carrier>>;
 
 /// Supports on the nodes that tied ones move with, in their order; equal nodes are not added up.
 pub(crate) fn carried<const D: usize>(supports: &[Support<D>], ties: &Ties) -> Vec<Support<D>> {

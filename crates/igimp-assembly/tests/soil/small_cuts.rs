@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use crate::common::{Random, by_particle, displacements, laws, methods};
 use igimp_assembly::{
-    Constraints, CutVolume, Kinematics, LoadPoint, Method, ParticleSeed, Particles, Remedy,
-    SharedLaw, Stencils, StepConditions, StepLoads, Structures, System, Trial, UnbalancedForces,
+    Constraints, Kinematics, LoadPoint, Method, ParticleSeed, Particles, Remedy, SharedLaw,
+    Stencils, StepConditions, StepLoads, Structures, System, Trial, UnbalancedForces,
 };
 use igimp_linear::TangentMatrix;
 use igimp_material::TangentKind;
@@ -734,55 +734,4 @@ fn extrapolated_small_cuts_keep_linear_fields() {
         }
     }
     assert!(extrapolated > 20, "{extrapolated}");
-}
-
-// GOAL: what small cuts move with takes no side, where nodes or cells are equally near, and where several take from one node.
-// BODY: particles at random places, and their mirror images.
-// ORACLE: symmetry: the mirror image of a node moves with the mirror images of its carriers, by the same weights.
-#[test]
-fn mirror_images_of_small_cuts_move_alike() {
-    const CELLS: [usize; 2] = [8, 6];
-    let grid = unit_grid(CELLS);
-    let conditions = free(&grid, &elastic());
-    let image = |node: usize| {
-        let [x, y] = grid.node_place(node);
-        grid.node_index([CELLS[0] - x, y])
-    };
-    let mut method = Method::igimp();
-    method.small_cuts.below = 0.4;
-    method.small_cuts.of = CutVolume::FullSoil;
-    let (mut random, mut several) = (Random(5), 0);
-    for _ in 0..40 {
-        let seeds: Vec<_> = (0..50)
-            .map(|_| [3.5, 2.5].map(|half| half * random.symmetric()))
-            .flat_map(|[x, y]| [[4.0 - x, 3.0 + y], [4.0 + x, 3.0 + y]])
-            .map(|x| ParticleSeed {
-                x,
-                half_length: [0.3; 2],
-                volume: 0.36,
-                density: 1.0,
-                law: 0,
-                centroid: [0.0; _],
-            })
-            .collect();
-        let body = Particles::new(&seeds).unwrap();
-        for remedy in [Remedy::Tie, Remedy::Extrapolate] {
-            let method = with_remedy(&method, remedy);
-            let stencils = Stencils::build(&body, &method, &conditions).unwrap();
-            let weights = |node: usize, image: &dyn Fn(usize) -> usize| {
-                let mut weights = vec![0.0; grid.node_count()];
-                for own in stencils.carriers(node) {
-                    weights[image(own.node)] += own.weight;
-                }
-                weights
-            };
-            for node in 0..grid.node_count() {
-                several += usize::from(stencils.carriers(node).count() > 1);
-                let [own, other] = [weights(image(node), &image), weights(node, &|own| own)];
-                let alike = std::iter::zip(&own, &other).all(|(a, b)| (a - b).abs() < 1e-9);
-                assert!(alike, "{remedy:?}, node {node}");
-            }
-        }
-    }
-    assert!(several > 200, "{several}");
 }

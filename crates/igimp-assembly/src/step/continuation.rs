@@ -1,73 +1,20 @@
-//! The linear functions of a cell, continued beyond its faces (theory, eqs. 63a and 63b), and of several ways to go on the nearest.
+//! The linear functions of a cell, continued beyond its faces (theory, eqs. 63a and 63b).
 
 use std::collections::BTreeMap;
 
-use crate::Grid;
+use igimp_shape::Grid;
 
-/// A node that another one moves with, and by how much.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Carrier {
-    /// The node.
-    pub node: usize,
-    /// What its displacement counts; the weights of a tie sum to one \[-\].
-    pub weight: f64,
-}
-
-/// Tied nodes with the nodes that they move with.
-pub type Ties = BTreeMap<usize, Vec<Carrier>>;
-
-/// A way on which the motion of a node may go on from others.
-#[derive(Clone, Debug)]
-pub struct Way {
-    /// How far these are: any measure that grows with the distance.
-    pub distance: f64,
-    /// The soil that they carry \[length^D\].
-    pub soil: f64,
-    /// The nodes that it goes on from.
-    pub carriers: Vec<Carrier>,
-}
+use crate::step::ties::{Carrier, Ties};
 
 /// How many cells away from a small cut the cell may be from which its displacement is extrapolated: from further on, the motion of
 /// a spray would be that of its neighbours many times over.
-pub const REACH: usize = 1;
+pub(crate) const REACH: usize = 1;
 
 /// What is none of a weight \[-\].
 const ROUND_OFF: f64 = 1e-12;
 
-/// Ways are as near as others, and carry as much soil, up to this share \[-\]: mirror images differ by round-off.
-pub const ALIKE: f64 = 1e-6;
-
-/// The carriers of the nearest way, of equally near ones of that with most soil; the mean of those that are equal in both, so that
-/// no side is taken. None without a way.
-pub fn nearest(ways: &[Way]) -> Option<Vec<Carrier>> {
-    let least = (ways.iter()).fold(f64::INFINITY, |least, way| least.min(way.distance));
-    let near: Vec<&Way> = { ways.iter() }
-        .filter(|way| way.distance <= (1.0 + ALIKE) * least)
-        .collect();
-    let most = near.iter().fold(0.0, |most: f64, way| most.max(way.soil));
-    let mut alike: Vec<&Way> = Vec::new();
-    for way in near {
-        // Cells side by side go on from the nodes between them in one way.
-        let nodes = |way: &Way| -> Vec<usize> { way.carriers.iter().map(|own| own.node).collect() };
-        let is_other = |other: &&Way| nodes(other) != nodes(way);
-        if way.soil >= (1.0 - ALIKE) * most && alike.iter().all(is_other) {
-            alike.push(way);
-        }
-    }
-    let share = 1.0 / alike.len() as f64;
-    let mut weights = BTreeMap::new();
-    for own in alike.iter().flat_map(|way| &way.carriers) {
-        *weights.entry(own.node).or_insert(0.0) += share * own.weight;
-    }
-    let carriers = weights.into_iter();
-    let carriers: Vec<Carrier> = carriers
-        .map(|(node, weight)| Carrier { node, weight })
-        .collect();
-    (!carriers.is_empty()).then_some(carriers)
-}
-
 /// The cells around a node, and those that are up to `reach` cells away from them.
-pub fn cells_around<const D: usize>(
+pub(crate) fn cells_around<const D: usize>(
     grid: &Grid<D>,
     node: usize,
     reach: usize,
@@ -87,7 +34,7 @@ pub fn cells_around<const D: usize>(
 }
 
 /// The nodes of a cell with the values of their linear functions at a node, which may lie beyond the cell.
-pub fn carried_beyond<const D: usize>(
+pub(crate) fn carried_beyond<const D: usize>(
     grid: &Grid<D>,
     cell: [usize; D],
     node: usize,
@@ -104,7 +51,10 @@ pub fn carried_beyond<const D: usize>(
 
 /// Cells of which every node is one of another cell or is extrapolated from it, each with that cell: their motion is its
 /// linear functions continued.
-pub fn followers<const D: usize>(grid: &Grid<D>, ties: &Ties) -> BTreeMap<[usize; D], [usize; D]> {
+pub(crate) fn followers<const D: usize>(
+    grid: &Grid<D>,
+    ties: &Ties,
+) -> BTreeMap<[usize; D], [usize; D]> {
     let mut followers = BTreeMap::new();
     for &tied in ties.keys() {
         for cell in cells_around(grid, tied, 0) {
