@@ -27,7 +27,7 @@ pub fn loose_cells<const D: usize>(
     grid: &Grid<D>,
     holds_soil: &[bool],
     free: impl Fn(usize) -> usize,
-    strains: usize,
+    strains: u8,
 ) -> Vec<bool> {
     let mut matching = Matching {
         grid,
@@ -57,13 +57,13 @@ struct Matching<'a, const D: usize> {
     grid: &'a Grid<D>,
     holds_soil: &'a [bool],
     /// Strains that are not given away, by cell.
-    left: Vec<usize>,
+    left: Vec<u8>,
     /// Strains that are given to each corner, by cell.
-    given: Vec<[usize; 8]>,
+    given: Vec<[u8; 8]>,
     /// Cells that are reached from nodes for which nothing is left.
     reached: Vec<bool>,
     /// In a search, the cell and its corner through which a cell was reached, or itself where the search began.
-    from: Vec<Option<(usize, usize)>>,
+    from: Vec<Option<(u32, u8)>>,
 }
 
 impl<'a, const D: usize> Matching<'a, D> {
@@ -103,7 +103,7 @@ impl<'a, const D: usize> Matching<'a, D> {
         let mut queue = VecDeque::new();
         let mut seen = Vec::new();
         for (cell, corner) in self.cells_at(node) {
-            self.from[cell] = Some((cell, corner));
+            self.from[cell] = Some((cell as u32, corner as u8));
             seen.push(cell);
             queue.push_back(cell);
         }
@@ -119,7 +119,7 @@ impl<'a, const D: usize> Matching<'a, D> {
             for corner in (0..1 << D).filter(|&corner| self.given[cell][corner] > 0) {
                 for (next, _) in self.cells_at(self.node_at(cell, corner)) {
                     if self.from[next].is_none() {
-                        self.from[next] = Some((cell, corner));
+                        self.from[next] = Some((cell as u32, corner as u8));
                         seen.push(next);
                         queue.push_back(next);
                     }
@@ -140,6 +140,7 @@ impl<'a, const D: usize> Matching<'a, D> {
     fn pass_on(&mut self, mut cell: usize) {
         self.left[cell] -= 1;
         while let Some((before, corner)) = self.from[cell] {
+            let (before, corner) = (before as usize, usize::from(corner));
             if before == cell {
                 self.given[cell][corner] += 1;
                 return;
@@ -162,12 +163,7 @@ mod tests {
     use crate::{Axis, Grid};
 
     /// The cells at the smallest set of nodes that lacks most, of all sets.
-    fn by_all_sets(
-        grid: &Grid<2>,
-        holds_soil: &[bool],
-        free: &[usize],
-        strains: usize,
-    ) -> Vec<bool> {
+    fn by_all_sets(grid: &Grid<2>, holds_soil: &[bool], free: &[usize], strains: u8) -> Vec<bool> {
         let touched: Vec<Vec<usize>> = (0..grid.node_count())
             .map(|node| {
                 let at = grid.node_position(node);
@@ -191,7 +187,7 @@ mod tests {
                 .map(|node| free[node])
                 .sum();
             let cells = cells_of(set).iter().filter(|own| **own).count();
-            wanted as i64 - (strains * cells) as i64
+            wanted as i64 - i64::from(strains) * cells as i64
         };
         let sets = 0..1_usize << grid.node_count();
         let smallest = sets.min_by_key(|&set| (-lacks(set), set.count_ones()));

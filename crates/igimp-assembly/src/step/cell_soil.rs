@@ -211,7 +211,7 @@ impl<const D: usize> CellSoil<D> {
         if self.locking == Locking::SharedStrain && self.own_share.iter().any(|&own| own < 1.0) {
             let held = &conditions.constraints;
             let free = |node| (0..D).filter(|&axis| held.of(node, axis).is_none()).count();
-            let strains = D * (D + 1) / 2 + usize::from(!self.hoop_at.is_empty());
+            let strains = (D * (D + 1) / 2) as u8 + u8::from(!self.hoop_at.is_empty());
             let least = |(is_loose, is_loaded)| match (is_loose, is_loaded) {
                 (true, _) => 1.0,
                 (false, true) => OWN_LOADED,

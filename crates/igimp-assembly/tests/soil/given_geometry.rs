@@ -239,9 +239,14 @@ fn weight_acts_at_the_centroid_of_the_soil() {
     let elasticity = Elasticity::new(1e7, 0.3).unwrap();
     let friction = 0.5;
     let sand = MohrCoulomb::new(elasticity, 0.0, friction, friction).unwrap();
+    // Cells of a body that nothing holds are loose (theory, eq. 8i).
+    let mut held = Constraints::free(&grid);
+    for (x, axis) in (2..=6).flat_map(|x| [(x, 0), (x, 1)]) {
+        held.prescribe(grid.node_index([x, 2]), axis, 0.0).unwrap();
+    }
     let conditions = StepConditions::new(
         grid.clone(),
-        Constraints::free(&grid),
+        held,
         StepLoads::gravity(gravity),
         vec![std::sync::Arc::new(sand)],
     )
