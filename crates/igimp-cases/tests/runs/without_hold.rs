@@ -66,23 +66,13 @@ figures = []
 paraview = { every = "never" }
 "#;
 
-/// GOAL: a block that slides is told to slide, with what helps. ORACLE: it goes along x at 0.2 of its weight.
+/// GOAL: a block slides where its push exceeds its friction. ORACLE: μ of its weight.
 #[test]
-fn a_block_that_slides_is_told_to() {
+fn a_block_slides_at_its_friction() {
     for friction in [0.2, 0.28] {
         let run = ran(BLOCK, &[&format!("rigid.0.interface.friction={friction}")]);
         let pushed = 0.3 * run.failure.as_ref().unwrap().error.from;
         assert!((pushed / friction - 1.0).abs() < 0.01, "{pushed}");
-        let failure = run.failure.unwrap();
-        let told = failure.error.failure.to_string();
-        let expected = "nothing holds the rigid body \"block\" in its displacement in x";
-        assert!(told.starts_with(expected), "{told}");
-        let first = &failure.suggestions[0];
-        assert!(
-            first.contains("friction") && first.contains("slides"),
-            "{first}"
-        );
-        assert!(failure.suggestions[1].starts_with("x = \"0 m\""));
     }
 }
 

@@ -55,7 +55,7 @@ fn a_circle_under_load_settles_as_far_as_one_that_is_displaced() {
     ];
     for loaded in [end(&["stages.0.steps=4", &force]), end(&pulled)] {
         let ratio = loaded[0] / settlement;
-        assert!((ratio - 1.0).abs() < 4e-4, "{ratio}");
+        assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
     }
 }
 
