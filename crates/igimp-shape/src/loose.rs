@@ -128,7 +128,11 @@ impl<'a, const D: usize> Matching<'a, D> {
         }
         match found {
             Some(cell) => self.pass_on(cell),
-            None => seen.iter().for_each(|&cell| self.reached[cell] = true),
+            None => {
+                for &cell in &seen {
+                    self.reached[cell] = true;
+                }
+            }
         }
         for cell in seen {
             self.from[cell] = None;
@@ -175,7 +179,9 @@ mod tests {
             let mut is_there = vec![false; grid.cell_count()];
             for (node, touched) in touched.iter().enumerate() {
                 if set >> node & 1 == 1 {
-                    touched.iter().for_each(|&cell| is_there[cell] = true);
+                    for &cell in touched {
+                        is_there[cell] = true;
+                    }
                 }
             }
             is_there
