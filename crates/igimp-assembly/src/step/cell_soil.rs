@@ -1,6 +1,6 @@
 //! The soil in every cell of the grid: how much there is, and where its centroid lies. From it come
 //! gradients that the particles of a cell share, which cells hold slivers only, and what of the weight shared
-//! gradients do not see (theory, eqs. 8a to 8h).
+//! gradients do not see (theory, eqs. 8a to 8i).
 
 use igimp_material::ConstitutiveModel;
 use igimp_shape::{CellPart, Grid, Support, cell_parts, loose_cells};
