@@ -92,6 +92,9 @@ impl Place {
             let component = |axis: usize| self.value(particles, |p| vectors[p][axis]);
             length::<D>(&std::array::from_fn(component))
         };
+        let read = |field| self.field(field, particles, laws, grid);
+        // The sum of what is read of each.
+        let total = |effective| read(effective) + read(Field::U);
         match field {
             Field::Displacement => vector(&particles.displacement),
             Field::Speed => vector(&particles.velocity),
@@ -108,6 +111,10 @@ impl Place {
             | Field::AccelerationX
             | Field::AccelerationY
             | Field::AccelerationZ => self.value(particles, own),
+            Field::SigmaXx => total(Field::SigmaEffXx),
+            Field::SigmaYy => total(Field::SigmaEffYy),
+            Field::SigmaZz => total(Field::SigmaEffZz),
+            Field::P => total(Field::PEff),
             // Given pore pressure is known at every particle.
             Field::U => {
                 let excess = self.by_cells(particles, grid, |p| particles.excess[p]);
