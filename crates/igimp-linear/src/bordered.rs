@@ -8,6 +8,12 @@ use crate::{Border, TangentMatrix};
 /// solutions \[-\].
 const OF_ELIMINATION: f64 = 1e-10;
 
+/// A pivot of a border that is no larger than this share of its largest entry is none: no digit is left of it \[-\].
+const NO_PIVOT: f64 = 1e-14;
+
+/// The same where the solution came out wrong: what is left is the error of the systems by which the border is eliminated \[-\].
+const HARDLY_A_PIVOT: f64 = 10.0 * OF_ELIMINATION;
+
 /// An exact or approximate solver for the unknowns of the grid: the second vector from the first.
 pub(super) type Inverse<'a> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), LinearSolverError> + 'a;
 
@@ -63,7 +69,7 @@ impl Elimination {
             .zip(&border.rows)
             .map(|(force, row)| force - product(row, grid))
             .collect();
-        let of_border = eliminate(self.schur.clone(), left).map_err(|direction| {
+        let of_border = eliminate(self.schur.clone(), left, NO_PIVOT).map_err(|direction| {
             LinearSolverError::Singular {
                 unknown: Some(of_grid + largest(&direction)),
             }
@@ -77,9 +83,10 @@ impl Elimination {
         Ok(())
     }
 
-    /// The motion of the border that meets no resistance, where there is one.
+    /// The motion of the border that meets hardly any resistance, where there is one.
     fn free_direction(&self) -> Option<Vec<f64>> {
-        eliminate(self.schur.clone(), vec![0.0; self.schur.len()]).err()
+        let still = vec![0.0; self.schur.len()];
+        eliminate(self.schur.clone(), still, HARDLY_A_PIVOT).err()
     }
 }
 
@@ -91,7 +98,7 @@ pub struct Bordered {
 }
 
 impl Bordered {
-    /// By unknown of the border, the motion that meets no resistance, where the last solution failed for that.
+    /// By unknown of the border, the motion that meets hardly any resistance, where the last solution failed for that.
     pub fn free_direction(&self) -> Option<Vec<f64>> {
         self.elimination.as_ref()?.free_direction()
     }
@@ -215,8 +222,8 @@ fn free_direction(rows: &[Vec<f64>], k: usize) -> Vec<f64> {
 }
 
 /// Solves a small dense system by elimination with row pivots; the direction that it makes nothing of if there is
-/// one.
-fn eliminate(mut rows: Vec<Vec<f64>>, mut rhs: Vec<f64>) -> Result<Vec<f64>, Vec<f64>> {
+/// one, as a pivot is below a share of the largest entry.
+fn eliminate(mut rows: Vec<Vec<f64>>, mut rhs: Vec<f64>, least: f64) -> Result<Vec<f64>, Vec<f64>> {
     let n = rhs.len();
     let sizes: Vec<f64> = rows
         .iter()
@@ -232,7 +239,7 @@ fn eliminate(mut rows: Vec<Vec<f64>>, mut rhs: Vec<f64>) -> Result<Vec<f64>, Vec
         rows.swap(k, pivot);
         rhs.swap(k, pivot);
         let size = rows[k][k].abs();
-        if size.is_nan() || size <= 1e-14 * sizes.iter().copied().fold(0.0, f64::max) {
+        if size.is_nan() || size <= least * sizes.iter().copied().fold(0.0, f64::max) {
             return Err(free_direction(&rows, k));
         }
         for i in k + 1..n {
@@ -342,9 +349,9 @@ mod tests {
     #[test]
     fn a_small_system_is_solved_and_a_singular_one_named() {
         let rows = vec![vec![0.0, 2.0], vec![4.0, 1.0]];
-        assert_eq!(eliminate(rows, vec![4.0, 6.0]), Ok(vec![1.0, 2.0]));
+        assert_eq!(eliminate(rows, vec![4.0, 6.0], 1e-14), Ok(vec![1.0, 2.0]));
         let rows = vec![vec![1.0, 2.0], vec![2.0, 4.0]];
-        let direction = eliminate(rows, vec![1.0, 1.0]).unwrap_err();
+        let direction = eliminate(rows, vec![1.0, 1.0], 1e-14).unwrap_err();
         assert_eq!((largest(&direction), direction), (0, vec![-2.0, 1.0]));
     }
 }

@@ -31,6 +31,7 @@ pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use ground::{Ground, Layer};
 pub use igimp_schema::field::Field;
 pub use load::{Load, LoadKind, Plan};
+pub use material::mixed_cells::share_cells;
 pub use material::profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
 pub use material::raster::Raster;
 pub use material::softening::{BAND_CELLS, Softens, StrengthCurves};
@@ -109,8 +110,8 @@ pub struct Case<const D: usize> {
     pub output: Output,
 }
 
-/// The laws of a run are numbered through the materials in their order: first those of all soil, then one for each material for every cell
-/// whose soils share a mean stiffness.
+/// The laws of a run are numbered through the materials in their order: first those of all soil, then one for each material for every change
+/// that cells with several soils ask for.
 impl<const D: usize> Case<D> {
     /// The number of the material that a law belongs to.
     pub fn number_of_material(&self, law: usize) -> usize {
@@ -122,7 +123,7 @@ impl<const D: usize> Case<D> {
         &self.materials[self.number_of_material(law)]
     }
 
-    /// The law of another material at the same stiffness: of all soil, or of a cell.
+    /// The law of another material with the same change: of all soil, or of a cell.
     pub fn law_beside(&self, law: usize, material: usize) -> usize {
         law - self.number_of_material(law) + material
     }

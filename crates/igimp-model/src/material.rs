@@ -1,5 +1,6 @@
 //! Materials: stiffness, strength and weight.
 
+pub(crate) mod mixed_cells;
 pub(crate) mod profile;
 pub(crate) mod raster;
 pub(crate) mod softening;
@@ -68,6 +69,24 @@ impl Material {
             ..self.clone()
         };
         renamed == *other
+    }
+
+    /// Angle by which its plastic flow gains volume \[rad\], 0 of soil that keeps its volume; none of a law of its own, and as
+    /// [`Strength::dilation`].
+    pub fn dilation(&self) -> Option<f64> {
+        match self.given {
+            Some(_) => None,
+            None => self.strength.dilation(),
+        }
+    }
+
+    /// The same with an angle of dilation up to a largest one \[rad\].
+    fn dilating_up_to(mut self, most: f64) -> Self {
+        self.strength = self.strength.dilating_up_to(most);
+        if let Some(curves) = &mut self.softening {
+            curves.dilation = curves.dilation.filter(|own| own.residual < most);
+        }
+        self
     }
 
     /// Constrained modulus, 1/m_v \[Pa\].

@@ -30,6 +30,13 @@ impl<const D: usize> Case<D> {
         there
     }
 
+    /// By body: whether it is there, at the start and at the end of every stage.
+    pub fn bodies_by_stage(&self) -> Vec<Vec<bool>> {
+        let start = self.bodies.iter().map(|body| body.from_start).collect();
+        let later = (0..self.stages.len()).map(|stage| self.bodies_after(stage));
+        std::iter::once(start).chain(later).collect()
+    }
+
     /// The material that a body consists of at the end of a stage, by index; `None`: before the first one. A body that was taken
     /// away keeps it for the time that it comes back.
     pub fn material_after(&self, stage: Option<usize>, body: usize) -> usize {

@@ -1,5 +1,6 @@
 //! Rigid bodies beside soil: a surface with an interface on each of its sides, a pose, a mass, what contact has left
-//! behind, and the faces that particles turn to them. Nothing here knows of stress in soil or of equilibrium.
+//! behind, the faces that particles turn to them, and the traction of soil at a knot. Nothing here knows of stress in soil or of
+//! equilibrium.
 
 mod arm;
 mod clearance;
@@ -9,6 +10,7 @@ mod gyration;
 mod images;
 mod inertia;
 mod interface;
+mod knot_contact;
 mod pose;
 mod state;
 mod turn;
@@ -25,6 +27,7 @@ pub use gyration::Gyration;
 pub use images::{Image, Images};
 pub use inertia::RigidInertia;
 pub use interface::{Interface, Penalty, Shear, Tension};
+pub use knot_contact::{ADHESIVE_GAP, AddBlock, Arms, Functional, KnotContact, Traction};
 pub use pose::Pose;
 pub use state::{ContactChange, ContactNode, ContactState};
 pub use turn::Turn;

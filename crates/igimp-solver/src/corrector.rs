@@ -518,9 +518,12 @@ impl<const D: usize> Corrector<'_, '_, D> {
             LinearSolverError::Singular {
                 unknown: Some(unknown),
             } => self
-                .not_held(unknown)
+                .not_held(Some(unknown))
                 .or_else(|| self.singular_at(unknown))
                 .unwrap_or_else(|| error.into()),
+            LinearSolverError::Inaccurate { .. } => {
+                self.not_held(None).unwrap_or_else(|| error.into())
+            }
             other => other.into(),
         }
     }
@@ -534,15 +537,18 @@ impl<const D: usize> Corrector<'_, '_, D> {
         })
     }
 
-    /// The failure that names the rigid body of an unknown, if it is that of one: with what goes farthest of the motion that meets no
-    /// resistance, rotations by half the size of the body.
-    fn not_held(&self, unknown: usize) -> Option<StepFailure> {
+    /// The failure that names a rigid body, if nothing holds one: with what goes farthest of the motion that meets no resistance,
+    /// rotations by half the size of the body; or the body of an unknown.
+    fn not_held(&self, unknown: Option<usize>) -> Option<StepFailure> {
         let unknowns = self.system.unknowns();
         let body_of = |unknown: usize| {
             let (node, axis) = unknowns.place(unknown)?;
             self.system.rigid_body_of(node, axis)
         };
-        let own = body_of(unknown)?;
+        let own = match unknown {
+            Some(unknown) => Some(body_of(unknown)?),
+            None => None,
+        };
         let direction = self.bordered.free_direction().unwrap_or_default();
         let first = unknowns.len() - direction.len();
         let ways = direction.iter().enumerate().filter_map(|(k, by)| {
@@ -553,7 +559,7 @@ impl<const D: usize> Corrector<'_, '_, D> {
             Some((arm * by.abs(), moved))
         });
         let farthest = ways.max_by(|a, b| a.0.total_cmp(&b.0));
-        let (body, component, touches) = farthest.map_or(own, |(_, moved)| moved);
+        let (body, component, touches) = farthest.map(|(_, moved)| moved).or(own)?;
         Some(StepFailure::NotHeld {
             body: body.name.clone(),
             component: match component.checked_sub(D) {

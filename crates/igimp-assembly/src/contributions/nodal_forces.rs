@@ -1,8 +1,7 @@
 //! Forces at nodes beside those of particles: the one seam for ghost penalty, drag, contact
 //! and reinforcement.
 
-/// Takes a block of the tangent: row, column, ∂f/∂u \[force/length\].
-pub(crate) type AddBlock<'b, const D: usize> = dyn FnMut(usize, usize, &[[f64; D]; D]) + 'b;
+pub(crate) use igimp_rigid::AddBlock;
 
 /// Force and stiffness at nodes beside those of particles.
 pub(crate) trait NodalForces<const D: usize>: std::fmt::Debug + Send + Sync {

@@ -248,6 +248,7 @@ impl<const D: usize> Stages<D> {
             StageEnd::Interrupted => (StageOutcome::Interrupted, EndReason::Interrupted, None),
             StageEnd::NotConverged(error)
                 if error.failure.is_want_of_equilibrium()
+                    && !failure::is_without_hold(&error.failure, &summary)
                     && (stage.stop_when.no_equilibrium
                         || fallen::is_answered(session.model.case, number)) =>
             {

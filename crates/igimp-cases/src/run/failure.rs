@@ -44,6 +44,15 @@ pub(crate) fn tells_no_limit(
         )
 }
 
+/// Whether a stage ended where it began as nothing holds the ground or a body: its supports are wanting, and no load is a limit.
+pub(crate) fn is_without_hold(failure: &StepFailure, summary: &StageSummary) -> bool {
+    let is_singular = matches!(
+        failure,
+        StepFailure::Singular { .. } | StepFailure::NotHeld { .. }
+    );
+    is_singular && summary.reached == 0.0
+}
+
 /// Describes the step that ended a stage.
 pub(crate) fn describe<const D: usize>(
     session: &Session<'_, D>,

@@ -3,7 +3,6 @@
 mod engine;
 mod failure;
 pub(crate) mod footing;
-mod mixed_cells;
 mod model;
 mod output;
 mod reinforcement;

@@ -82,6 +82,13 @@ fn boundaries_within_cells_are_told_with_a_remedy() {
     assert_eq!(file(&ground("fit = \"layers\"")).warnings(), "");
     let alike = ground("").replace("young = \"6 MPa\"", "young = \"30 MPa\"");
     assert_eq!(file(&alike).warnings(), "");
+    // Water that does not leave is stiff.
+    let undrained = "drainage = \"undrained\"\nundrained_poisson = 0.49\nyoung = \"30 MPa\"";
+    let warnings = file(&ground("").replace("young = \"6 MPa\"", undrained)).warnings();
+    assert!(
+        warnings.contains("at y = 4.5 m lies within cells"),
+        "{warnings}"
+    );
     assert_eq!(file(&ground("mixed_cells = \"mean\"")).warnings(), "");
     let sloping = ground("").replace("[\"12 m\",\"4.5 m\"]", "[\"12 m\",\"6.5 m\"]");
     let warnings =
@@ -103,6 +110,14 @@ fn gaps_thin_layers_and_odd_stiffness_are_told() {
 
     let thin = ground("fit = \"layers\"").replace("4.5 m", "2 m");
     let warnings = file(&thin).warnings();
+    assert!(
+        warnings.contains("body `clay` is 2 cells thick"),
+        "{warnings}"
+    );
+
+    // Strength counts where stiffness is alike, and a slope counts across.
+    let alike = thin.replace("young = \"6 MPa\"", "young = \"30 MPa\"");
+    let warnings = file(&alike).warnings();
     assert!(
         warnings.contains("body `clay` is 2 cells thick"),
         "{warnings}"

@@ -11,6 +11,7 @@ mod pieces;
 mod profiles;
 mod rasters;
 mod seeding;
+mod shared_cells;
 mod softening_friction;
 mod softening_profiles;
 mod solid_bodies;

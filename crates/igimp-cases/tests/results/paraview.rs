@@ -214,6 +214,7 @@ fn vtk_pyvista_and_meshio_read_what_is_written() {
     );
     let utilisation: Vec<f64> = (0..plane.len()).map(|k| k as f64 / 2500.0).collect();
     let everything = Extras {
+        materials: None,
         axisymmetric: false,
         carried: &[],
         utilisation: Some(&utilisation),

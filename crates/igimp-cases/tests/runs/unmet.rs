@@ -212,3 +212,57 @@ fn a_uniform_collapse_is_told_as_one() {
     let reached = followed.summary.stages[0].reached;
     assert!((reached / exact - 1.0).abs() < 1e-3, "{reached} of {exact}");
 }
+
+/// GOAL: the peak of a quantity that is told with its sign turned is the largest as it is told.
+/// CASE: elastic ground settles under its weight in four steps. ORACLE: its settlement at the end, which only grows.
+#[test]
+fn a_peak_is_that_of_what_is_told() {
+    let text = r#"
+igimp = 1
+[case]
+title = "ground settles"
+[grid]
+cell = "0.5 m"
+domain = { x = ["0 m", "1 m"], y = ["0 m", "2.5 m"] }
+[materials.soil]
+model = "elastic"
+unit_weight = "20 kN/m3"
+young = "1 MPa"
+poisson = 0
+[[bodies]]
+name = "soil"
+material = "soil"
+polygon = [["0 m", "0 m"], ["1 m", "0 m"], ["1 m", "2 m"], ["0 m", "2 m"]]
+[[monitors]]
+name = "top"
+point = ["0.6 m", "1.9 m"]
+[[stages]]
+name = "weight"
+type = "gravity"
+geometry = "given"
+steps = 4
+[[checks]]
+name = "settlement"
+of = "top.displacement_y"
+at = "peak"
+divide_by = ["-1 mm"]
+at_least = 30
+source = "by hand"
+[output]
+report = false
+figures = []
+"#;
+    let file = CaseFile::parse("case.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let run = in_memory(file.case()).unwrap();
+    let last = run.monitors[0].rows.last().unwrap();
+    let settlement = run.monitors[0]
+        .header
+        .iter()
+        .position(|own| own.contains("displacement_y"));
+    let expected = -1e3 * last[settlement.unwrap()];
+    let found = run.summary.checks[0].check.measured;
+    assert!(
+        expected > 30.0 && (found / expected - 1.0).abs() < 1e-12,
+        "{found} {expected}"
+    );
+}

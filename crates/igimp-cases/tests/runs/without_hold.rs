@@ -66,14 +66,71 @@ figures = []
 paraview = { every = "never" }
 "#;
 
-/// GOAL: a block slides where its push exceeds its friction. ORACLE: μ of its weight.
+/// GOAL: a block that slides is told to slide, with what helps, at any friction. ORACLE: it goes along x at μ of its weight.
 #[test]
-fn a_block_slides_at_its_friction() {
-    for friction in [0.2, 0.28] {
+fn a_block_that_slides_is_told_to() {
+    for friction in [0.2, 0.23, 0.28, 0.29] {
         let run = ran(BLOCK, &[&format!("rigid.0.interface.friction={friction}")]);
         let pushed = 0.3 * run.failure.as_ref().unwrap().error.from;
         assert!((pushed / friction - 1.0).abs() < 0.01, "{pushed}");
+        let failure = run.failure.unwrap();
+        let told = failure.error.failure.to_string();
+        let expected = "nothing holds the rigid body \"block\" in its displacement in x";
+        assert!(told.starts_with(expected), "{told}");
+        let first = &failure.suggestions[0];
+        assert!(
+            first.contains("friction") && first.contains("slides"),
+            "{first}"
+        );
+        assert!(failure.suggestions[1].starts_with("x = \"0 m\""));
     }
+}
+
+/// GOAL: ground that nothing holds has no limit load, and is no planned end. CASE: a block on a roller, pressed, free to slide.
+/// ORACLE: the stage fails where it began.
+#[test]
+fn ground_that_nothing_holds_has_no_limit_load() {
+    let text = r#"
+igimp = 1
+[case]
+title = "a block without a hold"
+gravity = "0 m/s2"
+[grid]
+cell = "0.5 m"
+domain = { x = ["0 m", "3 m"], y = ["0 m", "2 m"] }
+[materials.clay]
+model = "tresca"
+unit_weight = "0 kN/m3"
+young = "10 MPa"
+poisson = 0.3
+cu = "10 kPa"
+[[bodies]]
+name = "block"
+material = "clay"
+polygon = [["1 m", "0 m"], ["2 m", "0 m"], ["2 m", "1 m"], ["1 m", "1 m"]]
+[boundaries]
+left = "free"
+right = "free"
+bottom = "roller"
+[[loads]]
+name = "q"
+type = "pressure"
+from = ["1 m", "1 m"]
+to = ["2 m", "1 m"]
+pressure = "1 kPa"
+[[stages]]
+name = "load"
+type = "load"
+load = "q"
+steps = 4
+geometry = "given"
+stop_when = { no_equilibrium = true }
+[output]
+report = false
+figures = []
+"#;
+    let run = ran(text, &[]);
+    assert!(run.failure.is_some(), "{}", run.summary.stages[0].reason);
 }
 
 /// An elastic wedge between free upright sides, on a given geometry.

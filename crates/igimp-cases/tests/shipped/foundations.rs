@@ -31,8 +31,9 @@ fn circular_footing_is_that_of_slip_lines() {
 }
 
 /// GOAL: a force and a weight on a rigid body of revolution are those of the whole body.
-/// ORACLE: the settlement at which the body, displaced, has that resistance; a body that is laid on soil overlaps it by up to
-/// five millionths of a cell at first (eq. 46), 3.5e-4 of the settlement.
+/// ORACLE: the settlement at which the body, displaced, has that resistance. Soil that yields keeps the way in which it was loaded: they
+/// part by 4e-4 of the settlement in 4 steps, 1.4e-4 in 16 and 4e-5 in 64, and by 5e-4 to 2e-3 where the weight acts whole in one step. A
+/// weight that is held where its body is laid comes on evenly.
 #[test]
 fn a_circle_under_load_settles_as_far_as_one_that_is_displaced() {
     let curve = "curves=[{ name = \"w\", x = { of = \"rigid.footing.settlement\" }, y = { of = \"rigid.footing.resistance\" } }]";
@@ -43,7 +44,7 @@ fn a_circle_under_load_settles_as_far_as_one_that_is_displaced() {
         *ran.curve("w").last().unwrap()
     };
     let push = |motion: &str| format!("stages.0.bodies=[{{ body = \"footing\", {motion} }}]");
-    let [settlement, resistance] = end(&["stages.0.steps=4", &push("y = \"-3 mm\"")]);
+    let [settlement, resistance] = end(&["stages.0.steps=16", &push("y = \"-3 mm\"")]);
     assert!(resistance > 0.3 * 6.048 * 50e3 * std::f64::consts::PI);
     let force = push(&format!("force_y = \"-{resistance} N\""));
     let weight = format!("rigid.footing.weight={resistance} N");
@@ -51,11 +52,11 @@ fn a_circle_under_load_settles_as_far_as_one_that_is_displaced() {
         weight.as_str(),
         "case.gravity=9.81 m/s2",
         "materials.clay.unit_weight=0 kN/m3",
-        "stages=[{ name = \"weight\", type = \"gravity\", geometry = \"given\", steps = 4 }, { name = \"free\", type = \"rigid\", geometry = \"given\", bodies = [{ body = \"footing\", free = [\"y\"] }], steps = 4 }]",
+        "stages=[{ name = \"weight\", type = \"gravity\", geometry = \"given\", steps = 4 }, { name = \"held\", type = \"rigid\", geometry = \"given\", bodies = [{ body = \"footing\", y = \"0 m\" }], steps = 1 }, { name = \"free\", type = \"rigid\", geometry = \"given\", bodies = [{ body = \"footing\", free = [\"y\"] }], steps = 16 }]",
     ];
-    for loaded in [end(&["stages.0.steps=4", &force]), end(&pulled)] {
+    for loaded in [end(&["stages.0.steps=16", &force]), end(&pulled)] {
         let ratio = loaded[0] / settlement;
-        assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
+        assert!((ratio - 1.0).abs() < 2e-4, "{ratio}");
     }
 }
 

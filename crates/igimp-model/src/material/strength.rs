@@ -245,6 +245,27 @@ impl Strength {
         }
     }
 
+    /// Angle by which plastic flow gains volume \[rad\], 0 where it keeps it. None of soil that comes to keep its volume by itself, as
+    /// Cam-clay, and of flow by Davis.
+    pub fn dilation(&self) -> Option<f64> {
+        match self {
+            Self::Elastic | Self::VonMises { .. } | Self::Tresca { .. } => Some(0.0),
+            _ => self.flows_by(),
+        }
+    }
+
+    /// The same with an angle of dilation up to a largest one \[rad\].
+    pub(super) fn dilating_up_to(mut self, most: f64) -> Self {
+        if let Self::MohrCoulomb { dilation_angle, .. }
+        | Self::DruckerPrager { dilation_angle, .. }
+        | Self::HoekBrown(HoekBrownParameters { dilation_angle, .. })
+        | Self::HardeningSoil(HardeningSoilParameters { dilation_angle, .. }) = &mut self
+        {
+            *dilation_angle = dilation_angle.min(most);
+        }
+        self
+    }
+
     /// Undrained strength or cohesion \[Pa\]; none of a strength that has neither.
     pub fn cohesive(&self) -> Option<f64> {
         let mut parameters = self.parameters().into_iter();

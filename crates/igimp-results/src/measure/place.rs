@@ -6,7 +6,6 @@ use igimp_assembly::{Particles, SharedLaw};
 use igimp_model::Field;
 use igimp_shape::Grid;
 
-use super::nearest;
 use crate::fields::{length, value};
 
 /// Particles are around another one as far as their domains reach, and by this share further \[-\].
@@ -28,6 +27,8 @@ pub struct Place {
     pub nearest: usize,
     /// That particle, and those of the same soil that are as near.
     anchors: Vec<Anchor>,
+    /// How many soils there are, through which laws are numbered.
+    soils: usize,
 }
 
 /// A particle whose value is carried on to a place, and those of the same soil around it. Directions that a plane problem does
@@ -43,20 +44,12 @@ struct Anchor {
 }
 
 impl Place {
-    /// The place of a point \[m\], where the particles stand now; none without a particle within reach \[m\].
-    pub fn of<const D: usize>(
-        particles: &Particles<D>,
-        point: &[f64; D],
-        reach: f64,
-    ) -> Option<Self> {
-        nearest(particles, point, reach).map(|particle| Self::near(particles, particle, point))
-    }
-
-    /// The place of a point near a particle.
+    /// The place of a point \[m\] near a particle, where the particles stand now. Laws are numbered through the `soils`, once or several times.
     pub fn near<const D: usize>(
         particles: &Particles<D>,
         particle: usize,
         point: &[f64; D],
+        soils: usize,
     ) -> Self {
         let distance = |other: usize| {
             let way = way(&particles.x[other], point);
@@ -66,15 +59,16 @@ impl Place {
         let half_length = particles.half_length[particle].iter().copied();
         let apart = TIED * half_length.fold(0.0, f64::max);
         let is_tied = |&other: &usize| {
-            particles.law[other] == particles.law[particle]
+            particles.law[other] % soils == particles.law[particle] % soils
                 && (distance(other) - own).abs() <= apart
         };
         Self {
             nearest: particles.number[particle],
             anchors: (0..particles.len())
                 .filter(is_tied)
-                .map(|tied| Anchor::of(particles, tied, point))
+                .map(|tied| Anchor::of(particles, tied, point, soils))
                 .collect(),
+            soils,
         }
     }
 
@@ -133,7 +127,7 @@ impl Place {
         field: impl Fn(usize) -> f64,
     ) -> f64 {
         let values = self.anchors.iter();
-        mean(values.filter_map(|anchor| anchor.by_cells(particles, grid, &field)))
+        mean(values.filter_map(|anchor| anchor.by_cells(particles, grid, self.soils, &field)))
     }
 
     /// The value of a field of particles at the place, the mean of those that its nearest particles tell; not a number where none
@@ -155,11 +149,16 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 impl Anchor {
-    fn of<const D: usize>(particles: &Particles<D>, particle: usize, point: &[f64; D]) -> Self {
+    fn of<const D: usize>(
+        particles: &Particles<D>,
+        particle: usize,
+        point: &[f64; D],
+        soils: usize,
+    ) -> Self {
         let (x, half_length) = (&particles.x, &particles.half_length);
         let is_around = |other: usize| {
             other != particle
-                && particles.law[other] == particles.law[particle]
+                && particles.law[other] % soils == particles.law[particle] % soils
                 && (0..D).all(|axis| {
                     let reach = half_length[particle][axis] + half_length[other][axis];
                     (x[other][axis] - x[particle][axis]).abs() <= (1.0 + MARGIN) * reach
@@ -202,13 +201,14 @@ impl Anchor {
         &self,
         particles: &Particles<D>,
         grid: &Grid<D>,
+        soils: usize,
         field: impl Fn(usize) -> f64,
     ) -> Option<f64> {
         let particle = particles.place_of(self.number)?;
         let Some(own_cell) = grid.cell_at(&particles.x[particle]) else {
             return Some(field(particle));
         };
-        let mut cells = means_around(particles, grid, (particle, own_cell), field);
+        let mut cells = means_around((particles, soils), grid, (particle, own_cell), field);
         let Some(own) = cells.iter().position(|(cell, _)| *cell == own_cell) else {
             return Some(f64::NAN);
         };
@@ -226,7 +226,7 @@ impl Anchor {
 
 /// Sums over the soil of a particle in its cell and in those around it, with places seen from the particle.
 fn means_around<const D: usize>(
-    particles: &Particles<D>,
+    (particles, soils): (&Particles<D>, usize),
     grid: &Grid<D>,
     (particle, own_cell): (usize, [usize; D]),
     field: impl Fn(usize) -> f64,
@@ -234,7 +234,7 @@ fn means_around<const D: usize>(
     let is_around = |cell: &[usize; D]| (0..D).all(|axis| cell[axis].abs_diff(own_cell[axis]) <= 1);
     let mut cells: Vec<([usize; D], CellMean)> = Vec::new();
     for other in 0..particles.len() {
-        if particles.law[other] != particles.law[particle] {
+        if particles.law[other] % soils != particles.law[particle] % soils {
             continue;
         }
         let Some(cell) = grid.cell_at(&particles.x[other]).filter(is_around) else {
@@ -374,6 +374,11 @@ mod tests {
         Particles::new(&(0..96).map(seed).collect::<Vec<_>>()).unwrap()
     }
 
+    fn place(particles: &Particles<2>, point: &[f64; 2]) -> Option<Place> {
+        let nearest = crate::measure::nearest(particles, point, 1.0)?;
+        Some(Place::near(particles, nearest, point, 1))
+    }
+
     /// GOAL: a linear field is exact anywhere in the body: within, at its sides and in its corners.
     #[test]
     fn a_linear_field_is_exact() {
@@ -386,7 +391,7 @@ mod tests {
             [0.0, 0.0],
             [1.125, 0.875],
         ] {
-            let place = Place::of(&particles, &point, 1.0).unwrap();
+            let place = place(&particles, &point).unwrap();
             let value = place.value(&particles, |p| linear(&particles.x[p]));
             assert!((value - linear(&point)).abs() < 1e-9, "{point:?}: {value}");
         }
@@ -398,16 +403,16 @@ mod tests {
         let particles = body();
         let jump = |p: usize| f64::from(u8::from(particles.x[p][0] > 1.5));
         let at = |x: f64| {
-            let place = Place::of(&particles, &[x, 0.9], 1.0).unwrap();
+            let place = place(&particles, &[x, 0.9]).unwrap();
             place.value(&particles, jump)
         };
         for k in 0..60 {
             let value = at(0.05 * f64::from(k));
             assert!((-1.0..=2.0).contains(&value), "{value}");
         }
-        let at_particle = Place::of(&particles, &[1.375, 0.875], 1.0).unwrap();
+        let at_particle = place(&particles, &[1.375, 0.875]).unwrap();
         assert!(at_particle.value(&particles, jump).abs() < 1e-15);
-        assert!(Place::of(&particles, &[9.0, 0.9], 1.0).is_none());
+        assert!(place(&particles, &[9.0, 0.9]).is_none());
     }
 
     /// GOAL: at walls, where particles have others on one side only, stress that is the same all over a cell is not tilted.
@@ -418,7 +423,7 @@ mod tests {
         let by_cell = |p: usize| -10.0 * (particles.x[p][1] / 0.5).floor();
         for y in [0.0, 0.3, 0.625, 0.9, 1.0, 2.0] {
             let values = [0.0, 0.1, 0.125, 0.5, 1.3, 2.9, 3.0].map(|x| {
-                let place = Place::of(&particles, &[x, y], 1.0).unwrap();
+                let place = place(&particles, &[x, y]).unwrap();
                 place.value(&particles, by_cell)
             });
             let apart = values.map(|own| (own - values[4]).abs());
@@ -434,7 +439,7 @@ mod tests {
         let mirrored = |p: usize| (3.0 * (3.0 - particles.x[p][0])).exp() * particles.x[p][1];
         for point in [[0.75, 1.0], [1.5, 0.3], [1.0, 0.0], [0.1, 0.5]] {
             let value = |x: f64, field: &dyn Fn(usize) -> f64| {
-                let place = Place::of(&particles, &[x, point[1]], 1.0).unwrap();
+                let place = place(&particles, &[x, point[1]]).unwrap();
                 place.value(&particles, field)
             };
             let [own, image] = [value(point[0], &field), value(3.0 - point[0], &mirrored)];
@@ -473,7 +478,7 @@ mod tests {
             [1.5, 1.0],
             [0.02, 1.99],
         ] {
-            let place = Place::of(&particles, &point, 1.0).unwrap();
+            let place = place(&particles, &point).unwrap();
             let stair = place.by_cells(&particles, &grid, |p| linear(middle(p)));
             let exact = place.by_cells(&particles, &grid, |p| linear(particles.x[p]));
             assert!((stair - linear(point)).abs() < 1e-9, "{point:?}: {stair}");

@@ -58,6 +58,8 @@ pub struct Frames {
     reinforcement: Option<Collection>,
     /// Whether there is pore water to write of.
     pore_water: bool,
+    /// How many materials there are.
+    materials: usize,
     /// Whether the body is one of revolution.
     axisymmetric: bool,
     /// By stage that moves in time: its number, and the places of its frames in the collections with their times \[s\].
@@ -86,6 +88,7 @@ impl Frames {
             rigid: of(pvd::RIGID, !case.rigid.is_empty())?,
             reinforcement: of(pvd::REINFORCEMENT, !case.reinforcement.is_empty())?,
             pore_water: case.has_pore_water(),
+            materials: case.materials.len(),
             axisymmetric: case.method.section.is_axisymmetric(),
             motion: Vec::new(),
             folder: folder.to_path_buf(),
@@ -260,6 +263,7 @@ impl Frames {
         let extras = Extras {
             utilisation: Some(&utilisation),
             carried: &carried,
+            materials: Some(self.materials),
             def_grad: true,
             pore_water: self.pore_water,
             axisymmetric: self.axisymmetric,

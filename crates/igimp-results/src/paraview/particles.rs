@@ -19,6 +19,8 @@ pub struct Extras<'a> {
     pub utilisation: Option<&'a [f64]>,
     /// Material parameters that vary by particle, by the names of their arrays.
     pub carried: &'a [(String, Vec<f64>)],
+    /// How many materials there are, through which laws are numbered once or several times; none: each has one law.
+    pub materials: Option<usize>,
     /// Whether the deformation gradient is written.
     pub def_grad: bool,
     /// Whether effective stress and pore pressure are written beside total stress.
@@ -51,6 +53,7 @@ pub fn of_particles<const D: usize>(
     let effective = &particles.sigma;
     let sigma: Vec<Tensor> = (0..n).map(|k| particles.total_stress(k)).collect();
     let regime = |k: usize| usize::from(particles.regime[k].code());
+    let material = |k: usize| (extras.materials).map_or(particles.law[k], |n| particles.law[k] % n);
     // A slice of one metre in plane strain.
     let per = if D == 2 && !extras.axisymmetric {
         "/m"
@@ -66,7 +69,7 @@ pub fn of_particles<const D: usize>(
         ),
         DataArray::scalars("q [Pa]", by_particle(&|k| deviatoric_stress(&effective[k]))),
         DataArray::scalars("plastic strain [-]", particles.eps_p_eq.clone()),
-        DataArray::integers("material", integers(&|k| particles.law[k])),
+        DataArray::integers("material", integers(&material)),
         DataArray::integers("regime", integers(&regime)),
         DataArray::integers("particle", integers(&|k| particles.number[k])),
         DataArray::scalars(

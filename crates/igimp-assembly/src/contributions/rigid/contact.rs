@@ -4,7 +4,6 @@
 use std::collections::BTreeMap;
 
 use super::mortar_integrals::{Gathering, rolling_radius};
-use super::row::{ADHESIVE_GAP, Functional, Row};
 use super::sums::Sums;
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
@@ -14,8 +13,9 @@ use crate::method::{Geometry, Method};
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
 use igimp_rigid::{
-    ALONG_THE_GRID, ContactChange, ContactNode, ContactState, Images, Interface, NODES_PER_BODY,
-    Penalty, Penetration, RigidBody, Tension, push_out, rotations, tents_within,
+    ADHESIVE_GAP, ALONG_THE_GRID, ContactChange, ContactNode, ContactState, Functional, Images,
+    Interface, KnotContact, NODES_PER_BODY, Penalty, Penetration, RigidBody, Tension, push_out,
+    rotations, tents_within,
 };
 use igimp_surface::vectors::{minus, norm};
 
@@ -30,7 +30,7 @@ const BESIDE: f64 = 1e-6;
 #[derive(Debug)]
 pub(crate) struct Contact<'a, const D: usize> {
     bodies: &'a [RigidBody<D>],
-    rows: Vec<Row<D>>,
+    rows: Vec<KnotContact<D>>,
     /// How stiff contact is, by row.
     penalties: Vec<Penalty>,
     /// The first of the nodes that stand for bodies.
@@ -92,6 +92,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         let motion = conditions.motions.get(index);
         let is_pushed = conditions.is_laid || motion.is_some_and(RigidMotion::is_pushed);
         let is_loaded = conditions.time.is_none() && is_pushed;
+        let carries = body.contact.knots.iter().any(|own| own.pressure > 0.0);
         let rolls = rolling_radius(body, conditions).is_some();
         let of_step = (conditions, method.section);
         let knots = Gathering::new(body, node, particles, stencils, of_step, unknowns, &images);
@@ -114,7 +115,8 @@ impl<'a, const D: usize> Contact<'a, D> {
             let mut before = body.contact.knots[knot];
             let interface = &body.interfaces[surface.side_of(knot)];
             let is_beside = sums.gap_in_front() < BESIDE * mean(sums.cell);
-            let is_laid = before.area == 0.0 && is_loaded && is_beside;
+            let is_new = before.area == 0.0 || !carries && before.gap <= BESIDE * mean(sums.cell);
+            let is_laid = is_new && is_loaded && is_beside;
             let bonds = interface.tension != Tension::None && !before.is_broken;
             // Particles that the ground cuts stand off a side by a share of their size, and go nowhere. A round body leaves the
             // ground at a slant: small gaps beside its contact are gaps.
@@ -123,7 +125,7 @@ impl<'a, const D: usize> Contact<'a, D> {
                 && sums.gap_in_front() < ADHESIVE_GAP * mean(sums.cell);
             let touches = bonds || is_beside || is_drawn_at;
             begin(&mut before, &sums, touches, rolls);
-            let mut row = Row {
+            let mut row = KnotContact {
                 body: index,
                 knot,
                 area,
@@ -176,8 +178,8 @@ impl<'a, const D: usize> Contact<'a, D> {
     /// How far soil came near in a step by nodal displacements `u` \[length\] where a gap closed, at most, in cells \[-\].
     pub(crate) fn closing(&self, u: &[[f64; D]]) -> f64 {
         // Soil that the body did not see before may overlap it already: its gap begins at zero.
-        let was_open = |row: &&Row<D>| row.gap > 0.0 || row.before.area == 0.0;
-        let closes = |row: &&Row<D>| was_open(row) && row.gap_at(u) < 0.0;
+        let was_open = |row: &&KnotContact<D>| row.gap > 0.0 || row.before.area == 0.0;
+        let closes = |row: &&KnotContact<D>| was_open(row) && row.gap_at(u) < 0.0;
         let ways = self.rows.iter().filter(closes);
         ways.map(|row| (row.gap - row.gap_at(u)) / row.cell)
             .fold(0.0, f64::max)

@@ -6,7 +6,6 @@
 mod contact;
 mod mortar_integrals;
 mod rollers;
-mod row;
 mod sums;
 mod weight;
 

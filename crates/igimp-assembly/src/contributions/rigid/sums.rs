@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::row::Arms;
+use igimp_rigid::Arms;
 
 /// What is summed at a knot.
 #[derive(Default)]

@@ -3,15 +3,14 @@
 use igimp_assembly::{ParticleSeed, Particles, SharedLaw};
 use igimp_geometry::seed::fill;
 use igimp_material::Ratios;
-use igimp_model::{Case, MixedCells};
+use igimp_model::{Case, share_cells};
 use igimp_shape::Grid;
 
 use crate::error::CaseError;
-use crate::run::mixed_cells;
 use crate::run::state::gravity_of_weights;
 use crate::run::water::Seeded;
 
-/// Particles of all bodies, and what they were seeded in. Cells whose soils share a mean stiffness append their laws.
+/// Particles of all bodies, and what they were seeded in. Cells that several soils share append their laws.
 pub(super) fn seeded<const D: usize>(
     case: &Case<D>,
     (grid, cell_height): (&Grid<D>, f64),
@@ -21,10 +20,8 @@ pub(super) fn seeded<const D: usize>(
     let (mut seeds, body) = bodies_filled(case, grid)?;
     let ratios = |seed: &ParticleSeed<D>| case.materials[seed.law].ratios_at(&seed.x, &ground);
     let mut ratios: Vec<Ratios> = seeds.iter().map(ratios).collect();
-    if case.grid.mixed_cells == MixedCells::Mean {
-        let parts = (&mut seeds[..], &mut ratios[..]);
-        mixed_cells::share_stiffness(case, (grid, cell_height), parts, laws)?;
-    }
+    let parts = (&mut seeds[..], &body[..], &mut ratios[..]);
+    share_cells(case, (grid, cell_height), parts, laws)?;
     let mut domain = Vec::new();
     if case.water.iter().any(|condition| condition.carried) {
         let own = seeds.iter().map(|seed| [seed.x, seed.half_length]);

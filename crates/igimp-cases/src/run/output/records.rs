@@ -3,7 +3,7 @@
 use igimp_assembly::{Particles, SharedLaw};
 use igimp_geometry::SeedError;
 use igimp_model::{Case, CheckTime, Field, Quantity, StageKind};
-use igimp_results::measure::place::Place;
+use igimp_results::measure::{nearest, place::Place};
 use igimp_results::summary::EnergySummary;
 use igimp_results::tables::table::Table;
 
@@ -76,13 +76,14 @@ fn watched<const D: usize>(
         let pairs = std::iter::zip(&particles.x[particle], point);
         pairs.map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
     };
-    if goes.is_empty() || stays.is_empty() {
-        return Place::of(particles, point, f64::INFINITY);
-    }
-    (0..particles.len())
-        .filter(of_those_that_stay)
-        .min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
-        .map(|nearest| Place::near(particles, nearest, point))
+    let own = if goes.is_empty() || stays.is_empty() {
+        nearest(particles, point, f64::INFINITY)
+    } else {
+        (0..particles.len())
+            .filter(of_those_that_stay)
+            .min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+    };
+    own.map(|own| Place::near(particles, own, point, case.materials.len()))
 }
 
 impl Records {
@@ -210,8 +211,15 @@ impl Records {
         let last = case.stages.len() - 1;
         for (k, check) in case.checks.iter().enumerate() {
             if check.at == CheckTime::Peak && check.stage.unwrap_or(last) == moment.stage {
-                // The larger of two, and the number where only one is one.
-                self.peaks[k] = self.peaks[k].max(self.quantity(case, check.of, moment));
+                // The larger of two as they are told, and the number where only one is one.
+                let own = self.quantity(case, check.of, moment);
+                let is_turned = check.divide_by < 0.0;
+                let peak = &mut self.peaks[k];
+                *peak = if is_turned {
+                    peak.min(own)
+                } else {
+                    peak.max(own)
+                };
             }
         }
     }

@@ -67,7 +67,7 @@ pub(crate) fn read<const D: usize>(
                 }
             };
             for group in groups {
-                table.push(row(section, &group, particles, (&laws, &grid)));
+                table.push(row((case, section), &group, particles, (&laws, &grid)));
             }
             table
         })
@@ -175,7 +175,7 @@ impl<const D: usize> Cells<D> {
 
 /// A row: at the foot of a particle on the line, or the mean over several particles, by volume.
 fn row<const D: usize>(
-    section: &Section<D>,
+    (case, section): (&Case<D>, &Section<D>),
     group: &[usize],
     particles: &Particles<D>,
     (laws, grid): (&[SharedLaw], &Grid<D>),
@@ -194,7 +194,7 @@ fn row<const D: usize>(
             let distance = along(&particles.x[only]);
             let foot: [f64; D] =
                 std::array::from_fn(|axis| section.from[axis] + distance / length * way[axis]);
-            let place = Place::near(particles, only, &foot);
+            let place = Place::near(particles, only, &foot, case.materials.len());
             let values = recorded.map(|&field| place.field(field, particles, laws, grid));
             std::iter::once(distance)
                 .chain(foot)

@@ -30,6 +30,8 @@ const WORTH: f64 = 0.04;
 const NARROW: f64 = 1.0;
 /// Cells across a layer that resolve its strength.
 const ENOUGH: f64 = 3.0;
+/// The same across a slope, where its sides cut cells \[-\].
+const ENOUGH_ACROSS_SLOPES: f64 = 4.0;
 /// γH/E beyond which the ground has another shape when its weight acts \[-\].
 const SOFT: f64 = 0.05;
 /// γH/E below which round-off shows in the strains \[-\].
@@ -74,10 +76,27 @@ fn ground_of<'a>(bodies: &[&'a BodyPart<2>], materials: &[&'a Material]) -> Grou
     Ground::new(bodies.iter().map(|body| (*body, materials[body.material])))
 }
 
-/// The modulus of compression without lateral strain at a place.
+/// The modulus of compression without lateral strain at a place, with the water that does not leave.
 fn constrained(material: &Material, place: [f64; 2], ground: &Ground<2>) -> f64 {
     let nu = material.poisson;
-    material.young_at(&place, ground) * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    let soil = material.young_at(&place, ground) * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
+    match material.drainage {
+        Drainage::Undrained { stiffness, .. } => soil + stiffness.modulus,
+        _ => soil,
+    }
+}
+
+/// Whether soil has all the strength of another one, and more.
+fn is_stronger(own: &Strength, other: &Strength) -> bool {
+    let parameters = |of: &Strength| [of.cohesive(), of.friction_angle()].map(|p| p.unwrap_or(0.0));
+    match (own, other) {
+        (Strength::Elastic, other) => *other != Strength::Elastic,
+        (_, Strength::Elastic) => false,
+        _ => {
+            let [mine, its] = [own, other].map(parameters);
+            mine != its && std::iter::zip(mine, its).all(|(mine, its)| mine >= its)
+        }
+    }
 }
 
 /// Boundaries within cells and gaps; tells which bodies touch a stiffer one, or one of their own
@@ -135,7 +154,9 @@ fn check_pairs(
             for (own, other) in [(first, second), (second, first)] {
                 let [mine, its] = [own, other].map(|k| moduli[usize::from(k == second)]);
                 neighbours[own].has_any = true;
-                neighbours[own].has_stiffer |= its > mine;
+                let [mine_of, its_of] =
+                    [own, other].map(|k| &materials[bodies[k].material].strength);
+                neighbours[own].has_stiffer |= its > mine || is_stronger(its_of, mine_of);
                 neighbours[own].has_same |= bodies[own].material == bodies[other].material;
             }
             let round_off = layers.site.round_off;
@@ -154,6 +175,8 @@ fn check_pairs(
                 .max_by(|a, b| a.0.total_cmp(&b.0));
             let names = [&a.name, &b.name].map(|name| clip(name, 40));
             let soils = [a, b].map(|body| materials[body.material]);
+            let holds_water = |own: &&Material| matches!(own.drainage, Drainage::Undrained { .. });
+            let is_shared = is_shared && !soils.iter().any(holds_water);
             if let Some((_, within)) = worst.as_ref().filter(|_| unlike_for_water(soils)) {
                 within.warn_of_flow(&names, Report { place, problems });
             }
@@ -286,7 +309,22 @@ struct Report<'a> {
     problems: &'a mut Problems,
 }
 
-/// Warns of bodies thinner than three cells that are alone or softer than what they touch.
+/// The least width of an outline across one of its slanting sides \[m\]; infinite without one.
+fn width_across_slants(outline: &[[f64; 2]]) -> f64 {
+    let sides = std::iter::zip(outline, outline.iter().cycle().skip(1));
+    let widths = sides.filter_map(|(a, b)| {
+        let side = [b[0] - a[0], b[1] - a[1]];
+        let slants = side
+            .iter()
+            .all(|own| own.abs() > 1e-9 * side[0].hypot(side[1]));
+        let off = |c: &[f64; 2]| (side[0] * (c[1] - a[1]) - side[1] * (c[0] - a[0])).abs();
+        let farthest = outline.iter().map(off).fold(0.0, f64::max);
+        slants.then(|| farthest / side[0].hypot(side[1]))
+    });
+    widths.fold(f64::INFINITY, f64::min)
+}
+
+/// Warns of bodies thinner than three cells, across a slope than four, that are alone, or softer or weaker than what they touch.
 fn check_thickness(
     layers: &Layers<'_>,
     frame: &Frame<2>,
@@ -314,14 +352,24 @@ fn check_thickness(
                 (!spans && !is_single).then(|| (own.place(to) - own.place(from), to - from))
             })
             .min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((cells, thickness)) = thinnest.filter(|(cells, _)| *cells < ENOUGH - 1e-6) else {
-            continue;
-        };
+        let [width, height] = frame.axes.each_ref().map(|axis| axis.extremes()[0]);
+        let across = width_across_slants(body.polygon());
+        let slanting = (across / width.min(height), across);
+        let (told, needed, (cells, thickness)) =
+            match thinnest.filter(|(cells, _)| *cells < ENOUGH - 1e-6) {
+                Some(thinnest) => ("where three are needed", ENOUGH, thinnest),
+                None if slanting.0 < ENOUGH_ACROSS_SLOPES => (
+                    "across its slope, where four are needed",
+                    ENOUGH_ACROSS_SLOPES,
+                    slanting,
+                ),
+                None => continue,
+            };
         problems
             .warning(
                 layers.own[index].as_ref().map(polygon_place),
                 format!(
-                    "body `{}` is {} cells thick, where three are needed",
+                    "body `{}` is {} cells thick, {told}",
                     clip(&body.name, 40),
                     short(cells)
                 ),
@@ -329,7 +377,7 @@ fn check_thickness(
             .help("neither its bending nor sliding along it is resolved")
             .help(format!(
                 "a zone in [grid] with cells of {} m, or smaller cells throughout",
-                short(thickness / ENOUGH)
+                short(thickness / needed)
             ));
     }
 }

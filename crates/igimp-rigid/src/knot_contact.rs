@@ -3,8 +3,10 @@
 
 use std::borrow::Cow;
 
-use crate::contributions::nodal_forces::AddBlock;
-use igimp_rigid::{ContactNode, Interface, Penalty, Shear, Tension, Turn};
+use crate::{ContactNode, Interface, Penalty, Shear, Tension, Turn};
+
+/// Takes a block of the tangent: row, column, ∂f/∂u \[force/length\].
+pub type AddBlock<'b, const D: usize> = dyn FnMut(usize, usize, &[[f64; D]; D]) + 'b;
 
 /// Traction grows at most so much from step to step where soil covers less and less of a knot \[-\]. A choice: without a bound
 /// the last bit of soil at a knot would carry all of its force; what is cut off is out of balance in one step, and found by it.
@@ -24,21 +26,22 @@ const SEAT: f64 = 0.05;
 
 /// Soil that is no further off than so many cells still slips along an adhesive side at its limit, and touches straight sides from the
 /// start on a given geometry: the smallest gap that a grid can tell from none, and as much as soil may go into a body \[-\].
-pub(super) const ADHESIVE_GAP: f64 = 0.1;
+pub const ADHESIVE_GAP: f64 = 0.1;
 
 /// A linear function of nodal displacements.
-pub(crate) type Functional<const D: usize> = Vec<(usize, [f64; D])>;
+pub type Functional<const D: usize> = Vec<(usize, [f64; D])>;
 
 /// Arms of a body that turns in a step, from its reference point to the soil around a knot (theory, eq. 48a).
 #[derive(Clone, Debug)]
-pub(crate) struct Arms<const D: usize> {
+pub struct Arms<const D: usize> {
     /// The node of its rotation.
-    pub(crate) node: usize,
+    pub node: usize,
     /// What rotations are multiplied by to be lengths \[length\].
-    pub(crate) size: f64,
-    /// Means of the arm times the normal, and times the tangents; first the component of the arm.
-    pub(crate) opening: [[f64; D]; D],
-    pub(crate) slip: [[[f64; D]; D]; 2],
+    pub size: f64,
+    /// Means of the arm times the normal; first the component of the arm \[length\].
+    pub opening: [[f64; D]; D],
+    /// Means of the arm times the tangents, likewise \[length\].
+    pub slip: [[[f64; D]; D]; 2],
 }
 
 impl<const D: usize> Arms<D> {
@@ -50,51 +53,54 @@ impl<const D: usize> Arms<D> {
 
 /// Contact at one knot of a surface.
 #[derive(Clone, Debug)]
-pub(crate) struct Row<const D: usize> {
-    /// The body and the knot.
-    pub(crate) body: usize,
-    pub(crate) knot: usize,
+pub struct KnotContact<const D: usize> {
+    /// The number of the body.
+    pub body: usize,
+    /// The number of the knot on its surface.
+    pub knot: usize,
     /// Area that soil covers \[length^(D-1)\].
-    pub(crate) area: f64,
+    pub area: f64,
     /// Mean gap at the step's start \[length\].
-    pub(crate) gap: f64,
+    pub gap: f64,
     /// Size of the cells \[length\].
-    pub(crate) cell: f64,
+    pub cell: f64,
     /// Young's modulus of the soil \[stress\].
-    pub(crate) young: f64,
+    pub young: f64,
     /// Adhesion of the soil that touches \[stress\].
-    pub(crate) adhesion: f64,
+    pub adhesion: f64,
     /// Opening of the mean gap, by what is linear in the rotation of the body.
-    pub(crate) opening: Functional<D>,
+    pub opening: Functional<D>,
     /// Slip of the soil along the tangents, likewise.
-    pub(crate) slip: [Functional<D>; 2],
+    pub slip: [Functional<D>; 2],
     /// What turns with the body; none where it does not turn, and where it is round.
-    pub(crate) arms: Option<Arms<D>>,
+    pub arms: Option<Arms<D>>,
     /// As the last step left it.
-    pub(crate) before: ContactNode,
+    pub before: ContactNode,
 }
 
 /// Traction at a knot with its derivatives by gap and slip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Traction {
+pub struct Traction {
     /// Pressure, positive when pressed \[stress\].
-    pub(crate) pressure: f64,
+    pub pressure: f64,
     /// Shear on the soil \[stress\].
-    pub(crate) shear: [f64; 2],
+    pub shear: [f64; 2],
     /// ∂p/∂g \[stress/length\].
-    pub(crate) by_gap: f64,
+    pub by_gap: f64,
     /// ∂τ/∂g \[stress/length\].
-    pub(crate) shear_by_gap: [f64; 2],
+    pub shear_by_gap: [f64; 2],
     /// ∂τ/∂s \[stress/length\].
-    pub(crate) shear_by_slip: [[f64; 2]; 2],
-    pub(crate) slips: bool,
-    pub(crate) breaks: bool,
+    pub shear_by_slip: [[f64; 2]; 2],
+    /// Whether the soil slips.
+    pub slips: bool,
+    /// Whether a bond breaks.
+    pub breaks: bool,
 }
 
-impl<const D: usize> Row<D> {
+impl<const D: usize> KnotContact<D> {
     /// Begins the step with the force that the last one left, on the area that is covered now of the `whole` of the knot (theory, eq.
     /// 50): soil that flows along a side hands its place on to other soil.
-    pub(crate) fn carry_force(&mut self, interface: &Interface, penalty: &Penalty, whole: f64) {
+    pub fn carry_force(&mut self, interface: &Interface, penalty: &Penalty, whole: f64) {
         if self.before.area == 0.0 {
             return;
         }
@@ -120,7 +126,7 @@ impl<const D: usize> Row<D> {
 
     /// Takes over the gap that is `measured` of soil that came in the place of other \[length\], by the share of a cell that slid by in the last
     /// step (theory, eq. 50a); in steps that take time the gap only grows by it. What slipped then is on its limit still.
-    pub(crate) fn take_soil_that_came(
+    pub fn take_soil_that_came(
         &mut self,
         (measured, takes_time): (f64, bool),
         interface: &Interface,
@@ -161,19 +167,19 @@ impl<const D: usize> Row<D> {
     }
 
     /// The way by which soil slides along the knot by nodal step displacements `u` \[length\].
-    pub(crate) fn way(&self, u: &[[f64; D]]) -> f64 {
+    pub fn way(&self, u: &[[f64; D]]) -> f64 {
         let slip = self.slip_at(u);
         slip[0].hypot(slip[1])
     }
 
     /// Begins where a body that a force pushes was laid on soil: with a pressure that is next to nothing, and stiff.
     /// Without it nothing holds the body before it has moved (theory, eq. 46).
-    pub(crate) fn seat(&mut self, penalty: &Penalty) {
+    pub fn seat(&mut self, penalty: &Penalty) {
         self.gap = self.gap.min(-SEAT * penalty.smoothing * self.cell);
     }
 
     /// The mean gap after nodal step displacements `u`.
-    pub(crate) fn gap_at(&self, u: &[[f64; D]]) -> f64 {
+    pub fn gap_at(&self, u: &[[f64; D]]) -> f64 {
         let beyond = self
             .turn(u)
             .map_or(0.0, |(arms, turn)| turn.work_beyond(&arms.opening));
@@ -181,7 +187,7 @@ impl<const D: usize> Row<D> {
     }
 
     /// The slip of the soil along the tangents by nodal step displacements `u` \[length\].
-    pub(super) fn slip_at(&self, u: &[[f64; D]]) -> [f64; 2] {
+    pub fn slip_at(&self, u: &[[f64; D]]) -> [f64; 2] {
         let turn = self.turn(u);
         [0, 1].map(|k| {
             let beyond = |(arms, turn): &(&Arms<D>, Turn<D>)| turn.work_beyond(&arms.slip[k]);
@@ -196,17 +202,12 @@ impl<const D: usize> Row<D> {
     }
 
     /// Whether adhesion acts across a mean gap \[length\] (theory, eq. 47a): a crack carries none.
-    pub(crate) fn adheres_at(&self, gap: f64, is_broken: bool) -> bool {
+    pub fn adheres_at(&self, gap: f64, is_broken: bool) -> bool {
         self.adhesion > 0.0 && !is_broken && gap <= ADHESIVE_GAP * self.cell
     }
 
     /// Traction at nodal step displacements `u` (theory, eqs. 46 to 48).
-    pub(crate) fn traction(
-        &self,
-        interface: &Interface,
-        penalty: &Penalty,
-        u: &[[f64; D]],
-    ) -> Traction {
+    pub fn traction(&self, interface: &Interface, penalty: &Penalty, u: &[[f64; D]]) -> Traction {
         let stiffness = penalty.stiffness * self.young / self.cell;
         let gap = self.gap_at(u);
         let holds = !self.before.is_broken && self.before.is_closed;
@@ -269,7 +270,7 @@ impl<const D: usize> Row<D> {
 
     /// Adds the internal force at nodal step displacements `u`, −A (p ∂g/∂u + τ ∂s/∂u), and hands its
     /// derivative on by blocks of nodes (row, column) (theory, eqs. 48 and 48a).
-    pub(crate) fn add(
+    pub fn add(
         &self,
         traction: &Traction,
         u: &[[f64; D]],
@@ -350,7 +351,7 @@ impl<const D: usize> Row<D> {
 }
 
 /// The value of a linear function of nodal displacements.
-pub(crate) fn value<const D: usize>(function: &Functional<D>, u: &[[f64; D]]) -> f64 {
+fn value<const D: usize>(function: &Functional<D>, u: &[[f64; D]]) -> f64 {
     let terms = function.iter();
     terms
         .map(|(node, share)| (0..D).map(|axis| share[axis] * u[*node][axis]).sum::<f64>())
@@ -366,5 +367,5 @@ fn add<const D: usize>(function: &Functional<D>, factor: f64, f: &mut [[f64; D]]
 }
 
 #[cfg(test)]
-#[path = "../../../tests/units/row.rs"]
+#[path = "../tests/units/knot_contact.rs"]
 mod tests;

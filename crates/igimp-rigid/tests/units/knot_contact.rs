@@ -11,8 +11,8 @@ const PENALTY: Penalty = Penalty {
 const STIFFNESS: f64 = 2000.0;
 
 /// A knot whose gap opens with the second component of the displacement of a node, and slips with the first.
-fn row(gap: f64, area: f64, before: ContactNode) -> Row<2> {
-    Row {
+fn row(gap: f64, area: f64, before: ContactNode) -> KnotContact<2> {
+    KnotContact {
         body: 0,
         knot: 0,
         area,
