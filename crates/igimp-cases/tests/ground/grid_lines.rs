@@ -117,6 +117,7 @@ fn gaps_thin_layers_and_odd_stiffness_are_told() {
 
     // Strength counts where stiffness is alike, and a slope counts across.
     let alike = thin.replace("young = \"6 MPa\"", "young = \"30 MPa\"");
+    let alike = alike.replace("cu = \"30 kPa\"", "cu = \"0.5 kPa\"");
     let warnings = file(&alike).warnings();
     assert!(
         warnings.contains("body `clay` is 2 cells thick"),
