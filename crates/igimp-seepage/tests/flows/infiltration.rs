@@ -113,7 +113,11 @@ fn rain_enters_until_the_ground_is_wet() {
             };
             let found = march(&grid, &[body], (&start, &conditions), &|_| None, &course).unwrap();
             for time in &course.times[..2] {
-                let own = found.balance.iter().find(|own| own.time == *time).unwrap();
+                let own = found
+                    .balance
+                    .iter()
+                    .find(|own| own.time.to_bits() == time.to_bits())
+                    .unwrap();
                 assert!((own.entered / (K * time * share) - 1.0).abs() < 1e-6);
                 assert!(own.error < 1e-10);
             }
