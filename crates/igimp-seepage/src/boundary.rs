@@ -93,7 +93,10 @@ fn at<const D: usize>(
         return (At::Head(level), faces);
     }
     match last.map(|(index, own)| (index, own.what)) {
-        Some((index, OnFaces::Recharge(rain))) => (At::Open(rain * rises.max(0.0)), index),
+        // No rain falls on upright faces and undersides: they are as if nothing were said.
+        Some((index, OnFaces::Recharge(rain))) if rises > UPRIGHT => {
+            (At::Open(rain * rises), index)
+        }
         Some((index, OnFaces::Open)) => (At::Open(0.0), index),
         _ => else_at,
     }

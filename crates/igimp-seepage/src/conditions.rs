@@ -87,7 +87,8 @@ pub enum OnFaces {
     Head(f64),
     /// So much water enters by the area of the face \[m/s\]; negative leaves.
     Inflow(f64),
-    /// So much rain falls by the area in plan \[m/s\]; what cannot enter runs off, and water may come out.
+    /// So much rain falls by the area in plan on faces that rise \[m/s\]; what cannot enter runs off, and water may come out. Other
+    /// faces are as if nothing were said.
     Recharge(f64),
     /// Water comes out where its pressure would be positive, and none enters: a seepage face, a filter.
     Open,

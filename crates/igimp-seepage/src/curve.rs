@@ -3,7 +3,8 @@
 /// Relative permeability k_r by the pressure head ψ = u / γ_w \[m\], negative above the free surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Curve {
-    /// Falls from 1 to the floor about the free surface, over one cell unless another width is given (eq. 79).
+    /// Falls from 1 to the floor over one cell unless another width is given, along level lines about the free surface, upright above it
+    /// (eqs. 79 and 79a).
     #[default]
     Ramp,
     /// Gardner: $`k_r = e^{\alpha \psi}`$ (eq. 80).
@@ -48,13 +49,21 @@ pub(crate) struct Relative {
 const NEAR: f64 = 1e-3;
 
 impl Relative {
-    /// Share of the permeability at a pressure head \[m\], and its derivative \[1/m\].
-    pub(crate) fn at(&self, curve: Curve, psi: f64) -> [f64; 2] {
-        if self.confined {
-            return [1.0, 0.0];
-        }
+    /// Shares of the permeability that are kept at a pressure head \[m\].
+    pub(crate) fn shares(&self, curve: Curve, psi: f64) -> Shares {
+        let share = 1.0 - self.floor;
+        let kept = |raw: Slope| Slope(self.floor + share * raw.0, share * raw.1);
         let raw = match curve {
-            Curve::Ramp => ramp(psi / self.width).map_slope(1.0 / self.width),
+            _ if self.confined => Slope(1.0, 0.0),
+            Curve::Ramp => {
+                // Upright soil keeps all of it up to the surface, or water would enter level ground no faster than k / 2.
+                let at = |t: f64, by: f64| kept(ramp(t).map_slope(by));
+                let t = psi / self.width;
+                return Shares {
+                    level: at(0.5 + t, 1.0 / self.width),
+                    upright: at(1.0 + 2.0 * t, 2.0 / self.width),
+                };
+            }
             Curve::Gardner { .. } | Curve::VanGenuchten { .. } if psi >= 0.0 => Slope(1.0, 0.0),
             Curve::Gardner { alpha } => {
                 let value = (self.exponent * alpha * psi).exp();
@@ -69,8 +78,10 @@ impl Relative {
                 )
             }
         };
-        let share = 1.0 - self.floor;
-        [self.floor + share * raw.0, share * raw.1]
+        Shares {
+            level: kept(raw),
+            upright: kept(raw),
+        }
     }
 
     /// Water that a volume of soil holds beyond that of full pores at ψ = 0, by volume \[-\], and its slope \[1/m\]: pores that
@@ -102,8 +113,38 @@ impl Relative {
     }
 }
 
-/// A value and its slope.
+/// A value and its slope by the pressure head.
+#[derive(Clone, Copy, Debug)]
 struct Slope(f64, f64);
+
+/// What soil keeps of its permeability along level lines and along upright ones \[-\].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shares {
+    level: Slope,
+    upright: Slope,
+}
+
+impl Shares {
+    /// What is kept of a permeability, symmetric as that is, and its slope by the pressure head (eq. 79b).
+    pub(crate) fn of<const D: usize>(&self, tensor: &[[f64; D]; D]) -> [[[f64; D]; D]; 2] {
+        let Self { level, upright } = self;
+        let between = (level.0 * upright.0).sqrt();
+        let between_slope = 0.5 * (level.1 * upright.0 + level.0 * upright.1) / between;
+        let mut found = [*tensor; 2];
+        for row in 0..D {
+            for column in 0..D {
+                let [value, slope] = match (row == D - 1, column == D - 1) {
+                    (false, false) => [level.0, level.1],
+                    (true, true) => [upright.0, upright.1],
+                    _ => [between, between_slope],
+                };
+                found[0][row][column] *= value;
+                found[1][row][column] *= slope;
+            }
+        }
+        found
+    }
+}
 
 impl Slope {
     fn map_slope(self, by: f64) -> Self {
@@ -111,9 +152,8 @@ impl Slope {
     }
 }
 
-/// From 0 at −1/2 to 1 at 1/2, smooth, odd about the middle.
+/// From 0 at 0 to 1 at 1, smooth, odd about the middle.
 fn ramp(t: f64) -> Slope {
-    let t = t + 0.5;
     if t <= 0.0 {
         Slope(0.0, 0.0)
     } else if t >= 1.0 {
@@ -177,14 +217,18 @@ mod tests {
             Curve::VanGenuchten { alpha: 1.5, n: 2.2 },
         ] {
             for psi in [-3.0, -0.4, -0.1, -2e-4, 0.1, 2.0] {
-                let [above, below] = [1e-6, -1e-6].map(|d| relative.at(curve, psi + d)[0]);
-                let [value, slope] = relative.at(curve, psi);
-                let found = (above - below) / 2e-6;
-                assert!(
-                    (found - slope).abs() < 1e-5 * (1.0 + slope.abs()),
-                    "{curve:?} {psi}"
-                );
-                assert!((1e-3..=1.0).contains(&value));
+                let at = |psi: f64| relative.shares(curve, psi).of(&[[1.0; 2]; 2]);
+                let [above, below] = [1e-6, -1e-6].map(|d| at(psi + d)[0]);
+                let [value, slope] = at(psi);
+                for (row, column) in [(0, 0), (0, 1), (1, 1)] {
+                    let found = (above[row][column] - below[row][column]) / 2e-6;
+                    let slope = slope[row][column];
+                    assert!(
+                        (found - slope).abs() < 1e-5 * (1.0 + slope.abs()),
+                        "{curve:?} {psi}"
+                    );
+                    assert!((1e-3..=1.0).contains(&value[row][column]));
+                }
             }
         }
     }

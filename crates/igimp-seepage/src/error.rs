@@ -39,7 +39,8 @@ pub enum SeepageError {
     /// Corrections that do not lead to a balance of water.
     #[error(
         "the free surface was not found: after {corrections} corrections the balance is still off by {residual:.1e} of the flow; \
-         let the permeability fall over more height, or take smaller cells"
+         where more is to be taken from the ground than flows to it, take less; else let the permeability fall over more height, or take \
+         smaller cells"
     )]
     NotFound {
         /// Corrections made.
@@ -49,8 +50,8 @@ pub enum SeepageError {
     },
     /// A flow in time that finds no balance.
     #[error(
-        "the flow in time does not go on after {time} s: no step was found that balances or is accurate, however short; \
-         let a head that changes at once do so over some time, let the permeability fall over more height, or take smaller cells"
+        "the flow in time does not go on after {time:.4e} s: no step was found that balances or is accurate, however short; \
+         let a head or rain that changes at once do so over some time, let the permeability fall over more height, or take other cells"
     )]
     Stuck {
         /// Time of the last balance \[s\].

@@ -246,9 +246,9 @@ impl<'a, const D: usize> System<'a, D> {
         let heads = &heads[..1 << D];
         let lowest = heads.iter().copied().fold(f64::INFINITY, f64::min);
         let highest = heads.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let beyond = 0.5 * relative.width;
-        let is_full = relative.confined || lowest - upper[D - 1] > beyond;
-        let is_dry = self.curve(soil) == Curve::Ramp && highest - lower[D - 1] < -beyond;
+        let is_full = relative.confined || lowest - upper[D - 1] > 0.5 * relative.width;
+        let is_dry =
+            self.curve(soil) == Curve::Ramp && highest - lower[D - 1] < -0.5 * relative.width;
         let along: &[(f64, f64)] = if is_full || is_dry { &TWO } else { &FOUR };
         let mut points = gauss(part, along, soil);
         for point in &mut points {
@@ -267,14 +267,19 @@ impl<'a, const D: usize> System<'a, D> {
     ) -> [f64; D] {
         let basis = Basis::at(ends_of(self.grid, self.cells[cell].place), &point.x);
         let psi = basis.head(heads) - point.x[D - 1];
-        let [share, _] = self.share(relative, point.soil, psi);
-        let slope = apply(self.tensor(cell, point.soil), &basis.slope(heads));
-        slope.map(|slope| -share * slope)
+        let [kept, _] = self.kept(relative, (cell, point.soil), psi);
+        apply(&kept, &basis.slope(heads)).map(|slope| -slope)
     }
 
-    /// What share of its permeability soil has at a point, and the slope of that.
-    pub(crate) fn share(&self, relative: &Relative, soil: usize, psi: f64) -> [f64; 2] {
-        relative.at(self.curve(soil), psi)
+    /// What soil within a cell keeps of its permeability \[m/s\] at a pressure head, and the slope of that \[1/s\].
+    fn kept(
+        &self,
+        relative: &Relative,
+        (cell, soil): (usize, usize),
+        psi: f64,
+    ) -> [[[f64; D]; D]; 2] {
+        let shares = relative.shares(self.curve(soil), psi);
+        shares.of(self.tensor(cell, soil))
     }
 
     /// Residual \[m^D/s\], outflow positive; tangent where there is a matrix, and flows.
@@ -325,17 +330,16 @@ impl<'a, const D: usize> System<'a, D> {
         let corners = 1 << D;
         for point in self.points(cell, heads, relative) {
             let basis = Basis::at(ends, &point.x);
-            let tensor = self.tensor(cell, point.soil);
             let (head, slope) = (basis.head(heads), basis.slope(heads));
-            let [share, fall] = self.share(relative, point.soil, head - point.x[D - 1]);
-            let flux = apply(tensor, &slope);
+            let [kept, fall] = self.kept(relative, (cell, point.soil), head - point.x[D - 1]);
+            let [flux, change] = [kept, fall].map(|own| apply(&own, &slope));
             for i in 0..corners {
-                let through = point.volume * dot(&flux, &basis.gradient[i]);
-                local.residual[i] += share * through;
-                let pull = apply(tensor, &basis.gradient[i]);
+                local.residual[i] += point.volume * dot(&flux, &basis.gradient[i]);
+                let pull = apply(&kept, &basis.gradient[i]);
+                let change = point.volume * dot(&change, &basis.gradient[i]);
                 for j in 0..corners {
-                    local.tangent[i][j] += share * point.volume * dot(&pull, &basis.gradient[j])
-                        + fall * through * basis.value[j];
+                    local.tangent[i][j] +=
+                        point.volume * dot(&pull, &basis.gradient[j]) + change * basis.value[j];
                 }
             }
             let Some(region) = point.region else { continue };
@@ -427,10 +431,9 @@ impl<'a, const D: usize> System<'a, D> {
             soil,
         } = held.facet;
         let basis = Basis::at(ends_of(self.grid, self.cells[held.cell].place), &x);
-        let pull = apply(self.tensor(held.cell, soil), &normal);
-        let penalty = dot(&pull, &normal) * self.steepness(held);
+        let steepness = self.steepness(held);
         let (head, slope) = (basis.head(heads), basis.slope(heads));
-        let towards = dot(&pull, &slope);
+        let kept = |psi: f64| self.kept(relative, (held.cell, soil), psi);
         let corners = 1 << D;
         let mut passes = |inwards: f64| {
             for (unknown, value) in std::iter::zip(local.unknowns, basis.value) {
@@ -446,40 +449,40 @@ impl<'a, const D: usize> System<'a, D> {
                 }
             }
             At::Head(wanted) => {
-                let [share, _] = self.share(relative, soil, wanted - x[D - 1]);
+                let pull = apply(&kept(wanted - x[D - 1])[0], &normal);
+                let penalty = dot(&pull, &normal) * steepness;
                 if let Some(driven) = driven {
-                    let outflow = share * penalty * (head - wanted) + driven;
+                    let outflow = penalty * (head - wanted) + driven;
                     passes(-outflow);
                     for i in 0..corners {
                         local.residual[i] += area * outflow * basis.value[i];
                         for j in 0..corners {
-                            local.tangent[i][j] +=
-                                area * share * penalty * basis.value[i] * basis.value[j];
+                            local.tangent[i][j] += area * penalty * basis.value[i] * basis.value[j];
                         }
                     }
                     return;
                 }
-                let outflow = share * (penalty * (head - wanted) - towards);
+                let outflow = penalty * (head - wanted) - dot(&pull, &slope);
                 passes(-outflow);
                 for i in 0..corners {
                     let own = dot(&pull, &basis.gradient[i]);
-                    local.residual[i] +=
-                        area * (outflow * basis.value[i] - share * own * (head - wanted));
+                    local.residual[i] += area * (outflow * basis.value[i] - own * (head - wanted));
                     for j in 0..corners {
                         let other = dot(&pull, &basis.gradient[j]);
                         local.tangent[i][j] += area
-                            * share
                             * ((penalty * basis.value[j] - other) * basis.value[i]
                                 - own * basis.value[j]);
                     }
                 }
             }
             At::Open(rain) => {
-                let [share, fall] = match driven {
-                    Some(_) => [0.0, 0.0],
-                    None => self.share(relative, soil, head - x[D - 1]),
+                let whole = apply(self.tensor(held.cell, soil), &normal);
+                let penalty = dot(&whole, &normal) * steepness;
+                let [pull, fall] = match driven {
+                    Some(_) => [[0.0; D]; 2],
+                    None => kept(head - x[D - 1]).map(|own| apply(&own, &normal)),
                 };
-                let driven = driven.unwrap_or(-share * towards);
+                let driven = driven.unwrap_or(-dot(&pull, &slope));
                 let pressed = rain + driven + penalty * (head - x[D - 1]);
                 let outflow = pressed.max(0.0) - rain;
                 passes(-outflow);
@@ -489,7 +492,7 @@ impl<'a, const D: usize> System<'a, D> {
                         let other = dot(&pull, &basis.gradient[j]);
                         local.tangent[i][j] += area
                             * basis.value[i]
-                            * ((penalty - fall * towards) * basis.value[j] - share * other);
+                            * ((penalty - dot(&fall, &slope)) * basis.value[j] - other);
                     }
                 }
             }
@@ -508,9 +511,8 @@ impl<'a, const D: usize> System<'a, D> {
                 At::Head(wanted) => wanted,
                 _ => basis.head(&own),
             };
-            let [share, _] = self.share(relative, soil, head - x[D - 1]);
-            let pull = apply(self.tensor(held.cell, soil), &normal);
-            -share * dot(&pull, &basis.slope(&own))
+            let [kept, _] = self.kept(relative, (held.cell, soil), head - x[D - 1]);
+            -dot(&apply(&kept, &normal), &basis.slope(&own))
         };
         self.held.iter().map(out).collect()
     }

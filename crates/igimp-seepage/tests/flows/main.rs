@@ -4,6 +4,7 @@ mod common;
 mod confined;
 mod cost;
 mod dams;
+mod infiltration;
 mod transient;
 mod unconfined;
 mod wells;

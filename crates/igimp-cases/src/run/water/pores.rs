@@ -8,6 +8,8 @@ use igimp_text::short;
 /// Soil floats where the pore pressure exceeds the total vertical stress by more than this share of the largest pore
 /// pressure \[-\].
 const FLOATS: f64 = 0.01;
+/// The same, at least \[Pa\]: round-off is no pressure.
+const NOTHING: f64 = 1.0;
 
 /// The pore pressures of a state; none where there are none.
 pub(crate) fn summary<const D: usize>(
@@ -29,7 +31,8 @@ pub(crate) fn summary<const D: usize>(
     }
     // Effective stress in tension: u exceeds the total vertical pressure.
     let up = D - 1;
-    let floats = |&k: &usize| pressure(k) > 0.0 && particles.sigma[k][up][up] > FLOATS * largest;
+    let floor = (FLOATS * largest).max(NOTHING);
+    let floats = |&k: &usize| pressure(k) > 0.0 && particles.sigma[k][up][up] > floor;
     Some(PoreSummary {
         largest,
         excess: (least < 0.0 || most > 0.0).then_some([least, most]),

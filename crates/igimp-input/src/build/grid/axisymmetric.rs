@@ -28,6 +28,18 @@ pub(crate) fn section(tree: &Node, mut case: Case<2>, problems: &mut Problems) -
     if start <= 0.0 && *inner == Side::Free {
         *inner = Side::Roller;
     }
+    let mut flows = case
+        .stages
+        .iter()
+        .filter_map(|own| own.consolidation.as_ref());
+    if start <= 0.0 && flows.any(|own| own.open_sides.contains(&(0, false))) {
+        problems
+            .error(
+                place_of(tree, "stages"),
+                "open_sides has the axis of revolution, which is no face: no water leaves there",
+            )
+            .help("draw a drain as a box in `drains`, or as a hole whose side the grid begins at");
+    }
     for condition in &mut case.water {
         let of_bodies = condition.bodies.iter_mut().map(|own| &mut own.1);
         for source in of_bodies.chain([&mut condition.source]) {
