@@ -22,7 +22,7 @@ use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Site;
 use crate::build::grid::Frame;
 use crate::build::materials::linear_stiffness;
-use crate::geometry::{facing, largest_run};
+use crate::geometry::{Facing, facing, largest_run};
 
 /// Error of the stress beside a boundary that is worth a warning \[-\].
 const WORTH: f64 = 0.04;
@@ -86,6 +86,11 @@ fn constrained(material: &Material, place: [f64; 2], ground: &Ground<2>) -> f64 
     }
 }
 
+/// Whether water does not leave soil.
+fn holds_water(soil: &Material) -> bool {
+    matches!(soil.drainage, Drainage::Undrained { .. })
+}
+
 /// Whether soil has all the strength of another one, and more.
 fn is_stronger(own: &Strength, other: &Strength) -> bool {
     let parameters = |of: &Strength| [of.cohesive(), of.friction_angle()].map(|p| p.unwrap_or(0.0));
@@ -94,7 +99,8 @@ fn is_stronger(own: &Strength, other: &Strength) -> bool {
         (_, Strength::Elastic) => false,
         _ => {
             let [mine, its] = [own, other].map(parameters);
-            mine != its && std::iter::zip(mine, its).all(|(mine, its)| mine >= its)
+            let pairs = || std::iter::zip(mine, its);
+            pairs().any(|(mine, its)| mine > its) && pairs().all(|(mine, its)| mine >= its)
         }
     }
 }
@@ -128,19 +134,9 @@ fn check_pairs(
             let gap = pieces.iter().find(|piece| {
                 piece.distance > layers.site.round_off && !layers.site.is_inside(None, piece.middle)
             });
+            let names = [&a.name, &b.name].map(|name| clip(name, 40));
             if let Some(gap) = gap {
-                problems
-                    .warning(
-                        place,
-                        format!(
-                            "a gap of {} m parts body `{}` from body `{}` at {}",
-                            short(gap.distance),
-                            clip(&b.name, 40),
-                            clip(&a.name, 40),
-                            point(gap.middle)
-                        ),
-                    )
-                    .help("bodies closer than a cell stick together: let them share the edge, or leave a cell between them");
+                warn_of_gap(gap, &names, Report { place, problems });
             }
             let middle = pieces.first().map_or([0.0; 2], |piece| piece.middle);
             let moduli = [a, b].map(|body| constrained(materials[body.material], middle, ground));
@@ -151,14 +147,9 @@ fn check_pairs(
             if touching.peek().is_none() {
                 continue;
             }
-            for (own, other) in [(first, second), (second, first)] {
-                let [mine, its] = [own, other].map(|k| moduli[usize::from(k == second)]);
-                neighbours[own].has_any = true;
-                let [mine_of, its_of] =
-                    [own, other].map(|k| &materials[bodies[k].material].strength);
-                neighbours[own].has_stiffer |= its > mine || is_stronger(its_of, mine_of);
-                neighbours[own].has_same |= bodies[own].material == bodies[other].material;
-            }
+            let soils = [a, b].map(|body| materials[body.material]);
+            neighbours[first].sees(soils, moduli);
+            neighbours[second].sees([soils[1], soils[0]], [moduli[1], moduli[0]]);
             let round_off = layers.site.round_off;
             let within = touching.filter_map(|piece| Within::of(piece.ends, frame, round_off));
             // One warning for two bodies: of the boundary that matters most.
@@ -173,19 +164,35 @@ fn check_pairs(
                     (within.error(ordered), within)
                 })
                 .max_by(|a, b| a.0.total_cmp(&b.0));
-            let names = [&a.name, &b.name].map(|name| clip(name, 40));
-            let soils = [a, b].map(|body| materials[body.material]);
-            let holds_water = |own: &&Material| matches!(own.drainage, Drainage::Undrained { .. });
-            let is_shared = is_shared && !soils.iter().any(holds_water);
+            let by_water = soils.iter().any(|own| holds_water(own));
             if let Some((_, within)) = worst.as_ref().filter(|_| unlike_for_water(soils)) {
                 within.warn_of_flow(&names, Report { place, problems });
             }
-            if let Some((error, within)) = worst.filter(|(error, _)| *error > WORTH && !is_shared) {
-                within.warn(&names, error, is_fitted, Report { place, problems });
+            if let Some((error, within)) =
+                worst.filter(|(error, _)| *error > WORTH && (by_water || !is_shared))
+            {
+                within.warn(
+                    &names,
+                    error,
+                    (is_fitted, by_water),
+                    Report { place, problems },
+                );
             }
         }
     }
     neighbours
+}
+
+fn warn_of_gap(gap: &Facing, [a, b]: &[String; 2], report: Report<'_>) {
+    let Report { place, problems } = report;
+    let text = format!(
+        "a gap of {} m parts body `{b}` from body `{a}` at {}",
+        short(gap.distance),
+        point(gap.middle)
+    );
+    problems
+        .warning(place, text)
+        .help("bodies closer than a cell stick together: let them share the edge, or leave a cell between them");
 }
 
 /// Whether water flows through two soils as they consolidate, and through one much faster.
@@ -206,6 +213,15 @@ struct Neighbours {
     has_any: bool,
     has_stiffer: bool,
     has_same: bool,
+}
+
+impl Neighbours {
+    /// Takes a neighbour in: of soils and moduli the own one first.
+    fn sees(&mut self, [own, other]: [&Material; 2], [mine, its]: [f64; 2]) {
+        self.has_any = true;
+        self.has_stiffer |= its > mine || is_stronger(&other.strength, &own.strength);
+        self.has_same |= std::ptr::eq(own, other);
+    }
 }
 
 /// A stretch of a boundary that lies within cells.
@@ -263,7 +279,13 @@ impl Within {
             .help("fit = \"layers\" in [grid] puts lines of the grid on level boundaries");
     }
 
-    fn warn(&self, names: &[String; 2], error: f64, is_fitted: bool, problem: Report<'_>) {
+    fn warn(
+        &self,
+        names: &[String; 2],
+        error: f64,
+        (is_fitted, by_water): (bool, bool),
+        problem: Report<'_>,
+    ) {
         let Report { place, problems } = problem;
         let at = self.ends[0];
         let percent = short(100.0 * error);
@@ -280,7 +302,11 @@ impl Within {
                 .help(format!(
                     "where it halves a cell, the stress across it is {percent} % off at particles"
                 ))
-                .help("mixed_cells = \"mean\" in [grid] shares one stiffness in such cells; finer cells narrow the band");
+                .help(if by_water {
+                    "water that does not leave makes soil stiff; finer cells narrow the band"
+                } else {
+                    "mixed_cells = \"mean\" in [grid] shares one stiffness in such cells; finer cells narrow the band"
+                });
             return;
         };
         let key = ["x", "y"][axis];
