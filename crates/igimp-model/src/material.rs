@@ -131,21 +131,10 @@ impl Material {
     /// # Errors
     /// [`MaterialError::InvalidParameter`].
     pub fn law_on(&self, cell: f64) -> Result<SharedLaw, MaterialError> {
-        self.made((LEAST_COHESION * self.unit_weight * cell, cell))
-    }
-
-    /// The constitutive law on cells of a height \[m\], with the cohesion as it is given.
-    ///
-    /// # Errors
-    /// [`MaterialError::InvalidParameter`].
-    pub fn law_as_given(&self, cell: f64) -> Result<SharedLaw, MaterialError> {
-        self.made((0.0, cell))
-    }
-
-    fn made(&self, (least_cohesion, cell): (f64, f64)) -> Result<SharedLaw, MaterialError> {
         if let Some(GivenLaw(law)) = &self.given {
             return Ok(Arc::clone(law));
         }
+        let least_cohesion = LEAST_COHESION * self.unit_weight * cell;
         let elasticity = Elasticity::new(self.young, self.poisson)?;
         match &self.softening {
             Some(curves) => curves.law(&self.strength, elasticity, (least_cohesion, cell)),

@@ -171,3 +171,57 @@ fn lines_and_zones_that_make_no_sense_are_refused() {
         assert!(error.to_string().contains(message), "{grid}: {error}");
     }
 }
+
+/// A block on a seam on rock that falls by 20°, all of one stiffness, on cells of 0.5 m; the seam is so thick upright \[m\].
+fn on_a_slanting_seam(thickness: f64) -> CaseFile {
+    let fall = 18.0 * 20_f64.to_radians().tan();
+    let (left, right) = (5.6 + fall, 5.6);
+    let outline = |name: &str, material: &str, [from, to]: [f64; 2]| {
+        format!(
+            "[[bodies]]\nname = \"{name}\"\nmaterial = \"{material}\"\npolygon = [[\"5 m\",\"{} m\"],[\"23 m\",\"{} m\"],\
+             [\"23 m\",\"{} m\"],[\"5 m\",\"{} m\"]]\n",
+            left + from,
+            right + from,
+            right + to,
+            left + to
+        )
+    };
+    let stiff = "unit_weight = \"20 kN/m3\"\nyoung = \"50 MPa\"\npoisson = 0.3\n";
+    let text = format!(
+        "igimp = 1\n[case]\ntitle = \"seam\"\n[grid]\ncell = \"0.5 m\"\n\
+         domain = {{ x = [\"0 m\", \"28 m\"], y = [\"0 m\", \"20 m\"] }}\n\
+         [materials.rock]\nmodel = \"elastic\"\n{stiff}\
+         [materials.soil]\nmodel = \"mohr-coulomb\"\n{stiff}\
+         cohesion = \"10 kPa\"\nfriction = \"20 deg\"\ndilation = \"0 deg\"\n\
+         [[bodies]]\nname = \"rock\"\nmaterial = \"rock\"\npolygon = [[\"0 m\",\"0 m\"],[\"28 m\",\"0 m\"],[\"28 m\",\"3.8 m\"],\
+         [\"23 m\",\"{right} m\"],[\"5 m\",\"{left} m\"],[\"0 m\",\"14 m\"]]\n{}{}\
+         [[stages]]\nname = \"weight\"\ntype = \"gravity\"\nsteps = 3\n\
+         [[stages]]\nname = \"fos\"\ntype = \"strength-reduction\"\n[output]\nfigures = []\nreport = false\n",
+        outline("seam", "soil", [0.0, thickness]),
+        outline("block", "rock", [thickness, thickness + 4.0]),
+    );
+    file(&text)
+}
+
+/// GOAL: a weak seam on a slope wants four cells across, and is told of below. ORACLE: its width across, by hand, over the cell; the
+/// infinite slope at its base, F = c/(γ H sin β cos β) + tan φ/tan β = 1.26.
+#[test]
+fn slanting_seams_are_measured_across() {
+    for (thickness, told) in [(1.5, Some("2.819")), (2.0, Some("3.759")), (2.2, None)] {
+        let warnings = on_a_slanting_seam(thickness).warnings();
+        match told {
+            Some(cells) => assert!(
+                warnings.contains(&format!(
+                    "body `seam` is {cells} cells thick, across its slope, where four are needed"
+                )),
+                "{warnings}"
+            ),
+            None => assert!(!warnings.contains("cells thick"), "{warnings}"),
+        }
+    }
+    let run = igimp_cases::run::in_memory(on_a_slanting_seam(2.0).case()).unwrap();
+    let found = run.summary.stages[1].safety.as_ref().unwrap().stable;
+    let found = found.unwrap();
+    println!("{found}");
+    assert!((found / 1.259 - 1.0).abs() < 0.02, "{found}");
+}

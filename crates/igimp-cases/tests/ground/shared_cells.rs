@@ -76,7 +76,13 @@ figures = []
 /// ORACLE: the same with the boundary on a line of the grid, 10.57 with ψ = 5° and 10.74 with 35°; it was 12.8, 14.1 and 14.7.
 #[test]
 fn a_limit_load_does_not_go_by_where_soils_meet() {
-    for (height, dilation) in [(2.0, 5.0), (2.05, 5.0), (2.05, 35.0), (2.125, 35.0)] {
+    for (height, dilation) in [
+        (2.0, 5.0),
+        (2.0, 35.0),
+        (2.05, 5.0),
+        (2.05, 35.0),
+        (2.125, 35.0),
+    ] {
         let file = case(&strip(height, dilation), &[]);
         let run = in_memory(file.case()).unwrap();
         let found = run.curves[0].rows.last().unwrap()[0];

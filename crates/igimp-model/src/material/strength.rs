@@ -254,9 +254,13 @@ impl Strength {
         }
     }
 
-    /// The same with an angle of dilation up to a largest one \[rad\].
+    /// The same with an angle of dilation up to a largest one \[rad\]; flow by Davis stays.
     pub(super) fn dilating_up_to(mut self, most: f64) -> Self {
-        if let Self::MohrCoulomb { dilation_angle, .. }
+        if let Self::MohrCoulomb {
+            dilation_angle,
+            flow: Flow::Dilation,
+            ..
+        }
         | Self::DruckerPrager { dilation_angle, .. }
         | Self::HoekBrown(HoekBrownParameters { dilation_angle, .. })
         | Self::HardeningSoil(HardeningSoilParameters { dilation_angle, .. }) = &mut self
