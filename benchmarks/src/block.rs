@@ -278,7 +278,7 @@ impl<const D: usize> Block<D> {
         &self.conditions.constraints
     }
 
-    /// Who touches what.
+    /// The supports of every particle.
     ///
     /// # Errors
     /// Never: all particles are on the grid.

@@ -148,6 +148,9 @@ class Case:
                 raise KeyError(key)
         return value
 
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(_keys(self.to_dict()))
+
     def with_values(self, values: Mapping[str, Any]) -> Case:
         """A copy with other values by key, checked together.
 
@@ -336,6 +339,8 @@ class Case:
             warnings.warn(self.warnings.strip(), CaseWarning, stacklevel=2)
         if (resume or from_stage is not None) and out is None:
             raise ValueError("a run goes on in its results folder: give it as out=...")
+        if threads is not None and threads < 0:
+            raise ValueError(f"threads = {threads}: give a number of threads, or none for all")
         if sum([resume, overwrite, from_stage is not None]) > 1:
             raise ValueError("resume, from_stage and overwrite exclude each other: give one of them")
         start = ("resume", 0) if resume else ("afresh", 0)
@@ -367,6 +372,18 @@ def templates() -> dict[str, str]:
 
 def _again(path: Path | None, text: str, name: str, settings: Mapping[str, str], laws: Mapping[str, Law]) -> Case:
     return Case(path=path, text=text, name=name, settings=settings, laws=laws)
+
+
+def _keys(value: Any, before: str = "") -> Iterator[str]:
+    """The keys of values within a table or a list of tables, things in lists by their names."""
+    if isinstance(value, list):
+        named = {own["name"]: own for own in value if isinstance(own, Mapping) and "name" in own}
+    else:
+        named = value if isinstance(value, Mapping) else {}
+    for name, own in named.items():
+        part = f'"{name}"' if "." in name else name
+        yield before + part
+        yield from _keys(own, f"{before}{part}.")
 
 
 def _parts(key: str) -> Iterator[str]:

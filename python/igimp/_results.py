@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
 import numpy as np
 
@@ -153,6 +153,27 @@ class Stage:
         return cls(**{name: own[name] for name in names}, interval=interval, details=own)
 
 
+class Stages(tuple[Stage, ...]):
+    """Stages in the order they ran, by number or by name."""
+
+    @overload
+    def __getitem__(self, key: SupportsIndex | str) -> Stage: ...
+
+    @overload
+    def __getitem__(self, key: slice) -> tuple[Stage, ...]: ...
+
+    def __getitem__(self, key: SupportsIndex | str | slice) -> Stage | tuple[Stage, ...]:
+        if not isinstance(key, str):
+            return super().__getitem__(key)
+        for own in self:
+            if own.name == key:
+                return own
+        raise KeyError(f"there is no stage {key!r}; stages: {', '.join(repr(own.name) for own in self)}")
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return [own.name for own in self]
+
+
 @dataclass(frozen=True)
 class MeshResult:
     """One result on all meshes of a study of the mesh error.
@@ -279,6 +300,9 @@ class Figures(Mapping[str, Figure]):
     def __len__(self) -> int:
         return len(self._figures)
 
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self)
+
     def _repr_html_(self) -> str:
         return "".join(own._repr_html_() for own in self.values())
 
@@ -303,6 +327,9 @@ class Tables(Mapping[str, Any]):
 
     def __len__(self) -> int:
         return len(self._tables)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self)
 
     def __repr__(self) -> str:
         return f"<tables: {', '.join(self) or 'none'}>"
@@ -401,9 +428,9 @@ class Results:
         return list(self.summary["warnings"])
 
     @cached_property
-    def stages(self) -> tuple[Stage, ...]:
-        """Stages in the order they ran."""
-        return tuple(map(Stage.of, self.summary["stages"]))
+    def stages(self) -> Stages:
+        """Stages in the order they ran, by number or by name."""
+        return Stages(map(Stage.of, self.summary["stages"]))
 
     @cached_property
     def checks(self) -> tuple[Check, ...]:

@@ -79,13 +79,15 @@ pub(crate) fn give_to(
 ) -> PyResult<()> {
     let elasticity = Elasticity::new(material.young, material.poisson)
         .map_err(|error| Raised::bad_input(format!("error: {error}")).exception(py))?;
-    let law = InPython::new(py, law, elasticity, trouble.clone())?;
+    let law = InPython::new(py, &material.name, law, elasticity, trouble.clone())?;
     material.given = Some(GivenLaw(Arc::new(law)));
     Ok(())
 }
 
 /// A law that is written in Python.
 struct InPython {
+    /// Material that has it.
+    material: String,
     law: Py<PyAny>,
     elasticity: Elasticity,
     symmetric: bool,
@@ -105,6 +107,7 @@ impl fmt::Debug for InPython {
 impl InPython {
     fn new(
         py: Python<'_>,
+        material: &str,
         law: Py<PyAny>,
         elasticity: Elasticity,
         trouble: Trouble,
@@ -114,6 +117,7 @@ impl InPython {
             symmetric: own.getattr("symmetric")?.extract()?,
             yields: own.getattr("yields")?.extract()?,
             identity: own.call_method0("identity")?.extract()?,
+            material: material.to_owned(),
             law,
             elasticity,
             trouble,
@@ -140,6 +144,18 @@ impl InPython {
         let (tau, tangent): (PyReadonlyArray1<'_, f64>, PyReadonlyArray1<'_, f64>) =
             answer.extract()?;
         Ok((tau.as_slice()?.to_vec(), tangent.as_slice()?.to_vec()))
+    }
+
+    /// The first exception of the run, with a note that names the law and its material.
+    /// Python 3.10 has no notes.
+    fn keep(&self, py: Python<'_>, error: PyErr, during: &str) -> MaterialError {
+        let note = format!(
+            "raised by the law {} of material \"{}\" in {during}",
+            self.identity, self.material
+        );
+        // Without the note the exception stays what it is.
+        let _ = error.value(py).call_method1("add_note", (note,));
+        self.trouble.keep(error)
     }
 
     /// The answer of the contract from a stress and a tangent.
@@ -216,8 +232,10 @@ impl Batches for InPython {
                 quantity: "stress of the law in Python",
             });
         }
-        let (tau, tangent) = Python::attach(|py| self.ask(py, eps_e_trial, histories))
-            .map_err(|error| self.trouble.keep(error))?;
+        let (tau, tangent) = Python::attach(|py| {
+            (self.ask(py, eps_e_trial, histories))
+                .map_err(|error| self.keep(py, error, "return_map"))
+        })?;
         let states = std::iter::zip(eps_e_trial, histories);
         let answers = std::iter::zip(tau.chunks_exact(3), tangent.chunks_exact(9));
         Ok(std::iter::zip(states, answers)
@@ -244,13 +262,16 @@ impl Strength for InPython {
     }
 
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
-        let weaker = Python::attach(|py| {
-            let law = self.law.bind(py).call_method1("reduced", (srf,))?.unbind();
-            Self::new(py, law, self.elasticity, self.trouble.clone())
-        });
-        match weaker {
-            Ok(law) => Ok(Arc::new(law)),
-            Err(error) => Err(self.trouble.keep(error)),
-        }
+        Python::attach(|py| {
+            let law = self.law.bind(py).call_method1("reduced", (srf,));
+            let weaker = law.and_then(|law| {
+                let trouble = self.trouble.clone();
+                Self::new(py, &self.material, law.unbind(), self.elasticity, trouble)
+            });
+            match weaker {
+                Ok(law) => Ok(Arc::new(law) as Arc<dyn ConstitutiveModel>),
+                Err(error) => Err(self.keep(py, error, "reduced")),
+            }
+        })
     }
 }

@@ -16,6 +16,9 @@ def test_values_are_set_with_units_and_read_back(slope):
     slope["boundaries.left"] = "fixed"
     assert slope["materials.clay.cohesion"] == "12 kPa"
     assert slope["stages.run-out.steps"] == 20
+    keys = slope._ipython_key_completions_()
+    assert {"grid.cell", "materials.clay.cohesion", "stages.run-out.steps"} <= set(keys)
+    assert all(slope[key] is not None for key in keys)
     assert slope["grid.cell"] == {"x": "5 m", "y": "2 m"}
     assert slope["bodies.0.name"] == "slope"
     assert slope.settings["materials.clay.cohesion"] == '"12 kPa"'

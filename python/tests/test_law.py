@@ -3,6 +3,8 @@
 ORACLE: the laws of the engine.
 """
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -112,8 +114,12 @@ def test_what_a_law_raises_is_raised(column):
         column.with_laws({name: Alone()}).run(progress=False)
     with pytest.raises(ValueError, match="return_map of Skew says symmetric = True"):
         column.with_laws({name: Skew()}).run(progress=False)
-    with pytest.raises(ZeroDivisionError, match="in the law"):
+    with pytest.raises(ZeroDivisionError, match="in the law") as caught:
         column.with_laws({name: Broken()}).run(progress=False)
+    if sys.version_info >= (3, 11):
+        [note] = caught.value.__notes__
+        assert "raised by the law" in note and "Broken" in note
+        assert note.endswith(f'of material "{name}" in return_map')
     with pytest.raises(ValueError, match="must answer arrays of shape"):
         column.with_laws({name: Narrow()}).run(progress=False)
     with pytest.raises(KeyError, match="there is no material"):

@@ -53,6 +53,9 @@ def test_a_factor_of_safety_is_an_interval(folder):
     assert 1.2 < stable < folder.factor_of_safety < failed < 1.5
     stage = folder.stages[1]
     assert stage.kind == "strength-reduction" and stage.details["safety"]["path"]["points"]
+    assert folder.stages[stage.name] is stage and stage.name in folder.stages._ipython_key_completions_()
+    with pytest.raises(KeyError, match="there is no stage 'weight'; stages: "):
+        folder.stages["weight"]
     assert folder.checks[0].met and folder.checks[0].band == "1.2 … 1.45"
     assert folder.raise_for_failure() is folder
 
@@ -186,6 +189,8 @@ def test_ways_to_begin_exclude_each_other(column, tmp_path):
 def test_threads_that_no_computer_uses_are_refused(column):
     with pytest.raises(igimp.InputError, match="100000 threads are too many: at most"):
         column.run(threads=100_000)
+    with pytest.raises(ValueError, match="threads = -1"):
+        column.run(threads=-1)
 
 
 def test_ctrl_c_ends_the_run_after_its_step(slope, tmp_path):

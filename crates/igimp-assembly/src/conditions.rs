@@ -63,7 +63,7 @@ pub struct StepConditions<const D: usize> {
 }
 
 impl<const D: usize> StepConditions<D> {
-    /// Conditions that validate_fields with one another.
+    /// Conditions that agree with one another.
     ///
     /// # Errors
     /// [`AssemblyError::OtherGrid`] for constraints that were made for another grid,
@@ -204,7 +204,7 @@ impl<const D: usize> StepConditions<D> {
         Ok(self)
     }
 
-    /// Refuses conditions that do not validate_fields.
+    /// Refuses conditions that do not agree with one another.
     fn validate_fields(&self) -> Result<(), AssemblyError> {
         self.constraints.belong_to(&self.grid)?;
         if let Some(index) = self.motions.iter().position(|motion| !motion.is_finite()) {
@@ -253,7 +253,7 @@ impl<const D: usize> StepConditions<D> {
         self.loads.are_finite()
     }
 
-    /// Refuses conditions that do not validate_fields, for a field may have been changed since they were made,
+    /// Refuses conditions that do not agree with one another, for a field may have been changed since they were made,
     /// and particles whose law is not among them.
     pub(crate) fn validate(&self, particles: &Particles<D>) -> Result<(), AssemblyError> {
         self.validate_fields()?;

@@ -1,7 +1,7 @@
 //! From particles to a system of equations: the assembly of the implicit generalised
 //! interpolation material point method with B-bar.
 //!
-//! The weak form (theory, eq. 1) becomes a sum over particles (eq. 1a). A step reads like the paper. [`Stencils`] hold who touches what, frozen for the step;
+//! The weak form (theory, eq. 1) becomes a sum over particles (eq. 1a). A step reads like the paper. [`Stencils`] hold the nodes of each particle, frozen for the step;
 //! [`System`] evaluates stress and internal force at a trial displacement and, in the same pass, the
 //! exact tangent; [`Particles::commit`] accepts a converged trial. Tension is positive.
 //!

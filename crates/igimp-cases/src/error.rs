@@ -10,6 +10,7 @@ use igimp_geometry::SeedError;
 use igimp_input::InputError;
 use igimp_linear::LinearSolverError;
 use igimp_material::MaterialError;
+use igimp_model::PointError;
 use igimp_report::ReportError;
 use igimp_results::ResultsError;
 use igimp_results::checkpoint::CheckpointError;
@@ -95,6 +96,9 @@ pub enum CaseError {
     /// A material cannot be made.
     #[error("the material cannot be made")]
     Material(#[from] MaterialError),
+    /// A material cannot be made at a place.
+    #[error(transparent)]
+    Point(#[from] PointError),
     /// The body cannot be made.
     #[error("the body cannot be made")]
     Assembly(#[from] AssemblyError),

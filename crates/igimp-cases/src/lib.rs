@@ -19,6 +19,7 @@
 //! ```
 
 pub mod exact;
+pub(crate) mod fallen;
 pub(crate) mod limit;
 pub mod mesh_study;
 pub mod run;

@@ -12,6 +12,7 @@ mod couplings;
 mod error;
 pub mod factor_memory;
 mod flows;
+pub mod resources;
 pub mod room;
 pub mod speed;
 mod systems;
@@ -32,7 +33,7 @@ pub use systems::Systems;
 use time::Time;
 
 /// Program, tables and buffers \[bytes\].
-const BASE: f64 = 2.4e7;
+const BASE: f64 = 3.2e7;
 /// State, trial and supports of a particle \[bytes\].
 const PER_PARTICLE: f64 = 2e3;
 /// The states that a search along the reduction of strength keeps \[bytes per particle\].

@@ -29,8 +29,10 @@ const PASS_IN_SPACE: f64 = 4e-6;
 const ROWS: f64 = 5e-4;
 /// A picture \[s\], and its part by particle when it shows a field.
 const PICTURE: [f64; 2] = [2e-2, 7e-6];
-/// A checkpoint or a frame \[s\], and its part by particle.
+/// A checkpoint \[s\], and its part by particle; at the end of a stage with its frame.
 const STATE: [f64; 2] = [4e-3, 1.5e-6];
+/// A frame along a stage \[s\], and its part by particle.
+const FRAME: [f64; 2] = [1e-3, 1.2e-6];
 /// Start, model, report \[s\].
 const BEGINNING: f64 = 6e-2;
 /// Shares of the time that more threads divide: of marching, of output \[-\].
@@ -238,7 +240,7 @@ fn of_stages<const D: usize>(
         [STEP, PASS]
     };
     let mut marching = 0.0;
-    let mut states = stages.len() as f64;
+    let (mut states, mut frames) = (stages.len() as f64, 0.0);
     for (stage, planned) in std::iter::zip(stages, &case.stages) {
         let passes = stage.corrections + stage.steps;
         let assembly = particles * (step * stage.steps + pass * passes);
@@ -247,7 +249,7 @@ fn of_stages<const D: usize>(
         if case.output.checkpoint_every > 0 {
             states += stage.trials + stage.steps / case.output.checkpoint_every as f64;
         }
-        states += match case.output.paraview {
+        frames += match case.output.paraview {
             Every::Never | Every::Stage => 0.0,
             Every::Steps(every) => stage.steps / every.max(1) as f64,
             Every::Film => stage.steps.min(planned.kind.film_frames() as f64),
@@ -255,11 +257,12 @@ fn of_stages<const D: usize>(
     }
     let [picture, field] = PICTURE;
     let (pictures, fields) = pictures(case);
-    let [state, part] = STATE;
+    let each = |[own, part]: [f64; 2]| own + part * particles;
     let output = BEGINNING
         + picture * pictures
         + field * fields * particles
-        + states * (state + part * particles);
+        + states * each(STATE)
+        + frames * each(FRAME);
     let more = 1.0 / rayon::current_num_threads() as f64;
     let divided = |share: f64| 1.0 - share + share * more;
     speed.factor * size.flows.seconds

@@ -37,7 +37,7 @@ const BESIDE: f64 = 0.12;
 /// Length \[pt\] of the colour bar.
 const BAR: f64 = 260.0;
 
-/// A face of the surface: a parallelogram.
+/// A face of the surface: two triangles, which meet along the line between its second and its last corner.
 #[derive(Clone, Copy, Debug)]
 pub struct Face {
     /// Corners in turn \[m\].

@@ -12,6 +12,20 @@ use crate::named::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
 
 /// What the file has.
 const COLUMNS: [&str; 3] = ["x", "y", "value"];
+/// Properties that are numbers without a unit.
+const NUMBERS: [&str; 11] = [
+    "poisson",
+    "lambda",
+    "kappa",
+    "critical_ratio",
+    "ocr",
+    "gsi",
+    "mi",
+    "disturbance",
+    "power",
+    "failure_ratio",
+    "k0_normal",
+];
 /// Most points.
 const MOST: usize = 100_000;
 /// Coordinates closer than this share of the extent are one \[-\].
@@ -46,9 +60,10 @@ fn points(file: &Named, table: &Node, key: &str) -> Result<Vec<Entry>, Trouble> 
         ));
     }
     let dimension = match key {
-        "unit_weight" => Dimension::UnitWeight,
-        "friction" => Dimension::Angle,
-        _ => Dimension::Stress,
+        "unit_weight" => Some(Dimension::UnitWeight),
+        "friction" | "dilation" => Some(Dimension::Angle),
+        key if NUMBERS.contains(&key) => None,
+        _ => Some(Dimension::Stress),
     };
     let text = text_of(&file.path, LARGEST)
         .map_err(|error| Trouble::new(error, "its path starts from the case file"))?;
@@ -61,21 +76,26 @@ fn points(file: &Named, table: &Node, key: &str) -> Result<Vec<Entry>, Trouble> 
             dimension,
         )
     };
-    let units = [
+    let along = [
         unit("length_unit", 0, Dimension::Length)?,
         unit("length_unit", 1, Dimension::Length)?,
-        unit("unit", 2, dimension)?,
     ];
+    let of_values = match dimension {
+        Some(dimension) => Some((unit("unit", 2, dimension)?, dimension)),
+        None => without_unit(key, [table.text_at("unit"), found.units[2].as_deref()])?,
+    };
     let [x, y] = [0, 1].map(|column| lines(&found, column));
     let rows = rows(&found, &x, &y)?;
-    let list = |numbers: &[f64], unit: &str, dimension| -> Result<Node, Trouble> {
-        let items = numbers
-            .iter()
-            .map(|&own| quantity(own, unit, dimension, table));
+    let list = |numbers: &[f64], unit: Option<(&str, Dimension)>| -> Result<Node, Trouble> {
+        let items = numbers.iter().map(|&own| match unit {
+            Some((unit, dimension)) => quantity(own, unit, dimension, table),
+            None => Ok(Node::written(Value::Number(own), table.place)),
+        });
         let items = items.collect::<Result<Vec<_>, _>>()?;
         Ok(Node::written(Value::List(items), table.place))
     };
-    let rows = rows.iter().map(|row| list(row, &units[2], dimension));
+    let of_values = of_values.as_ref().map(|own| (own.0.as_str(), own.1));
+    let rows = rows.iter().map(|row| list(row, of_values));
     let rows = rows.collect::<Result<Vec<_>, _>>()?;
     let entry = |key: &str, node| Entry {
         key: key.to_owned(),
@@ -83,10 +103,25 @@ fn points(file: &Named, table: &Node, key: &str) -> Result<Vec<Entry>, Trouble> 
         node,
     };
     Ok(vec![
-        entry("x", list(&x, &units[0], Dimension::Length)?),
-        entry("y", list(&y, &units[1], Dimension::Length)?),
+        entry("x", list(&x, Some((&along[0], Dimension::Length)))?),
+        entry("y", list(&y, Some((&along[1], Dimension::Length)))?),
         entry("rows", Node::written(Value::List(rows), table.place)),
     ])
+}
+
+/// No unit, as numbers have none; refuses one that the case file or the header of the column states.
+fn without_unit<T>(key: &str, stated: [Option<&str>; 2]) -> Result<Option<T>, Trouble> {
+    let is_unit = |own: &&str| !["", "-", "−", "1"].contains(&own.trim());
+    match stated.into_iter().flatten().find(is_unit) {
+        None => Ok(None),
+        Some(unit) => Err(Trouble::new(
+            format_args!(
+                "its value is in `{}`, and `{key}` is a number without a unit",
+                clip(unit, 20)
+            ),
+            "leave the unit out, or write `value [-]` into the header of the column",
+        )),
+    }
 }
 
 /// The coordinates that points have, ascending, each once.

@@ -14,7 +14,6 @@
 //! ```
 
 mod build;
-mod geometry;
 mod in_time;
 mod materials_file;
 mod read;

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use igimp_files::bytes;
-use igimp_model::{AnyCase, Case, meshes};
+use igimp_model::{AnyCase, Case, Every, meshes};
 use igimp_results::folder::provenance::Origin;
 use igimp_schema::complete::complete;
 use igimp_schema::diagnostic::{Diagnostic, Problems};
@@ -248,6 +248,21 @@ impl CaseFile {
             }
         }
         explain(&mesh)
+    }
+
+    /// The case with frames of the ends of its stages alone, unless the file states when they are written: for many runs side by
+    /// side.
+    #[must_use]
+    pub fn with_few_frames(mut self) -> Self {
+        let output = self.completed.get_mut("output");
+        let frames = output.and_then(|output| output.get_mut("paraview"));
+        if let Some(every) = frames.and_then(|frames| frames.get_mut("every"))
+            && !every.written
+        {
+            every.value = Value::Text("stage".to_owned());
+            self.case.output_mut().paraview = Every::Stage;
+        }
+        self
     }
 
     /// Where it comes from.

@@ -1,6 +1,9 @@
 //! The background grid of a case: two axes, each with equal cells or with lines where they are
 //! wanted.
 
+pub mod fitted;
+pub mod lines;
+
 use igimp_shape::{Axis, Grid, ShapeError};
 
 /// A fixed background grid.

@@ -215,6 +215,29 @@ impl<const D: usize> Ground<D> {
     }
 }
 
+/// Parts of an upright line through soil at whose ends values are looked at.
+const PARTS: u32 = 32;
+
+impl<const D: usize> Ground<D> {
+    /// Places all over a region: on its boundary, and along upright lines between them.
+    pub fn places_within(&self, region: &dyn Region<D>) -> Vec<[f64; D]> {
+        let mut places = self.places(region);
+        let ends = places.clone();
+        let is_upright = |pair: &&[[f64; D]]| {
+            (0..D - 1).all(|axis| pair[0][axis].total_cmp(&pair[1][axis]).is_eq())
+        };
+        for pair in ends.windows(2).filter(is_upright) {
+            places.extend((1..PARTS).map(|k| {
+                let share = f64::from(k) / f64::from(PARTS);
+                let mut place = pair[0];
+                place[D - 1] += share * (pair[1][D - 1] - pair[0][D - 1]);
+                place
+            }));
+        }
+        places
+    }
+}
+
 /// Share of the distance of two corners at which a place counts as beside them \[-\].
 const BESIDE: f64 = 1e-9;
 /// Most different coordinates of corners beside which places are looked at; of more some are left out.

@@ -27,15 +27,15 @@ use igimp_linear::{LinearSolver, SolverKind};
 use serde::{Deserialize, Serialize};
 
 pub use axes::{front, in_space};
-pub use grid::{AxisSpec, GridSpec, MixedCells};
+pub use grid::{AxisSpec, GridSpec, MixedCells, fitted, lines};
 pub use ground::{Ground, Layer};
 pub use igimp_schema::field::Field;
 pub use load::{Load, LoadKind, Plan};
-pub use material::mixed_cells::share_cells;
+pub use material::point_laws::{PointError, laws_at_points};
 pub use material::profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
 pub use material::raster::Raster;
 pub use material::softening::{BAND_CELLS, Softens, StrengthCurves};
-pub use material::strength::{Flow, Parameter, ParameterValue, Strength};
+pub use material::strength::{Flow, Parameter, ParameterValue, Strength, critical_ratio_of, jaky};
 pub use material::{GivenLaw, Material};
 pub use motion::calm::Calm;
 pub use motion::ground_motion::{Base, GroundMotion, Piece};
@@ -110,8 +110,8 @@ pub struct Case<const D: usize> {
     pub output: Output,
 }
 
-/// The laws of a run are numbered through the materials in their order: first those of all soil, then one for each material for every change
-/// that cells with several soils ask for.
+/// The laws of a run are numbered through the materials in their order: first those of the constants, then one for each material for every
+/// set of parameters that vary, and for every change that cells with several soils ask for.
 impl<const D: usize> Case<D> {
     /// The number of the material that a law belongs to.
     pub fn number_of_material(&self, law: usize) -> usize {
@@ -123,7 +123,7 @@ impl<const D: usize> Case<D> {
         &self.materials[self.number_of_material(law)]
     }
 
-    /// The law of another material with the same change: of all soil, or of a cell.
+    /// The law of another material at the same place, with the same change.
     pub fn law_beside(&self, law: usize, material: usize) -> usize {
         law - self.number_of_material(law) + material
     }

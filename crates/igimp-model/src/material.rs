@@ -1,6 +1,6 @@
 //! Materials: stiffness, strength and weight.
 
-pub(crate) mod mixed_cells;
+pub(crate) mod point_laws;
 pub(crate) mod profile;
 pub(crate) mod raster;
 pub(crate) mod softening;
@@ -10,9 +10,10 @@ use std::sync::Arc;
 
 use igimp_assembly::{SharedLaw, VoidLaw};
 use igimp_material::{Elasticity, MaterialError};
+use igimp_schema::text::number;
 use igimp_seepage::Soil;
 
-use super::{Drainage, Profiles};
+use super::{Drainage, Profile, Profiles};
 use softening::StrengthCurves;
 use strength::Strength;
 
@@ -57,6 +58,9 @@ impl PartialEq for GivenLaw {
         Arc::ptr_eq(&self.0, &other.0)
     }
 }
+
+/// Parts between the least and the greatest friction at whose ends a law is looked at.
+const PARTS: u32 = 16;
 
 /// Least cohesion of soil with friction, over γh \[-\].
 const LEAST_COHESION: f64 = 1.0 / 400.0;
@@ -124,6 +128,33 @@ impl Material {
         let least = LEAST_COHESION * self.unit_weight * cell;
         self.strength.friction_angle()?;
         (self.cohesive() < least).then_some(least)
+    }
+
+    /// Why it has no law on cells of a height \[m\], as the end of a sentence; where friction varies it has to have one from the least of it to
+    /// the greatest: stress snaps back first where φ is near 20°.
+    ///
+    /// # Errors
+    /// The words.
+    pub fn possible(&self, cell: f64) -> Result<(), String> {
+        let law = (self.law_on(cell)).map_err(|error| format!(": {error}"))?;
+        let (Some(least), Some(greatest)) = (
+            self.profiles.friction.as_ref().and_then(Profile::least),
+            (self.strength.friction_angle()).filter(|own| *own > 0.0),
+        ) else {
+            return Ok(());
+        };
+        for part in 0..PARTS {
+            let share = f64::from(part) / f64::from(PARTS);
+            let friction = least + share * (greatest.tan() - least);
+            // A law that is made anew, as one that is reduced is, looks at its curves.
+            (law.at_friction(friction / greatest.tan()))
+                .and_then(|law| law.map(|law| law.reduced(1.0)).transpose())
+                .map_err(|error| {
+                    let degrees = number(friction.atan().to_degrees());
+                    format!(" where its friction is {degrees} deg: {error}")
+                })?;
+        }
+        Ok(())
     }
 
     /// The constitutive law on cells of a height \[m\], with the least cohesion that they need.

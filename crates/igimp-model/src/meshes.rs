@@ -18,13 +18,21 @@ const NEAR: f64 = 1e-6;
 /// shares a cell with its side: only with edges at the same place within a cell are the meshes those of
 /// one body.
 pub fn refinements<const D: usize>(case: &Case<D>) -> Vec<usize> {
-    let sides = case.rigid.iter().flat_map(|part| upright_sides(case, part));
-    let mid_cell = footing_ends(case)
-        .into_iter()
-        .chain(sides)
-        .any(|end| (offset(case, end) - 0.5).abs() < NEAR);
-    let parts = if mid_cell { ODD } else { HALVES };
+    let is_mid_cell = |end: &f64| (offset(case, *end) - 0.5).abs() < NEAR;
+    let has_mid_cell = footing_ends(case).iter().any(is_mid_cell) || !mid_cell(case).is_empty();
+    let parts = if has_mid_cell { ODD } else { HALVES };
     parts[..case.mesh_study.meshes.clamp(1, parts.len())].to_vec()
+}
+
+/// Upright sides of rigid bodies in the middle of a cell, ascending \[m\].
+pub fn mid_cell<const D: usize>(case: &Case<D>) -> Vec<f64> {
+    let sides = case.rigid.iter().flat_map(|part| upright_sides(case, part));
+    let mut sides: Vec<f64> = sides
+        .filter(|&end| (offset(case, end) - 0.5).abs() < NEAR)
+        .collect();
+    sides.sort_by(f64::total_cmp);
+    sides.dedup();
+    sides
 }
 
 /// The cases of a study, from coarse to fine.
@@ -112,17 +120,22 @@ fn footing_ends<const D: usize>(case: &Case<D>) -> Vec<f64> {
     ends
 }
 
-/// The upright sides of a rigid body that stand within the grid \[m\].
+/// The upright sides of a rigid body that stand within the grid, and where a circle is widest \[m\].
 fn upright_sides<const D: usize>(case: &Case<D>, part: &RigidPart<D>) -> Vec<f64> {
-    let Some(RigidShape::Polygon(corners)) = part.shape.in_plane() else {
-        return Vec::new();
+    let mut ends: Vec<f64> = match part.shape.in_plane() {
+        Some(RigidShape::Polygon(corners)) => {
+            let next = corners.iter().cycle().skip(1);
+            let sides = std::iter::zip(corners, next);
+            sides
+                .filter(|(a, b)| (place(case, 0, a[0]) - place(case, 0, b[0])).abs() < NEAR)
+                .map(|(a, _)| a[0])
+                .collect()
+        }
+        Some(RigidShape::Circle { centre, radius }) => {
+            vec![centre[0] - radius, centre[0] + radius]
+        }
+        None => return Vec::new(),
     };
-    let next = corners.iter().cycle().skip(1);
-    let sides = std::iter::zip(corners, next);
-    let mut ends: Vec<f64> = sides
-        .filter(|(a, b)| (place(case, 0, a[0]) - place(case, 0, b[0])).abs() < NEAR)
-        .map(|(a, _)| a[0])
-        .collect();
     ends.retain(|&end| is_within(case, end));
     ends
 }

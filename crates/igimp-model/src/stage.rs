@@ -240,10 +240,11 @@ pub fn search_of(
 }
 
 impl StageKind {
-    /// Most frames of a film of the stage: more where the soil moves in time.
+    /// Frames of a film of the stage in many steps, where soil moves steadily, beside that of its end; a search has none of its own.
     pub fn film_frames(&self) -> usize {
         match self {
             Self::Dynamic(_) => 40,
+            Self::StrengthReduction(_) => 0,
             _ => 20,
         }
     }

@@ -1,7 +1,11 @@
 //! The way in which soil begins to fail, from two equilibria on the way there: where it shears between
 //! them, and the line along which it does so most (theory, eqs. 42 to 44).
 
+mod in_space;
+
 use igimp_results::measure::{Buckets, plane};
+
+pub use in_space::IncrementInSpace;
 
 /// Neighbours for the gradient of the increments lie within so many sizes of a particle \[-\].
 const REACH: f64 = 1.55;

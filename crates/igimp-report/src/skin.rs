@@ -6,10 +6,12 @@
 //! that threads change nothing.
 
 mod bins;
+mod smooth;
 
 use rayon::prelude::*;
 
 use bins::Bins;
+pub use smooth::Moves;
 
 /// How far outside a face it is looked for another box, as a share of the half-length across the face:
 /// gaps narrower than that are no surface.
@@ -42,6 +44,15 @@ impl Boxes<'_> {
         numbers.into_iter().all(|x| x.is_finite())
     }
 
+    /// A corner of a box: bit k of its number for the upper end along axis k.
+    fn corner(&self, k: usize, corner: u8) -> [f64; 3] {
+        [0, 1, 2].map(|axis| [self.low, self.high][usize::from(corner >> axis & 1)][k][axis])
+    }
+
+    fn least_side(&self, k: usize) -> f64 {
+        2.0 * self.half(k).into_iter().fold(f64::INFINITY, f64::min)
+    }
+
     fn holds(&self, k: usize, point: &[f64; 3]) -> bool {
         (0..3).all(|axis| (self.low[k][axis]..=self.high[k][axis]).contains(&point[axis]))
     }
@@ -63,6 +74,8 @@ pub struct Skin {
     pub faces: Vec<u8>,
     /// By box how the surface lies there; only where a face is seen.
     pub lie: Vec<Lie>,
+    /// By box where its corners lie on the surface without stairs.
+    pub moves: Vec<Moves>,
 }
 
 impl Skin {
@@ -71,7 +84,7 @@ impl Skin {
     ///
     /// # Panics
     /// If there are not as many least as largest corners.
-    pub fn of(boxes: Boxes<'_>) -> Self {
+    pub fn of(boxes: Boxes<'_>, edges: &[Vec<[f64; 3]>]) -> Self {
         let bins = Bins::of(boxes);
         let count = boxes.low.len();
         let seen = |k: usize| {
@@ -86,8 +99,32 @@ impl Skin {
             };
             (faces, lie)
         };
-        let (faces, lie) = (0..count).into_par_iter().map(seen).unzip();
-        Self { faces, lie }
+        let (faces, lie): (Vec<u8>, Vec<Lie>) = (0..count).into_par_iter().map(seen).unzip();
+        let moves = smooth::moves(boxes, &faces, edges);
+        Self { faces, lie, moves }
+    }
+
+    /// The corners of a face of a box in turn, on the surface without stairs \[m\].
+    pub fn corners(&self, boxes: Boxes<'_>, k: usize, face: usize) -> [[f64; 3]; 4] {
+        smooth::corners_of(face).map(|corner| self.corner(boxes, k, corner))
+    }
+
+    /// A corner of a box on the surface without stairs: bit k of its number for the upper end along axis k.
+    pub fn corner(&self, boxes: Boxes<'_>, k: usize, corner: u8) -> [f64; 3] {
+        let (at, moved) = (boxes.corner(k, corner), self.moves[k][usize::from(corner)]);
+        let half = boxes.half(k);
+        [0, 1, 2].map(|axis| at[axis] + f64::from(moved[axis]) / 127.0 * 2.0 * half[axis])
+    }
+
+    /// The corners in turn of the section of a box by a plane across an axis that crosses it.
+    pub fn section(&self, boxes: Boxes<'_>, k: usize, axis: usize, at: f64) -> [[f64; 3]; 4] {
+        let share = (at - boxes.low[k][axis]) / (2.0 * boxes.half(k)[axis]);
+        smooth::corners_of(2 * axis).map(|corner| {
+            let ends = [corner, corner | 1 << axis].map(|corner| self.corner(boxes, k, corner));
+            let mut point = [0, 1, 2].map(|j| ends[0][j] + share * (ends[1][j] - ends[0][j]));
+            point[axis] = at;
+            point
+        })
     }
 
     /// Number of faces that are seen.

@@ -56,6 +56,9 @@ const PARTS: [&str; 20] = [
 const MOST_OF_LAST: usize = 14_000_000;
 const MOST: usize = 4_000_000;
 
+/// Most frames before the last one where nothing moves in time: a frame takes longer to pack than to write.
+const MOST_BEFORE: usize = 3;
+
 /// Largest file of a frame that is read \[bytes\].
 const LARGEST_FILE: u64 = 2_000_000_000;
 
@@ -167,7 +170,12 @@ pub(super) fn held(folder: &Path, around: &Surroundings) -> Option<Held> {
             let most = first.data.len().max(end.data.len() / 2).max(1);
             (MOST - size) / most
         });
-        let count = room.min(last);
+        let most = if seconds.is_empty() {
+            MOST_BEFORE
+        } else {
+            last
+        };
+        let count = room.min(last).min(most);
         let before: Vec<usize> = (0..count).map(|k| k * last / count).collect();
         let read = |&k: &usize| of(k, Keep::LITTLE);
         frames = before.par_iter().filter_map(read).collect();

@@ -28,8 +28,11 @@ pub use array::{DataArray, Tuple};
 /// Bytes of a block before compression; a multiple of every size of number.
 const BLOCK: usize = 32_768;
 
-/// Quick, and hardly worse on numbers than the best.
-const LEVEL: Compression = Compression::new(3);
+/// A film writes many frames: the quickest. Numbers pack hardly better by others.
+const LEVEL: Compression = Compression::fast();
+
+/// Bytes of an array that one thread packs by itself.
+const ALONE: usize = 1 << 20;
 
 /// Kinds of cells, with VTK's number and order of corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -241,7 +244,12 @@ fn push_numbers(text: &mut String, kind: &str, attributes: &str, values: &Values
 
 /// Header and blocks, as described above.
 fn push_compressed(text: &mut String, bytes: &[u8]) {
-    let blocks: Vec<Vec<u8>> = bytes.par_chunks(BLOCK).map(compressed).collect();
+    // Fewer blocks take less time than to wake a thread for some of them.
+    let blocks: Vec<Vec<u8>> = if bytes.len() < ALONE {
+        bytes.chunks(BLOCK).map(compressed).collect()
+    } else {
+        bytes.par_chunks(BLOCK).map(compressed).collect()
+    };
     let header: Vec<u8> = [blocks.len(), BLOCK, bytes.len() % BLOCK]
         .into_iter()
         .chain(blocks.iter().map(Vec::len))

@@ -21,6 +21,10 @@ const FADED: [f64; 2] = [1.04, 1.2];
 /// keep its domains end to end, and of those that are disordered each is to face the body.
 const OVERLAP: f64 = 0.1;
 
+/// A particle that was drawn thinner than this share of one behind it is the rest of a row that an outline cuts \[-\]. A choice: rows
+/// that an outline does not cut are alike, and one that is hidden stands behind half of its own thickness at most.
+const CUT: f64 = 0.75;
+
 /// The face of a particle, parallel to a side of the body.
 pub struct Face<const D: usize> {
     /// Its middle \[length\].
@@ -35,8 +39,9 @@ pub struct Face<const D: usize> {
     pub(crate) along: [[f64; D]; 2],
     /// Half of its length in these directions \[length\].
     half: [f64; 2],
-    /// Half of the particle's thickness along the normal \[length\].
+    /// Half of the particle's thickness along the normal, now and as it was drawn \[length\].
     thickness: f64,
+    drawn: f64,
     /// From the surface to the face \[length\].
     pub gap: f64,
     /// Share by which it counts: less than 1 where its particle stands nearly too far off \[-\].
@@ -105,6 +110,7 @@ impl<const D: usize> Face<D> {
             domain: [*centre, *half_length],
             half: along.map(|tangent| reach(&tangent)),
             thickness,
+            drawn: thickness,
             along,
             side,
             normal,
@@ -116,6 +122,13 @@ impl<const D: usize> Face<D> {
     #[must_use]
     pub fn grown(mut self, beyond: &[f64; D]) -> Self {
         self.gap -= (-dot(beyond, &self.normal)).max(0.0);
+        self
+    }
+
+    /// The same of a particle that was drawn with these half-lengths \[length\].
+    #[must_use]
+    pub fn drawn_with(mut self, half_length: &[f64; D]) -> Self {
+        self.drawn = (0..D).map(|a| half_length[a] * self.normal[a].abs()).sum();
         self
     }
 
@@ -134,6 +147,11 @@ impl<const D: usize> Face<D> {
         let arm = minus(&other.middle, &self.middle);
         let mut tangents = std::iter::zip(&self.along, self.half).take(D - 1);
         self.may_hide(other.gap) && tangents.all(|(tangent, half)| dot(&arm, tangent).abs() < half)
+    }
+
+    /// Whether its particle is the rest of a row that an outline cuts, as seen from another face.
+    pub fn is_cut_before(&self, other: &Self) -> bool {
+        self.drawn < CUT * other.drawn
     }
 
     /// The directions in which the soil behind it slips along the image of a knot: those that its own mirror image has there, seen
@@ -304,6 +322,11 @@ mod tests {
             let beside = [2.0 * half, -2.0 * slice - half];
             let beside = Face::of(&body, 0, &beside, &[half; 2]).unwrap();
             assert!(front.hides(&behind) && !front.hides(&beside));
+            // A slice as it is drawn is the rest of a row that is cut; one that was pressed thin is not.
+            assert!(front.is_cut_before(&behind) && !behind.is_cut_before(&front));
+            let pressed = Face::of(&body, 0, &[0.0, -slice], &[half, slice]).unwrap();
+            let pressed = pressed.drawn_with(&[half; 2]);
+            assert!(pressed.hides(&behind) && !pressed.is_cut_before(&behind));
             // Soil is strained: the slice has come on by so much of its thickness.
             for (overlap, hides) in [(0.05, true), (0.15, false)] {
                 let on = [0.0, -(1.0 + 2.0 * overlap) * slice];

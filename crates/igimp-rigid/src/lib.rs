@@ -91,6 +91,22 @@ impl<const D: usize> RigidBody<D> {
         (distance, self.pose.direction(&normal))
     }
 
+    /// Displacement \[length\] and rotation \[rad\] of the body with this number among bodies, by the displacements of the nodes that
+    /// stand for bodies.
+    pub fn motion_of(&self, number: usize, nodes: &[[f64; D]]) -> [[f64; D]; NODES_PER_BODY] {
+        let size = self.surface.size();
+        let first = NODES_PER_BODY * number;
+        [nodes[first], nodes[first + 1].map(|turned| turned / size)]
+    }
+
+    /// Force and moment about the reference point on the body with this number among bodies, by the forces at the nodes that stand
+    /// for bodies \[force, force·length\].
+    pub fn resultant_of(&self, number: usize, nodes: &[[f64; D]]) -> [[f64; D]; NODES_PER_BODY] {
+        let size = self.surface.size();
+        let first = NODES_PER_BODY * number;
+        [nodes[first], nodes[first + 1].map(|turning| turning * size)]
+    }
+
     /// Signed distance of a point \[length\] in space to the surface, negative within the body.
     pub fn distance(&self, x: &[f64; D]) -> f64 {
         self.nearest(x).0

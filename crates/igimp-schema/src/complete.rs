@@ -2,6 +2,7 @@
 //!
 //! What is wrong becomes [`Value::Invalid`], so that one slip is reported once.
 
+pub mod plausible;
 mod retired;
 pub(crate) mod value;
 
@@ -36,6 +37,9 @@ pub fn complete_materials(tree: &Node, sources: &[Source], problems: &mut Proble
     };
     completer.table(tree, &MATERIALS_ALONE, None)
 }
+
+/// Keys of tables that say how a property varies.
+const OF_PROFILES: [&str; 6] = ["at_top", "at_surface", "levels", "depths", "rows", "raster"];
 
 /// Carries the texts and collects the problems.
 pub(crate) struct Completer<'a> {
@@ -113,9 +117,20 @@ impl Completer<'_> {
             (Kind::Table(_) | Kind::Map(..), Value::List(_)) => {
                 problem.help(format!("write [{key}] in single brackets"));
             }
-            (Kind::Number(_) | Kind::Integer(..) | Kind::Flag, Value::Text(text))
-                if DeValue::parse(text).is_ok() =>
+            (Kind::Number(_) | Kind::Quantity(..), Value::Table(_))
+                if OF_PROFILES.iter().any(|own| node.get(own).is_some()) =>
             {
+                problem.help(format!(
+                    "`{key}` is one for all soil of a material: where it varies, layers with a material each"
+                ));
+            }
+            (
+                Kind::Number(_)
+                | Kind::Integer(..)
+                | Kind::Flag
+                | Kind::Either([Kind::Number(_), ..]),
+                Value::Text(text),
+            ) if DeValue::parse(text).is_ok() => {
                 problem.help(format!("write it without quotes: {key} = {text}"));
             }
             _ => {}
@@ -298,7 +313,11 @@ impl Completer<'_> {
             } else if let Some(table) = table_of(&entry.key).filter(|table| Some(*table) != name) {
                 problem.help(format!("`{}` belongs in [{table}]", entry.key));
             } else {
-                problem.help(format!("known fields: {}", row(known.to_vec())));
+                // A key that several forms have is one.
+                let first = |(k, key): &(usize, &&str)| !known[..*k].contains(*key);
+                let once = known.iter().enumerate().filter(first);
+                let once = once.map(|(_, key)| *key);
+                problem.help(format!("known fields: {}", row(once)));
             }
         }
         meant

@@ -11,13 +11,15 @@ use super::tree::{Node, Value, from_value};
 /// A decimal number or a fraction, as a regular expression.
 const NUMBER: &str = r"[-+]?([0-9_]+\.?[0-9_]*|\.[0-9_]+)([eE][-+]?[0-9]+)?";
 /// Dimensions that keys take.
-const DIMENSIONS: [Dimension; 17] = [
+const DIMENSIONS: [Dimension; 19] = [
     Dimension::Length,
     Dimension::Stress,
     Dimension::UnitWeight,
     Dimension::StressGradient,
     Dimension::UnitWeightGradient,
     Dimension::Angle,
+    Dimension::AngleGradient,
+    Dimension::NumberGradient,
     Dimension::Acceleration,
     Dimension::ForcePerLength,
     Dimension::MomentPerLength,
@@ -210,6 +212,7 @@ fn number(range: Range) -> Json {
         Range::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
         Range::NotNegative => json!({ "type": "number", "minimum": 0 }),
         Range::Share => json!({ "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1 }),
+        Range::SmallShare => json!({ "type": "number", "exclusiveMinimum": 0, "maximum": 0.01 }),
         Range::Fraction => json!({ "type": "number", "minimum": 0, "maximum": 1 }),
     }
 }

@@ -75,6 +75,8 @@ fn units(out: &mut String) {
         Dimension::StressGradient,
         Dimension::UnitWeightGradient,
         Dimension::Angle,
+        Dimension::AngleGradient,
+        Dimension::NumberGradient,
         Dimension::Acceleration,
         Dimension::ForcePerLength,
         Dimension::MomentPerLength,
@@ -248,6 +250,7 @@ fn range_text(range: Range) -> &'static str {
         Range::Positive => " > 0",
         Range::NotNegative => " ≥ 0",
         Range::Share => " between 0 and 1",
+        Range::SmallShare => " > 0, at most 0.01",
         Range::Fraction => " from 0 to 1",
     }
 }

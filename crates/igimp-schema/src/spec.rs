@@ -130,6 +130,8 @@ pub enum Range {
     NotNegative,
     /// Above zero and below one.
     Share,
+    /// Above zero, and a hundredth at most.
+    SmallShare,
     /// From zero to one.
     Fraction,
 }
@@ -143,6 +145,7 @@ impl Range {
                 Self::Positive => value > 0.0,
                 Self::NotNegative => value >= 0.0,
                 Self::Share => 0.0 < value && value < 1.0,
+                Self::SmallShare => 0.0 < value && value <= 0.01,
                 Self::Fraction => (0.0..=1.0).contains(&value),
             }
     }
@@ -154,6 +157,7 @@ impl Range {
             Self::Positive => "positive",
             Self::NotNegative => "zero or positive",
             Self::Share => "between 0 and 1, the ends excluded",
+            Self::SmallShare => "above 0 and at most 0.01",
             Self::Fraction => "between 0 and 1",
         }
     }

@@ -208,22 +208,6 @@ pub struct Wrong;
 
 /// Values of keys, when the table has them and they were found right.
 impl Node {
-    /// The number of a key in SI units.
-    pub fn number_at(&self, key: &str) -> Option<f64> {
-        self.get(key)?.number()
-    }
-
-    /// The number of a key that may be missing.
-    ///
-    /// # Errors
-    /// [`Wrong`] when the value of the key is no number; the problem is reported already.
-    pub fn optional_number(&self, key: &str) -> Result<Option<f64>, Wrong> {
-        match self.get(key) {
-            None => Ok(None),
-            Some(value) => value.number().map(Some).ok_or(Wrong),
-        }
-    }
-
     /// The count of a key.
     pub fn count_at(&self, key: &str) -> Option<usize> {
         self.get(key)?.count()

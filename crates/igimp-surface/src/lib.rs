@@ -45,7 +45,7 @@ pub enum SurfaceError {
         rounding: f64,
     },
     /// More knots than contact is ever averaged around.
-    #[error("it is {length} m around, more than {MOST_KNOTS} cells of {spacing} m")]
+    #[error("it is {length} m around, more than {MOST_KNOTS} cells of {spacing:.4} m")]
     TooLong {
         /// How long its sides are in all \[length\].
         length: f64,
@@ -53,7 +53,7 @@ pub enum SurfaceError {
         spacing: f64,
     },
     /// More knots in space than contact is ever averaged around.
-    #[error("its sides are {area} m2 large, more than {MOST_KNOTS} squares of {spacing} m")]
+    #[error("its sides are {area} m2 large, more than {MOST_KNOTS} squares of {spacing:.4} m")]
     TooLarge {
         /// How large its sides are in all \[length²\].
         area: f64,

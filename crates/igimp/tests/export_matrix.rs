@@ -22,7 +22,7 @@ fn case(law: &str) -> String {
         [materials.soil]\nunit_weight = \"18 kN/m3\"\nyoung = \"10 MPa\"\npoisson = 0.3\n{law}\n\
         [[bodies]]\nname = \"face\"\nmaterial = \"soil\"\npoints_per_cell = 4\n\
         polygon = [[\"0 m\", \"0 m\"], [\"3 m\", \"0 m\"], [\"3 m\", \"2 m\"], [\"0 m\", \"2 m\"]]\n\
-        [boundaries]\nleft = \"roller\"\nbottom = \"fixed\"\n\
+        [boundaries]\nleft = \"roller\"\nright = \"free\"\nbottom = \"fixed\"\n\
         [[loads]]\nname = \"fill\"\ntype = \"pressure\"\nfrom = [\"0 m\", \"2 m\"]\n\
         to = [\"2 m\", \"2 m\"]\npressure = \"1 kPa\"\n\
         [[stages]]\nname = \"own weight\"\ntype = \"gravity\"\nsteps = 2\n\

@@ -1,4 +1,5 @@
-//! Rigid bodies from case files as they are shipped, at five places of the grid within a cell.
+//! Rigid bodies at places of the grid within a cell, from case files that say nothing of the method, and with lines that are not
+//! fitted to them.
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -14,7 +15,8 @@ use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, corners};
 
 /// What the book says of the study.
-const ABOUT: &str = "Strips, pipes and an anchor in weightless Tresca soil with E/s_u = 1000, from case files that say nothing of the method, on ten cells, are pushed or pulled at small strain with their sides at five places of the grid within a cell, and a strip with sharp edges on ground at eight. Every march has to reach its end. Loads within 4 % of limit analysis and spreads within 3 % are claimed, all is told.";
+const ABOUT: &str = "Strips, pipes and an anchor in weightless Tresca soil with E/s_u = 1000, from case files that say nothing of the method but fit = none, on ten cells, are pushed or pulled at small strain with their sides at five places of the grid within a cell, and a strip with sharp edges on ground at eight. Every march has to reach its end. Loads within 4 % of limit analysis and spreads within 3 % are claimed, all is told.";
+const ABOUT_FITTED: &str = "The bodies of contact-places, and a strip whose sides are bonded, on lines that are fitted to them, as they are where a file says nothing of fit. Sides and ground stand at four pairs of places within a cell. Every march has to reach its end. Loads within 4 % of limit analysis and spreads within 3 % are claimed of all.";
 const PRANDTL: Oracle = Oracle {
     kind: OracleKind::Exact,
     source: "Prandtl 1920",
@@ -39,6 +41,8 @@ const SPREAD: f64 = 0.03;
 const PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 0.9];
 /// More places of the ground, where the soil above a line fills little of its cells \[cells\].
 const SLICES: [f64; 3] = [0.05, 0.1, 0.2];
+/// Where sides and the ground stand where lines are fitted to them \[cells\].
+const FITTED: [[f64; 2]; 4] = [[0.0, 0.0], [0.25, 0.0], [0.9, 0.5], [0.5, 0.25]];
 /// Size of a cell \[m\].
 const CELL: f64 = 0.1;
 /// Parts of an arc that stands for a circle in the outline of soil, just outside of it \[m\].
@@ -48,8 +52,8 @@ const ARC_RADIUS: f64 = 0.5003;
 /// A kind of body.
 #[derive(Clone, Copy)]
 enum Kind {
-    /// A rough strip with its base so deep \[m\], and bare smooth sides.
-    Strip { depth: f64 },
+    /// A rough strip with its base so deep \[m\], and along its sides.
+    Strip { depth: f64, sides: &'static str },
     /// A rough strip with sharp edges, the ground at the place in its cell.
     OnGround,
     /// A pipe so deep \[m\], and along it.
@@ -68,11 +72,30 @@ struct Question {
     kind: Kind,
     oracle: Oracle,
     bounds: [f64; 2],
-    claim: Claim,
+    /// What is claimed where lines are not fitted to it; nothing where that is not computed. Both are where they are.
+    claim: Option<Claim>,
     level: Level,
 }
 
-/// What is claimed of the five places; all is told.
+/// Whether lines are fitted to bodies.
+#[derive(Clone, Copy)]
+enum Fit {
+    /// As in a file that says nothing of them.
+    Bodies,
+    None,
+}
+
+impl Fit {
+    /// The key of the grid.
+    fn key(self) -> &'static str {
+        match self {
+            Self::Bodies => "",
+            Self::None => "fit = \"none\"\n",
+        }
+    }
+}
+
+/// What is claimed of the places; all is told.
 #[derive(Clone, Copy)]
 enum Claim {
     /// Nothing: they only have to reach their end.
@@ -85,6 +108,9 @@ enum Claim {
     Both,
 }
 
+/// Sides that soil leaves without a force, and sides that hold it with its strength.
+const BARE: &str = "interface = \"smooth\"";
+const BONDED: &str = "interface = { adhesion_share = 1 }, tension = \"bonded\"";
 const ADHESIVE: &str = "{ adhesion_share = 1 }";
 
 /// A body whose bounds are from limit analysis.
@@ -100,14 +126,14 @@ fn question(
         kind,
         oracle: BOUNDS,
         bounds,
-        claim,
+        claim: Some(claim),
         level,
     }
 }
 
 /// All of them.
 fn questions() -> Vec<Question> {
-    let strip = |depth| Kind::Strip { depth };
+    let strip = |depth| Kind::Strip { depth, sides: BARE };
     let anchor = |tension, interface| Kind::Anchor {
         depth: 2.0,
         tension,
@@ -127,6 +153,19 @@ fn questions() -> Vec<Question> {
             Claim::Bounds,
             Level::Full,
         ),
+        Question {
+            claim: None,
+            ..question(
+                "strip 1B deep, bonded sides",
+                Kind::Strip {
+                    depth: 1.0,
+                    sides: BONDED,
+                },
+                [8.30, 8.40],
+                Claim::Both,
+                Level::Full,
+            )
+        },
         Question {
             oracle: PRANDTL,
             ..question(
@@ -232,29 +271,37 @@ struct Site {
 }
 
 impl Kind {
-    /// What stands at places of its cell, and these \[cells\].
-    fn places(self) -> (&'static str, Vec<f64>) {
+    /// Where the side and the ground stand where lines are not fitted to them \[cells\].
+    fn places(self) -> Vec<[f64; 2]> {
         match self {
-            Self::OnGround => ("ground", [&PLACES[..], &SLICES].concat()),
+            Self::OnGround => {
+                let all = PLACES.iter().chain(&SLICES);
+                all.map(|&ground| [0.75, ground]).collect()
+            }
             Self::Strip { .. } | Self::Pipe { .. } | Self::Anchor { .. } => {
-                ("side", PLACES.to_vec())
+                PLACES.map(|side| [side, 0.0]).to_vec()
             }
         }
     }
 
-    fn site(self, place: f64) -> Site {
+    /// Its places in words.
+    fn place_label(self, [side, ground]: [f64; 2], fit: Fit) -> String {
+        match (fit, self) {
+            (Fit::Bodies, _) => format!("side at {side} and ground at {ground} of a cell"),
+            (Fit::None, Self::OnGround) => format!("ground at {ground} of its cell"),
+            (Fit::None, _) => format!("side at {side} of its cell"),
+        }
+    }
+
+    fn site(self, [side, ground]: [f64; 2]) -> Site {
+        let [side, ground] = [side, ground].map(|place| place * CELL);
         let site = |width: f64, top: f64, left: f64| Site {
             width,
-            top,
-            left: left + place * CELL,
+            top: top + ground,
+            left: left + side,
         };
         match self {
-            Self::Strip { .. } => site(7.0, 3.5, 3.0),
-            Self::OnGround => Site {
-                width: 7.0,
-                top: 3.5 + place * CELL,
-                left: 3.0 + 0.75 * CELL,
-            },
+            Self::Strip { .. } | Self::OnGround => site(7.0, 3.5, 3.0),
             Self::Pipe { .. } => site(5.0, 2.0, 2.0),
             Self::Anchor { depth, .. } => site(2.0 * depth + 4.0, depth + 2.2, depth + 1.5),
         }
@@ -268,7 +315,7 @@ impl Kind {
             |from: [f64; 2], to: [f64; 2]| vec![from, [to[0], from[1]], to, [from[0], to[1]]];
         let mut around = vec![[0.0, 0.0], [width, 0.0], [width, top]];
         match self {
-            Self::Strip { depth } => {
+            Self::Strip { depth, .. } => {
                 if depth > 0.0 {
                     let base = top - depth;
                     around.extend([[right, top], [right, base], [left, base], [left, top]]);
@@ -316,9 +363,9 @@ impl Kind {
             )
         };
         match self {
-            Self::Strip { depth } => {
-                let sides = ["right", "left"]
-                    .map(|side| format!("{{ side = \"{side}\", interface = \"smooth\" }}"));
+            Self::Strip { depth, sides } => {
+                let sides =
+                    ["right", "left"].map(|side| format!("{{ side = \"{side}\", {sides} }}"));
                 let body = rectangle(top - depth, top - depth + 2.0);
                 (
                     format!("{body}\nsides = [{}]", sides.join(", ")),
@@ -355,9 +402,10 @@ impl Kind {
         }
     }
 
-    /// The case file of a place \[cells\].
-    fn file(self, place: f64) -> String {
-        let site = self.site(place);
+    /// The case file of the places of side and ground \[cells\].
+    fn file(self, places: [f64; 2], fit: Fit) -> String {
+        let site = self.site(places);
+        let fit = fit.key();
         let (body, way) = self.body(&site);
         let mut bodies = String::new();
         for (number, outline) in self.soil(&site).iter().enumerate() {
@@ -377,7 +425,7 @@ gravity = \"0 m/s2\"
 [grid]
 cell = \"{CELL} m\"
 domain = {{ x = [\"0 m\", \"{width} m\"], y = [\"0 m\", \"{sky} m\"] }}
-[materials.clay]
+{fit}[materials.clay]
 model = \"tresca\"
 unit_weight = \"0 kN/m3\"
 young = \"1 MPa\"
@@ -401,49 +449,72 @@ y = {{ of = \"rigid.body.resistance\", divide_by = [\"1 m\", \"1 kPa\"] }}
     }
 }
 
-/// Runs the study.
+/// Loads of a body at its places, each with the bounds held against where they are claimed.
+fn add(
+    study: &mut Study,
+    question: &Question,
+    (fit, places): (Fit, &[[f64; 2]]),
+    claim: Claim,
+) -> Result<(), CaseError> {
+    let computed = places
+        .par_iter()
+        .map(|&place| {
+            let text = question.kind.file(place, fit);
+            Computed::new(CaseFile::parse(question.name, &text, &[])?.into_case())
+        })
+        .collect::<Result<Vec<_>, CaseError>>()?;
+    let name = question.name;
+    let mut loads = Vec::new();
+    let mut last = 0;
+    for (place, own) in std::iter::zip(places, &computed) {
+        let place = question.kind.place_label(*place, fit);
+        let variant = format!("{name}, {place}");
+        last = study.run_to_end(RunRecord::new(variant, &own.report, own.elapsed));
+        let load = own.curve("load").points(0, 1);
+        let load = load.last().map_or(f64::NAN, |[_, load]| load.abs());
+        let [lower, upper] = question.bounds;
+        let band = Band::Between((1.0 - BEYOND) * lower, (1.0 + BEYOND) * upper);
+        let expected = question.oracle.says(0.5 * (lower + upper));
+        if matches!(claim, Claim::Bounds | Claim::Both) {
+            study.check(last, "V/(B s_u) [-]", expected, band, load);
+        }
+        loads.push(load);
+    }
+    let most = loads.iter().copied().fold(0.0, f64::max);
+    let least = loads.iter().copied().fold(f64::INFINITY, f64::min);
+    let mean = loads.iter().sum::<f64>() / loads.len() as f64;
+    let spread = (most - least) / mean;
+    if matches!(claim, Claim::Spread | Claim::Both) {
+        let quantity = format!("{name}: spread over the places of the grid [-]");
+        let band = Band::Between(0.0, SPREAD);
+        study.check(last, quantity, INDIFFERENT.says(0.0), band, spread);
+    }
+    let [lower, upper] = question.bounds;
+    study.notes.push(format!(
+        "{}: {name} has V/(B s_u) from {least:.3} to {most:.3}, spread {:.1} %; {lower:.3} to {upper:.3} is known",
+        study.case,
+        100.0 * spread
+    ));
+    Ok(())
+}
+
+/// Runs the study of bodies on lines that are not fitted to them.
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("contact-places", ABOUT, out)?;
     for question in questions().iter().filter(|own| own.level <= level) {
-        let (part, places) = question.kind.places();
-        let computed = places
-            .par_iter()
-            .map(|&place| {
-                let text = question.kind.file(place);
-                Computed::new(CaseFile::parse(question.name, &text, &[])?.into_case())
-            })
-            .collect::<Result<Vec<_>, CaseError>>()?;
-        let mut loads = Vec::new();
-        let mut last = 0;
-        for (place, own) in places.iter().zip(&computed) {
-            let variant = format!("{}, {part} at {place} of its cell", question.name);
-            last = study.run_to_end(RunRecord::new(variant, &own.report, own.elapsed));
-            let load = own.curve("load").points(0, 1);
-            let load = load.last().map_or(f64::NAN, |[_, load]| load.abs());
-            let [lower, upper] = question.bounds;
-            let band = Band::Between((1.0 - BEYOND) * lower, (1.0 + BEYOND) * upper);
-            let expected = question.oracle.says(0.5 * (lower + upper));
-            if matches!(question.claim, Claim::Bounds | Claim::Both) {
-                study.check(last, "V/(B s_u) [-]", expected, band, load);
-            }
-            loads.push(load);
+        if let Some(claim) = question.claim {
+            let places = question.kind.places();
+            add(&mut study, question, (Fit::None, &places), claim)?;
         }
-        let most = loads.iter().copied().fold(0.0, f64::max);
-        let least = loads.iter().copied().fold(f64::INFINITY, f64::min);
-        let mean = loads.iter().sum::<f64>() / loads.len() as f64;
-        let spread = (most - least) / mean;
-        if matches!(question.claim, Claim::Spread | Claim::Both) {
-            let name = format!("{}: spread over the places of the grid [-]", question.name);
-            let band = Band::Between(0.0, SPREAD);
-            study.check(last, name, INDIFFERENT.says(0.0), band, spread);
-        }
-        let [lower, upper] = question.bounds;
-        study.notes.push(format!(
-            "{}: {} has V/(B s_u) from {least:.3} to {most:.3}, spread {:.1} %; {lower:.3} to {upper:.3} is known",
-            study.case,
-            question.name,
-            100.0 * spread
-        ));
+    }
+    Ok(study)
+}
+
+/// Runs the study of bodies on lines that are fitted to them.
+pub(crate) fn fitted(level: Level, out: &Path) -> Result<Study, CaseError> {
+    let mut study = Study::new("contact-fitted", ABOUT_FITTED, out)?;
+    for question in questions().iter().filter(|own| own.level <= level) {
+        add(&mut study, question, (Fit::Bodies, &FITTED), Claim::Both)?;
     }
     Ok(study)
 }

@@ -25,10 +25,7 @@ struct Link {
 
 /// What is wrong with the links of the documents.
 pub(super) fn check(root: &Path) -> Result<Vec<String>, Failure> {
-    let mut pages = Vec::new();
-    markdown_files(&root.join(BOOK), &mut pages)?;
-    pages.sort();
-    let documents = DOCUMENTS.map(|name| root.join(name));
+    let [documents, pages] = documents(root)?;
     let mut problems = Vec::new();
     for page in documents.iter().chain(&pages) {
         let text = read(page)?;
@@ -52,6 +49,14 @@ pub(super) fn check(root: &Path) -> Result<Vec<String>, Failure> {
         }
     }
     Ok(problems)
+}
+
+/// The documents beside the book, and the pages of the book.
+pub(super) fn documents(root: &Path) -> Result<[Vec<PathBuf>; 2], Failure> {
+    let mut pages = Vec::new();
+    markdown_files(&root.join(BOOK), &mut pages)?;
+    pages.sort();
+    Ok([DOCUMENTS.map(|name| root.join(name)).to_vec(), pages])
 }
 
 /// What is wrong with a link of a page.
@@ -198,12 +203,12 @@ fn resolved(path: &Path) -> PathBuf {
     out
 }
 
-fn shown(path: &Path, root: &Path) -> String {
+pub(super) fn shown(path: &Path, root: &Path) -> String {
     let path = path.strip_prefix(root).unwrap_or(path);
     path.to_string_lossy().replace('\\', "/")
 }
 
-fn read(path: &Path) -> Result<String, Failure> {
+pub(super) fn read(path: &Path) -> Result<String, Failure> {
     fs::read_to_string(path)
         .map_err(|error| Failure::input_output(format!("cannot read {}", path.display()), error))
 }

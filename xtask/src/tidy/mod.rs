@@ -6,6 +6,7 @@ mod imports;
 mod layers;
 mod licences;
 mod links;
+mod prose;
 mod sources;
 mod structure;
 
@@ -33,6 +34,7 @@ pub(crate) fn run() -> Result<u8, Failure> {
         ("licences of igimp-mpi", licences::check(&mpi, &allowed)),
         ("unsafe", sources::unsafe_blocks(&root)?),
         ("links", links::check(&root)?),
+        ("prose", prose::check(&root)?),
         ("equations", equations::check(&metadata, &root)?),
     ];
     let mut count = 0;

@@ -1,4 +1,4 @@
-//! Who touches what: the supports of every particle, frozen for one step, with small cuts tied,
+//! The supports of every particle, frozen for one step, with small cuts tied,
 //! and what follows from them for the nodes.
 
 use igimp_shape::{Grid, Support};

@@ -6,6 +6,7 @@ use igimp_results::summary::{CheckRow, StageOutcome, StageSummary, Standing, Sum
 use igimp_text::short;
 
 use super::known::{of_check, of_stage};
+use crate::fallen;
 
 /// A value of a run.
 #[derive(Clone, Copy, Debug)]
@@ -133,7 +134,17 @@ pub(crate) fn remarks<const D: usize>(case: &Case<D>, results: &[StudyResult]) -
         .map(meshes::label)
         .collect();
     let mut remarks = Vec::new();
-    for result in results.iter().map(StudyResult::as_told) {
+    // A check of a result that is told by itself says nothing more.
+    let is_twice = |own: &&StudyResult| {
+        own.kind == ResultKind::Check
+            && results.iter().any(|other| {
+                other.kind != ResultKind::Check
+                    && other.values == own.values
+                    && other.estimate == own.estimate
+            })
+    };
+    let once = results.iter().filter(|own| !is_twice(own));
+    for result in once.map(StudyResult::as_told) {
         for (mesh, label) in labels.iter().enumerate() {
             if let (Some(value), true) = (result.values[mesh], result.ended_early(mesh)) {
                 remarks.push(format!(
@@ -208,8 +219,11 @@ fn has_ended_early<const D: usize>(case: &Case<D>, run: &Summary, number: usize)
 }
 
 /// Whether a stage began with a body that an earlier one did not bring to its end. A search of a factor of safety leaves
-/// the body as it found it.
+/// the body as it found it, and one that answers a body that fell raises gravity anew.
 fn stands_on_less<const D: usize>(case: &Case<D>, run: &Summary, number: usize) -> bool {
+    if fallen::answered(case, &run.stages, number).is_some() {
+        return false;
+    }
     case.stages[number].start_from.is_some_and(|before| {
         if let StageKind::StrengthReduction(_) = case.stages[before].kind {
             stands_on_less(case, run, before)

@@ -225,6 +225,25 @@ fn stages_that_were_given_up_and_those_that_stand_on_them_have_no_result() {
     assert!(!is_extrapolated(&run(1, &unsolved)));
     // The search begins with the weight; the run-out comes after it.
     assert!(!is_extrapolated(&run(0, &|stage| stage.lost = true)));
+    // A body that fell under its weight has its factor from gravity raised anew.
+    let fell = |stage: &mut StageSummary| {
+        let cause = String::new();
+        let beyond = Some(0.7);
+        let reason = EndReason::NoEquilibrium { beyond, cause };
+        (stage.outcome, stage.lost) = (StageOutcome::Stopped, true);
+        reason.code().clone_into(&mut stage.code);
+    };
+    assert!(is_extrapolated(&run(0, &fell)));
+    // What the search and its check tell alike is said once.
+    let early = run(1, &unsolved);
+    let mut same = early.clone();
+    same.checks[0].check.measured = 1.3;
+    let results = study(&case, &[Some(&whole), Some(&early)]);
+    assert_eq!(remarks(&case, &results).len(), 2);
+    let mut whole = whole.clone();
+    whole.checks[0].check.measured = 1.35;
+    let results = study(&case, &[Some(&whole), Some(&same)]);
+    assert_eq!(remarks(&case, &results).len(), 1);
     let moving = EndReason::StillMoving { steps: 9 };
     let moves = |stage: &mut StageSummary| {
         stage.outcome = StageOutcome::Stopped;

@@ -84,8 +84,11 @@ pub(super) fn of_check<const D: usize>(case: &Case<D>, name: &str) -> Convergenc
 fn of_loads<const D: usize>(case: &Case<D>) -> Convergence {
     let holds_nodes =
         |load: &igimp_model::Load<D>| matches!(load.kind, LoadKind::RigidFooting { .. });
-    let varies =
-        |own: &Material| own.profiles.strength.is_some() || own.profiles.friction.is_some();
+    let varies = |own: &Material| {
+        own.profiles.strength.is_some()
+            || own.profiles.friction.is_some()
+            || own.has_laws_by_place()
+    };
     if has_contact(case) {
         Convergence::CONTACT
     } else if case.loads.iter().any(holds_nodes) {

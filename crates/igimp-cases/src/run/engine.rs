@@ -19,8 +19,6 @@ use super::output::moment::{Moment, largest_displacement};
 use super::output::records::Records;
 use super::output::seepage;
 use super::output::{Output, checks, sections};
-use super::resources::memory::{self, Before};
-use super::resources::processor;
 use super::resume::{ResumePoint, Resumption, Search};
 use super::session::{Session, StageEnd};
 use super::stages::{construction, dynamic, fallen, initial, loading, run_out, safety, stilled};
@@ -29,6 +27,8 @@ use super::water::pores;
 use super::{Event, Failure, Listener, Run, Start, Target, failure, reinforcement};
 use crate::error::CaseError;
 use igimp_estimate::Expectation;
+use igimp_estimate::resources::memory::{self, Before};
+use igimp_estimate::resources::processor;
 use igimp_estimate::time::time_of_steps_taken;
 
 /// Runs a case on its own grid.
@@ -173,6 +173,10 @@ impl<const D: usize> Stages<D> {
                 break;
             }
             let stage = &case.stages[number];
+            if let Some(summary) = fallen::passed_over(session, number) {
+                Self::pass_over(session, number, summary);
+                continue;
+            }
             let left = self.left.take().filter(|left| left.stage.is_some());
             let begun = || match stage.start_from {
                 None => Ok(initial.clone()),
@@ -201,6 +205,27 @@ impl<const D: usize> Stages<D> {
             }
         }
         Ok(())
+    }
+
+    /// Writes down a stage that is not run, and goes on with the body that it would have begun with.
+    fn pass_over(session: &mut Session<'_, D>, number: usize, summary: StageSummary) {
+        let case = session.model.case;
+        let stage = &case.stages[number];
+        session.tell(&Event::StageStarted {
+            stage: number,
+            of: case.stages.len(),
+            name: &stage.name,
+            kind: stage.kind.name(),
+            steps: stage.steps,
+        });
+        session.tell(&Event::StageEnded { summary: &summary });
+        let begun = stage.start_from.and_then(|from| session.ends.get(&from));
+        if let Some(state) = begun.cloned() {
+            session.ends.insert(number, state);
+        }
+        let rows = checks::beyond(case, &session.records, number);
+        session.summary.checks.extend(rows);
+        session.summary.stages.push(summary);
     }
 
     /// Runs one stage to its end; whether the next may follow.
@@ -250,9 +275,9 @@ impl<const D: usize> Stages<D> {
                 if error.failure.is_want_of_equilibrium()
                     && !failure::is_without_hold(&error.failure, &summary)
                     && (stage.stop_when.no_equilibrium
-                        || fallen::is_answered(session.model.case, number)) =>
+                        || crate::fallen::is_answered(session.model.case, number)) =>
             {
-                if fallen::is_answered(session.model.case, number) {
+                if crate::fallen::is_answered(session.model.case, number) {
                     session.warn_of_stage(number, &fallen::remark(&summary));
                 }
                 let failure = &error.failure;
@@ -423,7 +448,13 @@ impl<const D: usize> Stages<D> {
             let taken = time_of_steps_taken(case, size, expectation.speed, stages);
             session.summary.estimate = Some(expectation.told(Some(taken)));
         }
-        session.summary.failure = self.failure.as_ref().map(ToString::to_string);
+        let passed_over = || {
+            let mut stages = session.summary.stages.iter();
+            let own = stages.find(|own| own.outcome == StageOutcome::NotConverged)?;
+            Some(format!("stage \"{}\": {}", own.name, own.reason))
+        };
+        let failure = self.failure.as_ref().map(ToString::to_string);
+        session.summary.failure = failure.or_else(passed_over);
         if let Some(output) = &mut session.output {
             output.finish(case, &session.records, &mut session.summary, clock)?;
         } else {

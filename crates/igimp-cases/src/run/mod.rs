@@ -6,7 +6,6 @@ pub(crate) mod footing;
 mod model;
 mod output;
 mod reinforcement;
-mod resources;
 mod resume;
 mod rigid;
 mod session;

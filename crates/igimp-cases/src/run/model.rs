@@ -31,8 +31,8 @@ const POINTS_PER_CELL: f64 = 4.0;
 pub struct Model<'c, const D: usize> {
     /// The case.
     pub case: &'c Case<D>,
-    /// Laws of full strength: one for each material in their order, then again one for each material
-    /// for every cell whose soils share a mean stiffness.
+    /// Laws of full strength: one for each material in their order, then again one for each material for every set of parameters that
+    /// vary, and for every change that cells with several soils ask for.
     pub laws: Vec<SharedLaw>,
     footing: Option<Footing>,
     /// The rigid body that the rows of the grid follow, and the row of its lowest side.
@@ -391,17 +391,19 @@ pub(crate) fn reduced<const D: usize>(
     laws: &[SharedLaw],
     srf: &[f64],
 ) -> Result<Vec<SharedLaw>, AssemblyError> {
-    (laws.iter().enumerate())
-        .map(|(number, law)| {
-            let srf = srf[case.number_of_material(number)];
-            if srf.total_cmp(&1.0).is_eq() {
-                Ok(Arc::clone(law))
-            } else {
-                law.reduced(srf)
-                    .map_err(|source| AssemblyError::Law { source })
-            }
-        })
-        .collect()
+    let mut all: Vec<SharedLaw> = Vec::with_capacity(laws.len());
+    for (number, law) in laws.iter().enumerate() {
+        let material = case.number_of_material(number);
+        all.push(if srf[material].total_cmp(&1.0).is_eq() {
+            Arc::clone(law)
+        } else if material < number && Arc::ptr_eq(law, &laws[material]) {
+            Arc::clone(&all[material])
+        } else {
+            law.reduced(srf[material])
+                .map_err(|source| AssemblyError::Law { source })?
+        });
+    }
+    Ok(all)
 }
 
 /// The points that carry pressures and forces, each under the number of its load.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use igimp_model::{Case, Every, Stage, StageKind, in_plane};
+use igimp_report::outlines::Outlines;
 use igimp_report::patches::Pieces;
 use igimp_report::pictures;
 use igimp_report::report;
@@ -13,6 +14,7 @@ use igimp_results::atomic::write_whole;
 use igimp_results::checkpoint;
 use igimp_results::folder::provenance::Claim;
 use igimp_results::folder::{self, Folder, write_summary};
+use igimp_results::paraview::film::{self, Film};
 use igimp_results::paraview::frames::{Frames, Scene};
 use igimp_results::summary::{CheckRow, FigureNote, StageSummary, Summary};
 use igimp_results::tables::rows::RowWriter;
@@ -62,6 +64,7 @@ pub(crate) struct Output<const D: usize> {
     energy: Option<RowWriter>,
     convergence: RowWriter,
     frames: Frames,
+    film: Film,
     figures: Vec<FigureNote>,
     /// Steps and trials of the whole run so far: the pseudo-time of frames and checkpoints.
     steps: usize,
@@ -73,6 +76,8 @@ pub(crate) struct Output<const D: usize> {
     kept: Vec<(&'static str, End<D>)>,
     /// The bodies in pieces, once a picture wants them.
     pieces: Option<Arc<Pieces>>,
+    /// The edges of the bodies in space, once a picture wants them.
+    edges: Option<Arc<Outlines>>,
     seconds: f64,
     /// What was found when the run was taken up, to be told and not kept: a resumed run leaves the files
     /// of one that was never stopped.
@@ -157,12 +162,14 @@ impl<const D: usize> Output<D> {
             energy: energy.transpose()?,
             convergence,
             frames,
+            film: notes.map_or_else(Film::default, |notes| notes.film),
             figures: notes.map_or_else(Vec::new, |notes| notes.figures.clone()),
             steps: notes.map_or(0, |notes| notes.steps),
             factor_of_safety: notes.and_then(|notes| notes.factor_of_safety),
             peaks: records.peaks.clone(),
             kept: Vec::new(),
             pieces: None,
+            edges: None,
             seconds: 0.0,
             notes_for_user: Vec::new(),
             warnings: Vec::new(),
@@ -271,8 +278,15 @@ impl<const D: usize> Output<D> {
     ) -> Result<(), CaseError> {
         self.steps += 1;
         let stage = &model.case.stages[number];
-        if motion::has_frame(self.every, stage, summary, taken) {
-            let (body, conditions) = (taken.accepted.body, &taken.accepted.conditions);
+        let (body, conditions) = (taken.accepted.body, &taken.accepted.conditions);
+        let nodes = conditions.grid.node_count();
+        let step = film::Step {
+            number: summary.steps,
+            particles: body.particles.len(),
+            report: taken.accepted.report,
+            u: &taken.accepted.forces.u[..nodes],
+        };
+        if self.film.has_frame(self.every, stage, &step) {
             let scene = Scene {
                 particles: &body.particles,
                 laws: &conditions.laws,

@@ -14,6 +14,7 @@ use std::sync::Arc;
 use igimp_model::Calm;
 use igimp_results::checkpoint::{CheckpointError, Meta};
 use igimp_results::ending::EndReason;
+use igimp_results::paraview::film::Film;
 use igimp_results::summary::{CheckRow, FigureNote, StageSummary, TrialSummary};
 use igimp_solver::{Body, MarchState};
 use serde::{Deserialize, Serialize};
@@ -145,6 +146,9 @@ pub(crate) struct Notes {
     pub(crate) free_fields: Vec<SavedFreeField>,
     pub(crate) convergence_rows: usize,
     pub(crate) frames: usize,
+    /// Where the film of the stage stands.
+    #[serde(default)]
+    pub(crate) film: Film,
     pub(crate) steps: usize,
     pub(crate) stage: Option<StageSummary>,
     pub(crate) controls: Controls,

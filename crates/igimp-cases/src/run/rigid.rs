@@ -106,22 +106,17 @@ pub(crate) fn tracks<const D: usize>(
     accepted: &Accepted<'_, D>,
 ) -> Vec<RigidTrack> {
     let first = accepted.conditions.grid.node_count();
-    let (u, reactions) = (&accepted.forces.u, &accepted.forces.reactions);
+    let [u, reactions] =
+        [&accepted.forces.u, &accepted.forces.reactions].map(|by_node| &by_node[first..]);
     let mut tracks = controls.tracks();
     for ((slot, index), body) in std::iter::zip(controls.placed().enumerate(), &accepted.body.rigid)
     {
         let (part, own) = (&case.rigid[index], &controls.rigid[index]);
-        let node = first + 2 * slot;
-        let size = body.surface.size();
+        let (motion, resultant) = (body.motion_of(slot, u), body.resultant_of(slot, reactions));
         let track = &mut tracks[index];
         for k in 0..components::<D>() {
-            let (by, reaction) = if k < D {
-                (u[node][k], reactions[node][k])
-            } else {
-                let k = k - D;
-                (u[node + 1][k] / size, reactions[node + 1][k] * size)
-            };
-            track.displacement[k] += by;
+            let reaction = resultant[k / D][k % D];
+            track.displacement[k] += motion[k / D][k % D];
             // Around an axis there is a resultant along it, and no other.
             if k != D - 1 && case.method.section.is_axisymmetric() {
                 continue;

@@ -18,11 +18,11 @@ use igimp_results::mesh_study::{MeshSummary, StudySummary};
 use igimp_results::summary::Summary;
 
 use super::engine::one_mesh;
-use super::resources::{memory, processor};
 use super::{Event, Listener, Run, Start, Target};
 use crate::error::CaseError;
 use crate::mesh_study::{check_rows, remarks, study};
 use crate::on_one_line;
+use igimp_estimate::resources::{memory, processor};
 use igimp_estimate::time::time_of_steps_taken;
 use igimp_estimate::watch::side_by_side;
 use igimp_estimate::{Estimate, estimate};

@@ -2,11 +2,15 @@
 
 #[path = "../common/edits.rs"]
 mod edits;
+#[path = "../common/resuming.rs"]
+mod resuming;
 
 mod drawings;
 mod folder;
+mod free_faces;
 mod grid_lines;
 mod meshes;
+mod parameters;
 mod pieces;
 mod profiles;
 mod rasters;

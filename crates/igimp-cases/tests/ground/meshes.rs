@@ -54,6 +54,7 @@ fn the_sides_of_a_body_keep_their_place() {
         let shipped = igimp_input::shipped::find("contact_footing").unwrap();
         let overrides = [
             format!("grid.cell=\"{cell}\""),
+            "grid.fit=none".to_owned(),
             format!("rigid.footing.to=[\"{side}\", \"3 m\"]"),
             "mesh_study.meshes=3".to_owned(),
         ];

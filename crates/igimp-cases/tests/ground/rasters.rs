@@ -175,3 +175,47 @@ fn what_makes_no_raster_is_named() {
     tell(r#"{ x = ["0 m", "4 m"], y = ["0 m"], rows = [["20 kPa", "32 kPa"]], at_top = "1 kPa" }"#);
     insta::assert_snapshot!(out);
 }
+
+/// GOAL: numbers without a unit and angles come from rasters, too, and a unit of a number is refused.
+#[test]
+fn numbers_and_angles_come_from_rasters() {
+    let points = "0,0,0.2\n4,0,0.3\n0,2,0.4\n4,2,0.45\n";
+    let files = [
+        ("bare.csv", format!("x [m],y [m],nu\n{points}")),
+        ("dash.csv", format!("x [m],y [m],nu [-]\n{points}")),
+        ("wrong.csv", format!("x [m],y [m],nu [kPa]\n{points}")),
+        (
+            "angle.csv",
+            "x [m],y [m],psi [deg]\n0,0,2\n4,0,3\n0,2,4\n4,2,5\n".to_owned(),
+        ),
+    ];
+    let folder = Folder::new(
+        "raster-numbers",
+        &files.each_ref().map(|own| (own.0, own.1.as_str())),
+    );
+    let soil = "model = \"mohr-coulomb\"\ncohesion = \"5 kPa\"\nfriction = \"30 deg\"\ndilation = DILATION";
+    let text = TEXT.replace("model = \"tresca\"\ncu = CU", soil);
+    let with = |poisson: &str, dilation: &str| {
+        let text = text.replace("poisson = 0.45", &format!("poisson = {poisson}"));
+        text.replace("DILATION", dilation)
+    };
+    let angle = "{ raster = \"angle.csv\" }";
+    for poisson in ["{ raster = \"bare.csv\" }", "{ raster = \"dash.csv\" }"] {
+        let file = folder
+            .read(&with(poisson, angle))
+            .unwrap_or_else(|error| panic!("{error}"));
+        let case = file.case();
+        let (model, state) = Model::new(case).unwrap();
+        let particles = &state.body.particles;
+        for (&[x, y], &law) in std::iter::zip(&particles.x, &particles.law) {
+            let (s, t) = (x / 4.0, y / 2.0);
+            let nu = (1.0 - t) * (0.2 + 0.1 * s) + t * (0.4 + 0.05 * s);
+            let found = model.laws[law].stiffness_bound().poisson();
+            assert!((found - nu).abs() < 1e-12, "{found} for {nu}");
+        }
+        let again = CaseFile::parse("again.toml", &file.explain(), &[]).unwrap();
+        assert_eq!(again.case().materials, case.materials);
+    }
+    let said = folder.said(&with("{ raster = \"wrong.csv\" }", angle));
+    assert!(said.contains("is a number without a unit"), "{said}");
+}

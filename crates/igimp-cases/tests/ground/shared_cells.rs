@@ -1,7 +1,7 @@
 //! GOAL: a boundary of soils may lie anywhere in its cells, whatever their dilation: soil that dilates does not lock beside soil that
 //! keeps its volume.
 
-use igimp_cases::run::in_memory;
+use igimp_cases::run::{Model, in_memory};
 use igimp_input::CaseFile;
 
 fn case(text: &str, set: &[&str]) -> CaseFile {
@@ -214,4 +214,24 @@ figures = []
         laws
     };
     assert_eq!(laws("2", "1"), [0, 1]);
+}
+
+/// GOAL: cells that two soils share have the smallest dilation and the mean stiffness of the laws of their particles, whether parameters are
+/// stated by a profile or as constants.
+#[test]
+fn laws_of_places_are_shared_alike() {
+    for mixed in ["grid.mixed_cells=\"own\"", "grid.mixed_cells=\"mean\""] {
+        let dilation = "materials.sand.dilation={ levels = [\"0 m\", \"4 m\"], values = [\"5 deg\", \"5 deg\"] }";
+        let poisson = "materials.clay.poisson={ at_top = 0.3, gradient = \"0 1/m\" }";
+        let constant = case(&strip(2.125, 5.0), &[mixed]);
+        let varied = case(&strip(2.125, 5.0), &[mixed, dilation, poisson]);
+        let [(constant, one), (varied, other)] =
+            [&constant, &varied].map(|own| Model::new(own.case()).unwrap());
+        let [one, other] = [&one.body.particles, &other.body.particles];
+        assert!(one.ratios == other.ratios && varied.laws.len() > constant.laws.len());
+        for (&a, &b) in std::iter::zip(&one.law, &other.law) {
+            let [a, b] = [&constant.laws[a], &varied.laws[b]].map(|own| format!("{own:?}"));
+            assert_eq!(a, b);
+        }
+    }
 }

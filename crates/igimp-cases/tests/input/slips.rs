@@ -209,6 +209,190 @@ fn implausible_values_are_told() {
     }
 }
 
+/// GOAL: one table of ranges holds for constants, profiles and rasters, and for loads, reinforcement and the case as a whole.
+/// ORACLE: by hand: a slip of a thousand, of a hundred or of a per cent each; beside it a value that is found in the ground.
+#[test]
+fn ranges_hold_for_all_forms_of_a_value() {
+    let profile = |cu: &str| format!("materials.clay.cohesion={cu}");
+    let told = [
+        (profile("{ levels = [\"20 m\", \"2 m\"], values = [\"20 kPa\", \"40 MPa\"] }"), "cohesion up to 40000 kPa"),
+        (profile("{ at_surface = \"40 MPa\", gradient = \"1 kPa/m\" }"), "cohesion up to 40000 kPa"),
+        (profile("{ at_top = \"20 kPa\", gradient = \"1.5 MPa/m\" }"), "cohesion up to 15000 kPa"),
+        (profile("{ x = [\"0 m\", \"60 m\"], y = [\"0 m\", \"22 m\"], rows = [[\"20 kPa\", \"20 MPa\"], [\"20 kPa\", \"20 kPa\"]] }"), "cohesion up to 20000 kPa"),
+        ("materials.clay.unit_weight={ levels = [\"20 m\", \"2 m\"], values = [\"20 N/m3\", \"20 kN/m3\"] }".to_owned(), "unit_weight down to 0.02 kN/m3"),
+        ("materials.clay.friction={ levels = [\"20 m\", \"2 m\"], values = [\"0.35 deg\", \"30 deg\"] }".to_owned(), "friction down to 0.35 deg"),
+        ("materials.clay.unit_weight=196 kN/m3".to_owned(), "`clay` has unit_weight = 196 kN/m3"),
+        ("case.gravity=9.81 mm/s2".to_owned(), "gravity = 0.00981 m/s2"),
+        ("case.gravity=9810 m/s2".to_owned(), "gravity = 9810 m/s2"),
+        ("case.water_unit_weight=9.81 N/m3".to_owned(), "water_unit_weight = 0.00981 kN/m3 is not that of water"),
+        ("case.water_unit_weight=98.1 kN/m3".to_owned(), "water has 9.8 kN/m3 under a gravity of 9.81 m/s2"),
+    ];
+    for (set, expected) in told {
+        let file = overridden(SLOPE, &[&set, "materials.clay.k0=0.5"])
+            .unwrap_or_else(|error| panic!("{set}: {error}"));
+        let warnings = file.warnings();
+        assert!(warnings.contains(expected), "{set}: {warnings}");
+    }
+    let quiet = [
+        vec![profile(
+            "{ at_surface = \"20 kPa\", gradient = \"3 kPa/m\" }",
+        )],
+        vec!["case.water_unit_weight=10.1 kN/m3".to_owned()],
+        vec![
+            "case.gravity=981 m/s2".to_owned(),
+            "case.water_unit_weight=981 kN/m3".to_owned(),
+        ],
+    ];
+    for set in quiet {
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        let warnings = overridden(SLOPE, &set).unwrap().warnings();
+        assert!(
+            !warnings.contains("outside the range") && !warnings.contains("not that of water"),
+            "{warnings}"
+        );
+    }
+}
+
+/// GOAL: slips in loads and in reinforcement are told, and each once. ORACLE: the shipped files, whose values are usual.
+#[test]
+fn loads_and_reinforcement_have_ranges() {
+    let told = |name: &str, set: &[&str], expected: &str| {
+        let file = find(name).unwrap();
+        let set: Vec<String> = set.iter().map(|&own| own.to_owned()).collect();
+        let file = file
+            .case_file(set)
+            .unwrap_or_else(|error| panic!("{error}"));
+        let warnings = file.warnings();
+        assert_eq!(
+            warnings.matches(expected).count(),
+            1,
+            "{expected}: {warnings}"
+        );
+    };
+    let nail = |key: &str| format!("reinforcement.0.{key}");
+    told(
+        "nailed_cut",
+        &[&nail("capacity=30 N/m")],
+        "has capacity = 0.03 kN",
+    );
+    told("nailed_cut", &[&nail("bond=20 Pa")], "has bond = 0.02 kPa");
+    told(
+        "nailed_cut",
+        &[&nail("bond=20 MPa")],
+        "has bond = 20000 kPa",
+    );
+    told(
+        "nailed_cut",
+        &[&nail("stiffness=80000 MN/m")],
+        "has stiffness = 80000 MN",
+    );
+    told(
+        "nailed_cut",
+        &[&nail("plate=1.5 mm")],
+        "has plate = 0.0015 m",
+    );
+    told(
+        "strip_load",
+        &["loads.0.pressure=20 MPa"],
+        "has pressure = 20000 kPa",
+    );
+    told(
+        "strip_load",
+        &["loads.0.pressure=-20 kPa"],
+        "pulls at the soil",
+    );
+    told(
+        "rock_slope",
+        &["materials.rock.sci=30 kPa"],
+        "has sci = 0.03 MPa",
+    );
+    told("rock_slope", &["materials.rock.gsi=0.3"], "has gsi = 0.3");
+    told(
+        "anisotropic_footing",
+        &["materials.clay.anisotropy.simple_shear=70"],
+        "has simple_shear = 70",
+    );
+}
+
+/// GOAL: a tolerance with which nothing is in equilibrium is refused, and a loose one is told. ORACLE: 0.1 told F = 3.8 for 1.35.
+#[test]
+fn a_tolerance_has_bounds() {
+    let said = |tolerance: &str| {
+        said(&overridden(
+            SLOPE,
+            &[&format!("solver.tolerance={tolerance}")],
+        ))
+    };
+    assert!(
+        said("0.1").contains("must be above 0 and at most 0.01"),
+        "{}",
+        said("0.1")
+    );
+    assert!(
+        said("0.005").contains("tolerance = 0.005 is loose"),
+        "{}",
+        said("0.005")
+    );
+    assert!(!said("1e-3").contains("is loose"));
+}
+
+/// GOAL: stages that change nothing, or that lift a body off its soil, are told; those that change something are not.
+/// ORACLE: by hand.
+#[test]
+fn stages_that_change_nothing_are_told() {
+    let load = "[[loads]]\nname = \"q\"\ntype = \"pressure\"\nfrom = [\"2 m\", \"20 m\"]\nto = [\"8 m\", \"20 m\"]\npressure = \"20 kPa\"\n";
+    let stages = |more: &str| {
+        let text = format!(
+            "{}\n{load}[[stages]]\nname = \"q\"\ntype = \"load\"\nload = \"q\"\n{more}",
+            SLOPE.1
+        );
+        said(&CaseFile::parse(SLOPE.0, &text, &[]))
+    };
+    let again = |key: &str| stages(&format!("[[stages]]\nname = \"again\"\n{key}"));
+    let told = again("type = \"load\"\nload = \"q\"\n");
+    assert!(
+        told.contains("stage `again` changes nothing: load `q` acts with a factor of 1 already"),
+        "{told}"
+    );
+    assert!(
+        told.contains("factor = 2 makes it twice the load"),
+        "{told}"
+    );
+    let told = again("type = \"gravity\"\ngeometry = \"given\"\n");
+    assert!(
+        told.contains("changes nothing: gravity acts as in stage `initial stresses` already"),
+        "{told}"
+    );
+    for more in [
+        "type = \"load\"\nload = \"q\"\nfactor = 2.0\n",
+        "type = \"load\"\nload = \"q\"\nfactor = 0.0\n",
+        "type = \"gravity\"\nhorizontal = 0.1\n",
+    ] {
+        let told = again(more);
+        assert!(!told.contains("nothing:"), "{told}");
+    }
+    let none = said(&overridden(SLOPE, &["stages.initial stresses.factor=0.0"]));
+    assert!(none.contains("raises no weight: factor = 0"), "{none}");
+    let pushed = |by: &str| {
+        let set = [format!("stages.push.bodies.0.y={by}")];
+        find("contact_footing")
+            .unwrap()
+            .case_file(set)
+            .unwrap()
+            .warnings()
+    };
+    assert!(
+        pushed("0.01 m").contains("lifts the rigid body `footing` off the soil that it rests on"),
+        "{}",
+        pushed("0.01 m")
+    );
+    assert!(
+        pushed("0 m").contains("moves the rigid body `footing` by nothing"),
+        "{}",
+        pushed("0 m")
+    );
+}
+
 /// GOAL: values that are possible and hardly meant are told, with their places and remedies; those next to them are not.
 /// ORACLE: by hand: tan 20° = 0.364; K₀ of soil without cohesion at 20° lies between 0.49 and 2.04; E / (3 (1 − 2 ν)) of 20 MPa
 /// and 0.3 is 16.7 MPa.

@@ -99,7 +99,7 @@ fn results(name: &str, width: f64, frames: usize) -> (PathBuf, Particles<3>) {
         particles: &last,
         laws: &[],
     };
-    let drawn = InSpace::new(&folder, title, false, state, vec![ROOF; 1]);
+    let drawn = InSpace::new(&folder, title, false, state, vec![ROOF; 1], &[]);
     let shown = Shown {
         name: "1-slide".into(),
         title: "slide".into(),
@@ -221,10 +221,11 @@ fn a_slope_in_space_is_shown() {
             )
         })
         .unzip();
-    let skin = Skin::of(Boxes {
+    let boxes = Boxes {
         low: &low,
         high: &high,
-    });
+    };
+    let skin = Skin::of(boxes, &[]);
     let field = "field=displacement%20[m],%20length";
     let mut pointed = Vec::new();
     for (how, by) in [(&WITH_GL[..], "webgl2"), (&WITHOUT_GL[..], "canvas")] {

@@ -10,6 +10,11 @@ use igimp_results::summary::{SafetySummary, StageOutcome};
 
 /// A slope of 10 m at two to one above its toe, at strengths c [kPa] and tan φ, with overrides.
 fn slope(cohesion: f64, tan_friction: f64, set: &[&str]) -> Run<2> {
+    staged(cohesion, tan_friction, ["", ""], set)
+}
+
+/// The same with text before the search and behind it.
+fn staged(cohesion: f64, tan_friction: f64, [between, behind]: [&str; 2], set: &[&str]) -> Run<2> {
     let friction = tan_friction.atan().to_degrees();
     let text = format!(
         r#"
@@ -41,9 +46,11 @@ bottom = "fixed"
 name = "weight"
 type = "gravity"
 steps = 5
+{between}
 [[stages]]
 name = "safety"
 type = "strength-reduction"
+{behind}
 "#
     );
     let set: Vec<String> = set.iter().map(|&own| own.to_owned()).collect();
@@ -52,7 +59,8 @@ type = "strength-reduction"
 }
 
 fn safety(run: &Run<2>) -> &SafetySummary {
-    run.summary.stages[1].safety.as_ref().unwrap()
+    let mut found = (run.summary.stages.iter()).filter_map(|stage| stage.safety.as_ref());
+    found.next().unwrap()
 }
 
 /// Middle of the interval of a factor of safety.
@@ -87,6 +95,54 @@ fn a_slope_that_does_not_stand_has_its_factor_all_the_same() {
     assert_eq!(told.len(), 1);
     assert!(told[0].starts_with("stage \"weight\": "), "{told:?}");
     assert!(warnings_with(&stands, "does not stand").is_empty());
+}
+
+/// What stands between the weight and the search is raised with gravity anew; what else begins with the body that fell is not run.
+#[test]
+fn a_factor_below_one_is_told_whatever_stands_around() {
+    let load = "[[loads]]\nname = \"q\"\ntype = \"pressure\"\nfrom = [\"5 m\", \"15 m\"]\nto = [\"15 m\", \"15 m\"]\n\
+                pressure = \"10 kPa\"\n[[stages]]\nname = \"q\"\ntype = \"load\"\nload = \"q\"\n";
+    let shaken = "[[stages]]\nname = \"shaken\"\ntype = \"gravity\"\nhorizontal = 0.05\n";
+    let wet = "[[water]]\nname = \"dry\"\ndry = true\n[[water]]\nname = \"wet\"\nr_u = 0.1\n\
+               [[stages]]\nname = \"wet\"\ntype = \"construction\"\nwater = \"wet\"\n";
+    let tan = 20.0_f64.to_radians().tan();
+    for between in [load, shaken, wet] {
+        let falls = staged(10.0, tan, [between, ""], &[]);
+        let stands = staged(25.0, 2.5 * tan, [between, ""], &[]);
+        assert!(stands.failure.is_none() && stands.summary.ending() == Ending::Done);
+        let (low, high) = (factor(&falls), factor(&stands));
+        assert!(low < 1.0, "{low}");
+        assert!(
+            (2.5 * low / high - 1.0).abs() < 0.02,
+            "{between}: {low} {high}"
+        );
+        let outcomes: Vec<_> = falls.summary.stages.iter().map(|own| own.outcome).collect();
+        let expected = [
+            StageOutcome::Stopped,
+            StageOutcome::NotConverged,
+            StageOutcome::Completed,
+        ];
+        assert_eq!(outcomes, expected);
+        assert_eq!(falls.summary.ending(), Ending::NotConverged);
+    }
+    let run_out = "[[stages]]\nname = \"run-out\"\ntype = \"run-out\"\nstart_from = \"weight\"\nreduction = { factor = 1.5 }\n\
+                   [[checks]]\nname = \"F\"\nof = \"factor_of_safety\"\nstage = \"safety\"\nat_least = 0.5\nsource = \"none\"\n";
+    let run = staged(10.0, tan, ["", run_out], &[]);
+    let check = &run.summary.checks[0];
+    assert!(check.pass && (check.check.measured - factor(&run)).abs() < 1e-12);
+    assert_eq!(run.summary.ending(), Ending::NotConverged);
+    let last = &run.summary.stages[2];
+    assert!(
+        last.reason
+            .contains("the body of stage \"weight\" does not stand under its weight"),
+        "{}",
+        last.reason
+    );
+    let told = run.summary.failure.as_ref().unwrap();
+    assert!(
+        told.starts_with("stage \"run-out\": no equilibrium"),
+        "{told}"
+    );
 }
 
 #[test]

@@ -50,6 +50,26 @@ fn told<'r>(run: &'r Run<2>, text: &str) -> &'r str {
     found.unwrap_or_else(|| panic!("{text}: {:#?}", run.summary.warnings))
 }
 
+/// GOAL: the height of a slope in cells is right with one point in a cell, and wide cells are told as low ones are.
+/// ORACLE: by hand: 5.85 m of soil on cells of 1 m, and beside cells 3 m wide and 0.5 m high.
+#[test]
+fn cells_are_counted_in_both_directions() {
+    let count = |run: &Run<2>, words: [&str; 2]| {
+        let text = told(run, words[1]);
+        let cells = text.split(words[0]).nth(1).unwrap();
+        cells.split(' ').next().unwrap().parse::<f64>().unwrap()
+    };
+    let single = slope("1 m", "points_per_cell = 1");
+    let run = in_memory::<2>(single.case()).unwrap();
+    let cells = count(&run, ["the slope is ", " cells high"]);
+    assert!((cells - 5.85).abs() < 0.1, "{cells}");
+    let wide = ["grid.cell={ x = \"3 m\", y = \"0.5 m\" }".to_owned()];
+    let wide = CaseFile::parse("slope.toml", &single.explain(), &wide).unwrap();
+    let run = in_memory::<2>(wide.case()).unwrap();
+    let cells = count(&run, ["the slope is as high as ", " cells are wide"]);
+    assert!((cells - 5.85 / 3.0).abs() < 0.1, "{cells}");
+}
+
 #[test]
 fn heights_are_those_of_the_soil() {
     let run = in_memory::<2>(slope("1 m", "").case()).unwrap();

@@ -143,6 +143,7 @@ title = "half a strip"
 gravity = "0 m/s2"
 [grid]
 cell = "{cell} m"
+fit = "none"
 domain = {{ x = ["{from} m", "4 m"], y = ["0 m", "4 m"] }}
 [materials.clay]
 model = "tresca"

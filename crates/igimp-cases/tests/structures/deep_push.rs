@@ -49,7 +49,10 @@ report = false
 
 const PLANE: [(&str, &str); 5] = [
     ("ANALYSIS", ""),
-    ("DOMAIN", r#"{ x = ["0 m", "8 m"], y = ["0 m", "4 m"] }"#),
+    (
+        "DOMAIN",
+        "{ x = [\"0 m\", \"8 m\"], y = [\"0 m\", \"4 m\"] }\nfit = \"none\"",
+    ),
     (
         "GROUND",
         r#"polygon = [["0 m", "0 m"], ["8 m", "0 m"], ["8 m", "2 m"], ["0 m", "2 m"]]"#,

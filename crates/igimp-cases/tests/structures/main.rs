@@ -5,6 +5,7 @@ mod edits;
 #[path = "../common/messages.rs"]
 mod messages;
 
+mod active_wall;
 mod closing;
 mod deep_push;
 mod held_wall;

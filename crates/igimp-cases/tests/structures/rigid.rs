@@ -166,7 +166,10 @@ fn bodies_end_where_their_stages_say() {
         "pipe.penetration",
     ];
     let curves: String = quantities.map(curve).concat();
-    let file = parsed(&[("[output]", &format!("{curves}[output]"))]);
+    let file = parsed(&[
+        ("[output]", &format!("{curves}[output]")),
+        ("cell = \"0.25 m\"", "cell = \"0.25 m\"\nfit = \"none\""),
+    ]);
     let run = in_memory(file.case()).unwrap();
     assert!(run.failure.is_none(), "{:?}", run.failure);
     let end = |of: &str| ends(&run, &of.replace(['.', '_'], " "))[1];

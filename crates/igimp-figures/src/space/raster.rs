@@ -93,17 +93,16 @@ impl<'a> Painter<'a> {
         })
     }
 
+    /// A face as two triangles, which meet along the line between its second and its last corner.
     fn face(&mut self, face: &Face) {
-        let [corner, one, _, two] = &face.corners;
-        let Some(placed) = self.placed([corner, one, two]) else {
-            return;
-        };
         let Colour(colour) = match self.scale.level(face.value) {
             Some(level) => self.scale.colour(level),
             None => Colour::NO_VALUE,
         };
-        let side = |to: &[f64; 3]| [0, 1, 2].map(|k| to[k] - corner[k]);
-        let across = cross(&side(one), &side(two));
+        let colour = colour.map(|c| f64::from(c) + LIFT * (255.0 - f64::from(c)));
+        let [first, second, third, fourth] = &face.corners;
+        let way = |from: &[f64; 3], to: &[f64; 3]| [0, 1, 2].map(|k| to[k] - from[k]);
+        let across = cross(&way(first, third), &way(second, fourth));
         // The insides of the far walls are seen through cracks.
         let is_back = dot(&across, &face.normal) * dot(&across, &self.projection.eye) < 0.0;
         let light = if is_back {
@@ -111,7 +110,14 @@ impl<'a> Painter<'a> {
         } else {
             self.projection.light(&face.normal, face.open)
         };
-        let colour = colour.map(|c| f64::from(c) + LIFT * (255.0 - f64::from(c)));
+        for half in [[first, second, fourth], [third, fourth, second]] {
+            if let Some(placed) = self.placed(half) {
+                self.half(&placed, colour, light);
+            }
+        }
+    }
+
+    fn half(&mut self, placed: &Placed, colour: [f64; 3], light: f64) {
         let [length_a, length_b] = placed.heights();
         let room = ((length_a.min(length_b) - LEAST_SIDE) / LEAST_SIDE).clamp(0.0, 1.0);
         // Half a sample larger than it is, so that neighbours leave no seam.
@@ -120,12 +126,12 @@ impl<'a> Painter<'a> {
             self.width,
             self.height,
             [da, db],
-            false,
+            true,
             |place, a, b, depth| {
                 if depth <= self.depth[place] {
                     return;
                 }
-                let edge = (a.min(1.0 - a) * length_a).min(b.min(1.0 - b) * length_b);
+                let edge = (a * length_a).min(b * length_b);
                 let line = (1.0 - (edge - 0.6) / 2.0).clamp(0.0, 1.0);
                 let light = light * (1.0 - LINE * line * room);
                 self.depth[place] = depth;
@@ -246,7 +252,8 @@ impl Placed {
                 let [dx, dy] = [x as f64 + 0.5 - self.at[0], y as f64 + 0.5 - self.at[1]];
                 let a = (dx * v[1] - dy * v[0]) / cross;
                 let b = (u[0] * dy - u[1] * dx) / cross;
-                if inside(a, more[0]) && inside(b, more[1]) && (!is_triangle || a + b <= 1.0) {
+                if inside(a, more[0]) && inside(b, more[1]) && (!is_triangle || a + b <= 1.0 + 1e-9)
+                {
                     let depth = self.depth[0] + a * self.depth[1] + b * self.depth[2];
                     call(y * width + x, a, b, depth as f32);
                 }

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use igimp_assembly::Method;
 use igimp_model::{
-    BodyPart, Boundaries, Case, GridSpec, Material, MeshStudy, ReinforcementPart, RigidPart, Stage,
-    StageKind, WaterCondition,
+    BodyPart, Boundaries, Case, GridSpec, Material, MeshStudy, ReinforcementPart, RigidPart,
+    RigidShape, Stage, StageKind, WaterCondition,
 };
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::bodies::Body;
@@ -36,15 +36,16 @@ impl<const D: usize> GridAndBodies<D> {
         tree: &Node,
         names: &AllNames,
         (stated, stages): (&[Thing<Body>], &[Thing<keys::Stage>]),
-        bodies: Vec<Option<BodyPart<D>>>,
+        (bodies, rigid): (Vec<Option<BodyPart<D>>>, &[RigidShape]),
         problems: &mut Problems,
     ) -> Self {
         let own = Root::<D>::grid(tree).ok();
         let extent = own.as_ref().and_then(|own| own.extent.as_ref().ok());
         let mut frame = extent.and_then(|extent| grid::frame(extent, problems));
         let materials = materials::materials(tree, &bodies, problems);
+        let outlines = (&bodies[..], rigid);
         let grid =
-            (own.as_ref()).and_then(|own| grid::grid(own, frame.as_ref(), &bodies, problems));
+            (own.as_ref()).and_then(|own| grid::grid(own, frame.as_ref(), outlines, problems));
         if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
             frame.axes.clone_from(&grid.axes);
         }

@@ -2,6 +2,7 @@
 
 pub(crate) mod reach;
 pub(crate) mod sequence;
+pub(crate) mod sides;
 pub(crate) mod site;
 pub(crate) mod solids;
 pub(crate) mod surfaces;
@@ -24,8 +25,8 @@ use igimp_schema::tree::{Node, Wrong};
 use super::AllNames;
 use super::grid::{MOST, cell_place};
 use crate::build::Thing;
-use crate::geometry::edge_distance;
-use crate::geometry::{distinct, near_edge, overlap, self_crossing};
+use igimp_geometry::outline::edge_distance;
+use igimp_geometry::outline::{distinct, near_edge, overlap, self_crossing};
 use igimp_text::short;
 use sequence::{Sequence, placed};
 use site::Site;

@@ -78,7 +78,7 @@ pub(super) fn derive(tree: &mut Node, file: &Path) {
     let analysis = tree.get("case").and_then(|case| case.text_at("analysis"));
     let dimensions = if analysis == Some(SPACE) { 3 } else { 2 };
     let is_whole = is_whole(tree);
-    derive_small_cuts(tree, dimensions);
+    derive_grid(tree, dimensions);
     if let Some(curves) = tree.get_mut("curves") {
         for curve in curves.items_mut() {
             for axis in ["x", "y"] {
@@ -112,14 +112,16 @@ pub(super) fn derive_drainage(tree: &mut Node) {
 
 /// The results folder, and when frames are written.
 fn derive_output(tree: &mut Node, file: &Path) {
-    let is_motion = |stage: &Node| stage.text_at("type") == Some("dynamic");
-    let moves = tree.items_at("stages").iter().any(is_motion);
+    let meshes = tree
+        .get("mesh_study")
+        .and_then(|own| own.count_at("meshes"));
     if let Some(frames) = tree
         .get_mut("output")
         .and_then(|output| output.get_mut("paraview"))
         && frames.get("every").is_none()
     {
-        let every = if moves { "film" } else { "stage" };
+        let is_study = meshes.is_some_and(|meshes| meshes > 1);
+        let every = if is_study { "stage" } else { "film" };
         frames.add_derived("every", Value::Text(every.to_owned()));
     }
     if let Some(output) = tree.get_mut("output")
@@ -210,16 +212,23 @@ fn label((dimensions, is_whole): (usize, bool), axis: &Node) -> Option<String> {
     Some(label)
 }
 
-/// Small cuts of a grid that rigid bodies cut, and of others.
-fn derive_small_cuts(tree: &mut Node, dimensions: usize) {
+/// Lines and small cuts of a grid that rigid bodies cut, and of others.
+fn derive_grid(tree: &mut Node, dimensions: usize) {
     let has_bodies = tree.get("rigid").is_some_and(|own| !own.items().is_empty());
     let (below, remedy) = if has_bodies {
         (BELOW_AT_BODIES, "extrapolate")
     } else {
         (BELOW[dimensions - 2], "tie")
     };
-    let grid = tree.get_mut("grid");
-    let Some(cuts) = grid.and_then(|grid| grid.get_mut("small_cuts")) else {
+    let Some(grid) = tree.get_mut("grid") else {
+        return;
+    };
+    if grid.get("fit").is_none() {
+        let is_fitted = has_bodies && dimensions == 2;
+        let fit = if is_fitted { "bodies" } else { "none" };
+        grid.add_derived("fit", Value::Text(fit.to_owned()));
+    }
+    let Some(cuts) = grid.get_mut("small_cuts") else {
         return;
     };
     if cuts.get("below").is_none() {

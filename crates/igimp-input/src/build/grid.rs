@@ -2,14 +2,15 @@
 
 pub(crate) mod axisymmetric;
 pub(crate) mod boundaries;
-pub(crate) mod lines;
 
 use std::sync::Arc;
 
 use igimp_assembly::{
     CutVolume, DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, Section, SmallCuts,
 };
-use igimp_model::{AxisSpec, BodyPart, GridSpec, MixedCells};
+use igimp_model::fitted::{Asked, Outlines};
+use igimp_model::lines::{WantedLines, Zone, largest_jump};
+use igimp_model::{AxisSpec, BodyPart, GridSpec, MixedCells, RigidShape};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::grid::{self as keys, Fit};
@@ -20,8 +21,6 @@ use igimp_schema::tree::Node;
 use igimp_schema::tree::read::{At, Either};
 use igimp_shape::{Basis, Gimp, Linear};
 use igimp_text::short;
-
-use lines::{WantedLines, Zone, largest_jump};
 
 /// Most cells, and most particles.
 pub(super) const MOST: f64 = 5e7;
@@ -110,7 +109,7 @@ pub(super) fn frame<const D: usize>(
 pub(super) fn grid<const D: usize>(
     grid: &keys::Grid,
     frame: Option<&Frame<D>>,
-    bodies: &[Option<BodyPart<D>>],
+    (bodies, rigid): (&[Option<BodyPart<D>>], &[RigidShape]),
     problems: &mut Problems,
 ) -> Option<GridSpec<D>> {
     let own = grid.extent.as_ref().ok()?;
@@ -125,9 +124,17 @@ pub(super) fn grid<const D: usize>(
         return None;
     }
     let wishes = grid.wishes.as_ref().ok()?;
-    let levels = match *wishes.fit {
-        Fit::Layers => levels(bodies, 1e-9 * extent[D - 1].max(upper[D - 1].abs())),
-        Fit::None => Vec::new(),
+    let fit = **wishes.fit.as_ref()?;
+    let soil: Vec<_> = (bodies.iter().flatten().map(|body| body.region.polygon())).collect();
+    let outlines = Outlines {
+        soil: &soil,
+        rigid: if matches!(fit, Fit::Bodies | Fit::All) {
+            rigid
+        } else {
+            &[]
+        },
+        layers: matches!(fit, Fit::Layers | Fit::All),
+        round_off: 1e-9 * extent[D - 1].max(upper[D - 1].abs()),
     };
     let domain = &own.domain;
     let domain: [_; D] = by_axis([&domain.x, &domain.y], domain.z.as_ref())?;
@@ -145,7 +152,11 @@ pub(super) fn grid<const D: usize>(
             return None;
         }
         let ends = [lower[axis], upper[axis]];
-        let levels = if axis == D - 1 { &levels[..] } else { &[] };
+        let asked = match axis {
+            0 => outlines.upright(&axes[0]),
+            axis if axis == D - 1 => outlines.level(&axes[axis]),
+            _ => Asked::default(),
+        };
         let about = Direction {
             key,
             ends,
@@ -154,7 +165,7 @@ pub(super) fn grid<const D: usize>(
             cell_place: own.cell.place,
             growth: &wishes.growth,
         };
-        match wish(&about, lines[axis], zones[axis], levels, problems)? {
+        match wish(&about, (lines[axis], zones[axis]), asked, problems)? {
             Some(wish) => with_lines(&about, &wish, problems),
             None => equal_cells(&about, problems),
         }
@@ -281,9 +292,8 @@ struct Direction<'a> {
 )]
 fn wish(
     about: &Direction<'_>,
-    wanted: &[At<f64>],
-    stretches: &[At<keys::Zone>],
-    levels: &[f64],
+    (wanted, stretches): (&[At<f64>], &[At<keys::Zone>]),
+    asked: Asked,
     problems: &mut Problems,
 ) -> Option<Option<WantedLines>> {
     let Direction {
@@ -332,14 +342,20 @@ fn wish(
             zones.push(own);
         }
     }
-    let levels: Vec<f64> = levels.iter().copied().filter(|&y| is_inside(y)).collect();
-    let is_equal = lines.is_empty() && zones.is_empty() && levels.is_empty();
+    let mut levels = asked.on_lines;
+    levels.retain(|&x| is_inside(x));
+    let is_inside = |x: &f64| ends[0] < *x && *x < ends[1];
+    let is_equal = lines.is_empty()
+        && zones.is_empty()
+        && levels.is_empty()
+        && !asked.mid_cell.iter().flatten().any(is_inside);
     is_right.then(|| {
         (!is_equal).then_some(WantedLines {
             ends,
             cell,
             lines,
             levels,
+            mid_cell: asked.mid_cell,
             zones,
             growth,
         })
@@ -380,30 +396,6 @@ fn wrong_zone(
     } else {
         None
     }
-}
-
-/// Level edges of bodies, the longest first \[m\].
-fn levels<const D: usize>(bodies: &[Option<BodyPart<D>>], round_off: f64) -> Vec<f64> {
-    let mut levels: Vec<(f64, f64)> = Vec::new();
-    for body in bodies.iter().flatten() {
-        let polygon = body.region.polygon();
-        for (k, p) in polygon.iter().enumerate() {
-            let q = polygon[(k + 1) % polygon.len()];
-            if (p[1] - q[1]).abs() > round_off {
-                continue;
-            }
-            let length = (p[0] - q[0]).abs();
-            match levels
-                .iter_mut()
-                .find(|(y, _)| (y - p[1]).abs() <= round_off)
-            {
-                Some((_, known)) => *known += length,
-                None => levels.push((p[1], length)),
-            }
-        }
-    }
-    levels.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.total_cmp(&b.0)));
-    levels.into_iter().map(|(y, _)| y).collect()
 }
 
 /// The variant of the method.

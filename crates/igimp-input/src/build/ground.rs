@@ -1,5 +1,6 @@
 //! The surface of the ground, straight from place to place, and how water tables lie to it.
 
+pub(crate) mod gaps;
 pub(crate) mod layers;
 pub(crate) mod level;
 pub(crate) mod space;

@@ -20,7 +20,7 @@ use super::bodies::site::{Site, Soil};
 use super::grid::Frame;
 use super::things;
 use crate::build::Thing;
-use crate::geometry::cover;
+use igimp_geometry::outline::cover;
 
 /// What loads ask of the soil that bears them.
 pub(super) trait Bearing<const D: usize>: Soil<D> {

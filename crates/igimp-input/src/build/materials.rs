@@ -5,6 +5,7 @@ mod checks;
 mod frictional;
 mod hardening_soil;
 mod hoek_brown;
+mod parameters;
 mod plausible;
 pub(crate) mod profiles;
 mod softening;
@@ -13,7 +14,7 @@ mod water;
 
 use std::sync::Arc;
 
-use igimp_model::{BodyPart, Ground, Layer, Material, Profile, Profiles, Strength};
+use igimp_model::{BodyPart, Ground, Layer, Material, Profile, Profiles, Strength, jaky};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::materials::{self as keys, MaterialCommon, Model};
@@ -21,7 +22,8 @@ use igimp_schema::text::{clip, number};
 use igimp_schema::tree::read::{At, Either, Found, Named};
 use igimp_schema::tree::{Node, Wrong};
 
-use profiles::{Extent, Property, Terms, property};
+use parameters::{Limit, NUMBER_OR_NONE, Parameters, Varied};
+use profiles::{Extent, FORMS_OF_ALL, Property, Terms, property};
 use water::{drainage, permeability, saturated};
 
 pub(super) use checks::{check_lengths, check_on_cells, check_rates};
@@ -33,7 +35,7 @@ const STRENGTH: Terms = Terms {
     may_be_nothing: false,
     kept: |value| value,
     printed: |value| format!("{} kPa", number(value / 1e3)),
-    forms: "{ at_top = ..., gradient = ... }, { at_surface = ..., gradient = ... }, { levels = [...], values = [...] }, or { raster = ... }",
+    forms: FORMS_OF_ALL,
 };
 const UNDRAINED: Terms = Terms {
     forms: "{ at_top = ..., gradient = ... }, { at_surface = ..., gradient = ... }, { levels = [...], values = [...] }, { raster = ... }, or { ratio = ..., ocr = ... }",
@@ -110,42 +112,35 @@ fn material<const D: usize>(
     let (name, own) = (&stated.name, stated.value.as_ref().ok()?);
     let common = own.common.as_ref().ok()?;
     let before = problems.errors();
-    let linear = linear_stiffness(&own.form);
-    if let Some(Ok(poisson)) = linear.map(|own| &own.poisson) {
-        check_poisson(poisson, problems);
-    }
+    let linear = own.form.stiffness();
     let young = linear.and_then(|own| own.young.as_ref().ok());
     let young = young.and_then(|own| property(own, "young", extent, YOUNG, problems));
     let Resistance {
+        poisson,
         strength,
         cohesive,
         friction,
-    } = resistance(name, &own.form, extent, problems);
+        varied,
+    } = resistance(&own.form, extent, problems);
     let profile = |own: Option<&Property>| -> Option<Profile> { own?.profile.clone() };
-    let k0 = k0(
-        common,
-        strength,
-        profile(friction.as_ref()).is_some(),
-        problems,
-    );
+    let friction_varies = friction.as_ref().is_some_and(|own| own.profile.is_some())
+        || (varied.iter()).any(|own| ["friction", "critical_ratio"].contains(&own.0));
+    let k0 = k0(common, strength, friction_varies, problems);
     if problems.errors() == before {
-        plausible::check(name, &constants(own, common), problems);
-        let varies = [&cohesive, &friction].map(|own| profile(own.as_ref()).is_some());
-        if let (Some(strength), Some(weight), [false, false]) = (strength, unit_weight, varies) {
+        plausible::check_stiffness(name, &constants(own), problems);
+        let varies = cohesive.as_ref().is_some_and(|own| own.profile.is_some()) || friction_varies;
+        if let (Some(strength), Some(weight), false) = (strength, unit_weight, varies) {
             check_at_rest(common, strength, weight, extent, problems);
         }
     }
     let saturated = saturated(name, common, unit_weight, problems);
     let stiffness = match (linear, strength) {
-        (Some(own), _) => {
-            (young.as_ref()).and_then(|young| Some([young.constant, **own.poisson.as_ref().ok()?]))
-        }
-        (None, Some(Strength::ModifiedCamClay(own))) => cam_clay::stiffness(own),
-        (None, Some(Strength::HardeningSoil(own))) => Some([own.unloading, own.poisson]),
-        (None, _) => None,
+        (Some(_), _) => (young.as_ref()).and_then(|young| Some([young.constant, poisson?])),
+        (None, strength) => strength.and_then(|own| own.stiffness()),
     };
     let softening = softening::curves(name, &own.form, strength, problems);
-    let drainage = drainage((common, &own.form), stiffness, strength, problems);
+    let of_soil = (stiffness, strength);
+    let drainage = drainage((common, &own.form), of_soil, &varied, problems);
     let permeable = permeability(common, extent, problems).ok()?;
     let material = Material {
         saturated: saturated.ok()?,
@@ -166,10 +161,11 @@ fn material<const D: usize>(
             young: profile(young.as_ref()),
             unit_weight: profile(unit_weight),
             permeability: permeable.and_then(|own| own.profile),
+            parameters: varied.into_iter().map(|own| (own.0, own.2)).collect(),
         },
     };
     if problems.errors() == before
-        && let Err(why) = checks::possible(&material, 0.0)
+        && let Err(why) = material.possible(0.0)
     {
         let message = format!("the material `{}` is not possible{why}", clip(name, 40));
         problems.error(stated.place, message);
@@ -177,149 +173,89 @@ fn material<const D: usize>(
     Some(material)
 }
 
-/// The keys of linear elasticity, if the model has them.
-pub(crate) fn linear_stiffness(model: &Model) -> Option<&keys::Stiffness> {
-    match model {
-        Model::Elastic(own) => own.as_ref().ok().map(|own| &own.stiffness),
-        Model::VonMises(own) => own.as_ref().ok().map(|own| &own.stiffness),
-        Model::Tresca(own) => own.as_ref().ok().map(|own| &own.stiffness),
-        Model::MohrCoulomb(own) => own.as_ref().ok().map(|own| &own.stiffness),
-        Model::DruckerPrager(own) => own.as_ref().ok().map(|own| &own.stiffness),
-        Model::HoekBrown(own) => own.as_ref().ok().map(|own| &own.stiffness),
-        Model::CamClay(_) | Model::HardeningSoil(_) => None,
-    }
-}
+/// Poisson's ratios that linear elasticity may have.
+const POISSON: Limit = (
+    |value| value < 0.5,
+    "Poisson's ratio must be below 0.5",
+    "nearly incompressible, as undrained soil is: poisson = 0.49",
+);
 
-/// Refuses Poisson's ratios of 0.5 and more, and warns of those close to it.
-fn check_poisson(poisson: &At<f64>, problems: &mut Problems) {
-    if **poisson >= 0.5 {
-        problems
-            .error(poisson.place, "Poisson's ratio must be below 0.5")
-            .help("nearly incompressible, as undrained soil is: poisson = 0.49");
-    } else if **poisson > 0.499 {
-        problems
-            .warning(poisson.place, "Poisson's ratio is very close to 0.5")
-            .help("the tangent is badly conditioned; 0.49 to 0.495 is close enough");
-    }
-}
-
-/// The strength of a material, and the properties that it comes from.
+/// The strength of a material and its Poisson's ratio, the properties that it comes from, and the parameters that vary beside them.
 struct Resistance {
+    poisson: Option<f64>,
     strength: Option<Strength>,
     cohesive: Option<Property>,
     friction: Option<Property>,
+    varied: Varied,
 }
 
 fn resistance<const D: usize>(
-    name: &str,
     model: &Model,
     extent: Extent<'_, D>,
     problems: &mut Problems,
 ) -> Resistance {
-    let mut undrained = |own: &keys::Undrained| {
-        let cu = own.cu.as_ref().ok()?;
-        property(cu, "cu", extent, UNDRAINED, problems)
+    let cu = model.undrained().and_then(|own| own.cu.as_ref().ok());
+    let cu = cu.and_then(|own| property(own, "cu", extent, UNDRAINED, problems));
+    let [cohesive, friction] = match model.frictional() {
+        Some(own) => frictional::properties(own, extent, problems),
+        None => [cu, None],
     };
-    let (strength, cohesive, friction) = match model {
-        Model::Elastic(_) => (Some(Strength::Elastic), None, None),
-        Model::VonMises(own) => {
-            let cohesive = own.as_ref().ok().and_then(|own| undrained(&own.strength));
-            let strength = cohesive.as_ref().map(|own| Strength::VonMises {
-                undrained_strength: own.constant,
-            });
-            (strength, cohesive, None)
+    let both = [cohesive.as_ref(), friction.as_ref()];
+    let cu = both[0].map(|own| own.constant);
+    let mut read = Parameters {
+        extent,
+        problems,
+        varied: Varied::new(),
+    };
+    let poisson = model.stiffness().and_then(|own| own.poisson.as_ref().ok());
+    let poisson = poisson.and_then(|own| {
+        let own = read.read("poisson", own, NUMBER_OR_NONE, Some(POISSON))?;
+        if own.most > 0.499 && own.most < 0.5 {
+            (read.problems)
+                .warning(own.place, "Poisson's ratio is very close to 0.5")
+                .help("the tangent is badly conditioned; 0.49 to 0.495 is close enough");
         }
-        Model::Tresca(own) => {
-            let cohesive = own.as_ref().ok().and_then(|own| undrained(&own.strength));
-            let strength = cohesive.as_ref().map(|own| Strength::Tresca {
-                undrained_strength: own.constant,
-            });
-            (strength, cohesive, None)
+        Some(own.most)
+    });
+    let strength = match model {
+        Model::Elastic(_) => Some(Strength::Elastic),
+        Model::VonMises(_) => {
+            cu.map(|undrained_strength| Strength::VonMises { undrained_strength })
         }
-        Model::CamClay(own) => {
-            let own = own.as_ref().ok();
-            (
-                own.and_then(|own| cam_clay::strength(own, problems)),
-                None,
-                None,
-            )
-        }
-        Model::HardeningSoil(own) => {
-            let own = own.as_ref().ok();
-            (
-                own.and_then(|own| hardening_soil::strength(own, problems)),
-                None,
-                None,
-            )
-        }
-        Model::HoekBrown(own) => {
-            let own = own.as_ref().ok();
-            (
-                own.and_then(|own| hoek_brown::strength(own, problems)),
-                None,
-                None,
-            )
-        }
-        Model::MohrCoulomb(Err(_)) | Model::DruckerPrager(Err(_)) => (None, None, None),
-        Model::MohrCoulomb(Ok(own)) => {
-            let both = frictional::properties(&own.strength, extent, problems);
-            let strength =
-                frictional::mohr_coulomb(name, own, both.each_ref().map(Option::as_ref), problems);
-            let [cohesive, friction] = both;
-            (strength, cohesive, friction)
-        }
-        Model::DruckerPrager(Ok(own)) => {
-            let both = frictional::properties(&own.strength, extent, problems);
-            let strength = frictional::drucker_prager(
-                name,
-                own,
-                both.each_ref().map(Option::as_ref),
-                problems,
-            );
-            let [cohesive, friction] = both;
-            (strength, cohesive, friction)
-        }
+        Model::Tresca(_) => cu.map(|undrained_strength| Strength::Tresca { undrained_strength }),
+        Model::CamClay(Ok(own)) => cam_clay::strength(own, &mut read),
+        Model::HardeningSoil(Ok(own)) => hardening_soil::strength(own, &mut read),
+        Model::HoekBrown(Ok(own)) => hoek_brown::strength(own, &mut read),
+        Model::MohrCoulomb(Ok(own)) => frictional::mohr_coulomb(own, both, &mut read),
+        Model::DruckerPrager(Ok(own)) => frictional::drucker_prager(own, both, &mut read),
+        _ => None,
     };
     Resistance {
+        poisson,
         strength,
+        varied: read.varied,
         cohesive,
         friction,
     }
 }
 
-/// The constants that a material states, with their keys.
-fn constants(own: &keys::Material, common: &MaterialCommon) -> Vec<(&'static str, At<f64>)> {
+/// The constants of stiffness and strength that a material states, with their keys.
+fn constants(own: &keys::Material) -> Vec<(&'static str, At<f64>)> {
     fn constant<T>(own: &Found<Either<f64, T>>) -> Option<At<f64>> {
-        let own = own.as_ref().ok()?;
-        let Either::First(value) = own.value else {
-            return None;
-        };
-        Some(At {
-            value,
-            place: own.place,
-            key_place: own.key_place,
-            written: own.written,
-        })
+        own.as_ref().ok()?.first()
     }
-    let mut all = vec![
-        ("unit_weight", constant(&common.unit_weight)),
+    let frictional = own.form.frictional();
+    let all = [
         (
             "young",
-            linear_stiffness(&own.form).and_then(|own| constant(&own.young)),
+            own.form.stiffness().and_then(|own| constant(&own.young)),
+        ),
+        ("cu", own.form.undrained().and_then(|own| constant(&own.cu))),
+        (
+            "cohesion",
+            frictional.and_then(|own| constant(&own.cohesion)),
         ),
     ];
-    match &*own.form {
-        Model::VonMises(Ok(own)) => all.push(("cu", constant(&own.strength.cu))),
-        Model::Tresca(Ok(own)) => all.push(("cu", constant(&own.strength.cu))),
-        _ => {}
-    }
-    if let Some(own) = frictional::keys_of(&own.form) {
-        all.push(("cohesion", constant(&own.cohesion)));
-        all.push(("friction", constant(&own.friction)));
-    }
-    if let Ok(Some(own)) = &common.permeability {
-        all.push(("permeability", water::greatest(own)));
-    }
     let stated = all.into_iter().filter_map(|(key, own)| Some((key, own?)));
     stated.collect()
 }
@@ -332,10 +268,8 @@ fn check_at_rest<const D: usize>(
     extent: Extent<'_, D>,
     problems: &mut Problems,
 ) {
-    let Ok(Some(stated)) = &common.k0 else {
-        return;
-    };
-    let Either::First(value) = **stated else {
+    let stated = common.k0.as_ref().ok().and_then(Option::as_ref);
+    let Some(k0) = stated.and_then(At::first) else {
         return;
     };
     let height = |body: &BodyPart<D>| {
@@ -345,12 +279,6 @@ fn check_at_rest<const D: usize>(
     let bodies = extent.bodies.iter().flatten();
     let own = bodies.filter(|body| body.material == extent.material);
     let highest = own.map(height).fold(0.0, f64::max);
-    let k0 = At {
-        value,
-        place: stated.place,
-        key_place: stated.key_place,
-        written: stated.written,
-    };
     let loaded = (strength, highest * weight.constant);
     plausible::check_k0(extent.name, &k0, loaded, problems);
 }
@@ -368,21 +296,8 @@ fn k0(
     let refused = match (&**stated, strength) {
         (Either::First(value), _) => return Ok(Some(*value)),
         (Either::Second(_), None) => return Err(Wrong),
-        (
-            Either::Second(_),
-            Some(Strength::MohrCoulomb { .. } | Strength::DruckerPrager { .. }),
-        ) if friction_varies => "k0 = \"jaky\" needs one friction angle, and friction varies here",
-        (
-            Either::Second(_),
-            Some(
-                Strength::MohrCoulomb { friction_angle, .. }
-                | Strength::DruckerPrager { friction_angle, .. },
-            ),
-        ) => {
-            return Ok(Some(1.0 - friction_angle.sin()));
-        }
-        (Either::Second(_), Some(Strength::HardeningSoil(own))) => {
-            return Ok(Some(1.0 - own.friction_angle.sin()));
+        (Either::Second(_), Some(_)) if friction_varies => {
+            "k0 = \"jaky\" needs one friction angle, and friction varies here"
         }
         (Either::Second(_), Some(Strength::ModifiedCamClay(own))) => {
             // sin φ of M in triaxial compression.
@@ -390,7 +305,10 @@ fn k0(
                 1.0 - 3.0 * own.critical_ratio / (6.0 + own.critical_ratio),
             ));
         }
-        (Either::Second(_), Some(_)) => "k0 = \"jaky\" needs a friction angle",
+        (Either::Second(_), Some(own)) => match own.friction_angle() {
+            Some(friction_angle) => return Ok(Some(jaky(friction_angle))),
+            None => "k0 = \"jaky\" needs a friction angle",
+        },
     };
     problems
         .error(stated.place, refused)

@@ -19,7 +19,10 @@ mod water;
 
 use std::path::Path;
 
-use igimp_model::{AnyCase, Case, Material, Quantity, TitleBlock};
+use igimp_model::{
+    AnyCase, Case, Material, Quantity, ReinforcementPart, RigidPart, Stage, TitleBlock,
+};
+use igimp_schema::complete::plausible;
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::names::Names;
 use igimp_schema::schema::stages::StageForm;
@@ -30,9 +33,11 @@ use igimp_schema::tree::{Node, Wrong};
 use crate::build::grid::boundaries;
 use crate::build::outputs::quantities;
 use assemble::{GridAndBodies, Surroundings};
+use bodies::sides::{self, Holds};
 use bodies::site::Site;
 use context::Context;
-use ground::layers::Layers;
+use ground::layers::{Layers, check_stiffness};
+use stages::idle;
 
 /// The names in a file, by what they name.
 struct AllNames {
@@ -85,11 +90,20 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     let tree = &*tree;
     let names = AllNames::new(tree, problems);
     header(tree, problems);
+    let case = case(tree, &names, file, problems);
+    if problems.errors() == 0 {
+        plausible::check(tree, problems);
+    }
+    case
+}
+
+/// The case by its analysis.
+fn case(tree: &Node, names: &AllNames, file: &Path, problems: &mut Problems) -> Option<AnyCase> {
     let analysis = CaseHead::analysis(tree.get("case")?);
     match analysis.map_or(Analysis::PlaneStrain, |own| *own) {
-        Analysis::Space => space::build(tree, &names, file, problems).map(AnyCase::Space),
-        Analysis::PlaneStrain => in_plane(tree, &names, file, problems).map(AnyCase::Plane),
-        Analysis::Axisymmetric => in_plane(tree, &names, file, problems)
+        Analysis::Space => space::build(tree, names, file, problems).map(AnyCase::Space),
+        Analysis::PlaneStrain => in_plane(tree, names, file, problems).map(AnyCase::Plane),
+        Analysis::Axisymmetric => in_plane(tree, names, file, problems)
             .and_then(|case| grid::axisymmetric::section(tree, case, problems))
             .map(AnyCase::Plane),
     }
@@ -99,7 +113,11 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
 pub(super) fn materials_alone(tree: &mut Node, problems: &mut Problems) -> Option<Vec<Material>> {
     derive::derive_drainage(tree);
     header(tree, problems);
-    all(materials::materials::<2>(tree, &[], problems))
+    let materials = all(materials::materials::<2>(tree, &[], problems));
+    if problems.errors() == 0 {
+        plausible::check(tree, problems);
+    }
+    materials
 }
 
 /// The same for a case in the plane.
@@ -112,6 +130,8 @@ fn in_plane(
     let own = things(Root::<2>::bodies(tree));
     let stages = things(Root::<2>::stages(tree));
     let parts = bodies::bodies::<bodies::Plane, _>(tree, (&own, &stages), names, problems);
+    let outlines = rigid::plane::outlines(tree);
+    let parts = (parts, outlines.as_slice());
     let basics = GridAndBodies::new(tree, names, (&own, &stages), parts, problems);
     let GridAndBodies {
         bodies,
@@ -145,6 +165,9 @@ fn in_plane(
     rigid::apart::check((tree, frame), &rigid, (&stages, sequence), problems);
     let held_by = (boundaries.as_ref(), rigid.as_slice());
     bodies::check_support(&own, bodies, held_by, &site, problems);
+    let holds = Holds::new(boundaries.as_ref(), &rigid, (&loads, materials));
+    let ground = (&bodies[..], sequence);
+    sides::check((tree, frame), &stages, ground, &holds, problems);
     rigid::stage::check_use(&things(Root::<2>::rigid(tree)), &stages, names, problems);
     let around = water::Around {
         own: &things(Root::<2>::water(tree)),
@@ -160,7 +183,6 @@ fn in_plane(
     let water = water::conditions(&around, problems);
     water::checks::check(&around, &water, problems);
     let reinforcement = reinforcement::members(tree, &site, &stages, problems);
-    reinforcement::check_searches(&stages, names, problems);
     let context = Context {
         tree,
         stages: &stages,
@@ -172,10 +194,7 @@ fn in_plane(
         site: Some(&site),
         sequence,
     };
-    reinforcement::check_held(&context, &reinforcement, problems);
-    let built = assemble::stages_of(&context, problems);
-    let gravity = gravity(tree);
-    ground::layers::check_stiffness(&layers, &built, gravity, problems);
+    let built = stages_on(&context, &rigid, &reinforcement, problems);
     let upon = Surroundings {
         boundaries,
         rigid,
@@ -183,6 +202,22 @@ fn in_plane(
         reinforcement,
     };
     assemble::assemble((&context, file), &basics, upon, built, problems)
+}
+
+/// The stages on what is there, with the checks that look at several of them.
+fn stages_on<const D: usize>(
+    context: &Context<'_, D>,
+    rigid: &[Option<RigidPart<D>>],
+    reinforcement: &[Option<ReinforcementPart<D>>],
+    problems: &mut Problems,
+) -> Vec<Option<Stage>> {
+    reinforcement::check_searches(context.stages, context.names, problems);
+    reinforcement::check_held(context, reinforcement, problems);
+    let built = assemble::stages_of(context, problems);
+    idle::check(context, rigid, &built, problems);
+    let (tree, bodies, materials) = (context.tree, context.bodies, context.materials);
+    check_stiffness((tree, bodies, materials), &built, gravity(tree), problems);
+    built
 }
 
 /// The head of the report.

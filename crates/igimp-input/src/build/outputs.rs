@@ -15,7 +15,7 @@ use igimp_model::{
 use igimp_results::fields::length;
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::outputs::{self as keys, Across, LinearSolver, OutputTime};
-use igimp_schema::text::point;
+use igimp_schema::text::{number, point};
 use igimp_schema::tree::read::{At, Either};
 
 use super::AllNames;
@@ -38,6 +38,9 @@ fn memory(stated: Option<&At<String>>, problems: &mut Problems) -> Option<Memory
     }
 }
 
+/// Tolerance beyond which results are off \[-\].
+const LOOSE: f64 = 1e-3;
+
 /// Newton's method, step cutting, linear solver.
 pub(super) fn solver(own: &keys::Solver, problems: &mut Problems) -> SolverSettings {
     let linear = match *own.linear {
@@ -45,6 +48,14 @@ pub(super) fn solver(own: &keys::Solver, problems: &mut Problems) -> SolverSetti
         LinearSolver::Multigrid => SolverKind::Multigrid,
         LinearSolver::Single => SolverKind::Single,
     };
+    if *own.tolerance > LOOSE {
+        problems
+            .warning(
+                own.tolerance.place,
+                format!("tolerance = {} is loose", number(*own.tolerance)),
+            )
+            .help("forces out of balance carry a load that nothing stands for: 1e-6 to 1e-4 tells a factor of safety");
+    }
     SolverSettings {
         tolerance: *own.tolerance,
         max_iterations: *own.max_iterations,

@@ -17,6 +17,7 @@ use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::Node;
 use igimp_schema::tree::read::{At, Either};
+use igimp_text::short;
 
 use super::grid::Frame;
 use super::things;
@@ -197,6 +198,16 @@ fn shear(
                     Strength::Elastic => "is elastic and has no strength",
                     Strength::HoekBrown(_) => "is rock by Hoek and Brown and has no cohesion",
                     Strength::ModifiedCamClay(_) => "is modified Cam-clay and has no cohesion",
+                    _ if material.profiles.of_parameter("cohesion").is_some() => {
+                        let message = format!(
+                            "`adhesion_share` is of one cohesion, and that of `{}` varies",
+                            clip(&material.name, 40)
+                        );
+                        problems
+                            .error(share.place, message)
+                            .help("state an `adhesion`, or layers with a material each");
+                        return None;
+                    }
                     _ => continue,
                 };
                 let name = clip(&material.name, 40);
@@ -311,13 +322,13 @@ fn in_grid<const D: usize>(
                 format!(
                     "the rigid body `{name}` is {} m thick, thinner than two cells of {} m",
                     number(thickness),
-                    number(cell)
+                    short(cell)
                 ),
             )
             .help("soil on both sides of it would share nodes of the grid, and stick together through it")
             .help(format!(
                 "make it {} m thick, or the cells there smaller",
-                number(LEAST_CELLS * cell)
+                number((1e3 * LEAST_CELLS * cell - 1e-6).ceil() / 1e3)
             ));
     }
     match part.surface(cell) {

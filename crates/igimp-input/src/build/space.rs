@@ -16,10 +16,12 @@ use igimp_schema::tree::Node;
 use super::assemble::{self, GridAndBodies, Surroundings};
 use super::bodies;
 use super::bodies::sequence::Sequence;
+use super::bodies::sides::{self, Holds};
 use super::bodies::site::Soil;
 use super::bodies::solids;
 use super::grid::{Frame, boundaries, cell_place};
-use super::{AllNames, loads, reinforcement, rigid, things, water};
+use super::ground::gaps::check_in_space;
+use super::{AllNames, loads, reinforcement, rigid, stages_on, things, water};
 use crate::build::Thing;
 use crate::build::bodies::site::Solids;
 use crate::build::context::Context;
@@ -98,7 +100,7 @@ pub(super) fn build(
     let own = things(Root::<3>::bodies(tree));
     let stages = things(Root::<3>::stages(tree));
     let parts = bodies::bodies::<bodies::Space, _>(tree, (&own, &stages), names, problems);
-    let basics = GridAndBodies::new(tree, names, (&own, &stages), parts, problems);
+    let basics = GridAndBodies::new(tree, names, (&own, &stages), (parts, &[]), problems);
     let GridAndBodies {
         frame,
         bodies,
@@ -114,6 +116,10 @@ pub(super) fn build(
     let loads = loads::loads(tree, &soil, (&stages, sequence), problems);
     let rigid = rigid::rigid(tree, &rigid::space::Around(frame), materials, problems);
     rigid::apart::check((tree, frame), &rigid, (&stages, sequence), problems);
+    let holds = Holds::new(boundaries.as_ref(), &rigid, (&loads, materials));
+    let ground = (&bodies[..], sequence);
+    sides::check((tree, frame), &stages, ground, &holds, problems);
+    check_in_space(&own, (bodies, sequence), &soil, problems);
     rigid::stage::check_use(&things(Root::<3>::rigid(tree)), &stages, names, problems);
     let around = water::Around {
         own: &things(Root::<3>::water(tree)),
@@ -129,7 +135,6 @@ pub(super) fn build(
     let water = water::conditions(&around, problems);
     water::checks::check(&around, &water, problems);
     let reinforcement = reinforcement::members(tree, &soil, &stages, problems);
-    reinforcement::check_searches(&stages, names, problems);
     let context = Context {
         tree,
         stages: &stages,
@@ -141,8 +146,7 @@ pub(super) fn build(
         site: None,
         sequence,
     };
-    reinforcement::check_held(&context, &reinforcement, problems);
-    let built = assemble::stages_of(&context, problems);
+    let built = stages_on(&context, &rigid, &reinforcement, problems);
     check_level(&stages, (bodies, materials), &soil, problems);
     let upon = Surroundings {
         boundaries,
@@ -167,13 +171,11 @@ fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
     }
     if let Ok(grid) = Root::<3>::grid(tree)
         && let Ok(wishes) = &grid.wishes
-        && *wishes.fit == Fit::Layers
+        && let Some(fit) = &wishes.fit
+        && **fit != Fit::None
     {
         problems
-            .error(
-                wishes.fit.place,
-                "lines are fitted to layers in plane strain only",
-            )
+            .error(fit.place, "lines are fitted to bodies in the plane only")
             .help("write lines = { z = [...] }");
     }
 }

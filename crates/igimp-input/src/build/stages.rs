@@ -5,6 +5,7 @@ mod consolidation;
 pub(crate) mod construction;
 pub(crate) mod dynamic;
 pub(crate) mod ground_motion;
+pub(crate) mod idle;
 pub(crate) mod memory;
 pub(crate) mod safety;
 

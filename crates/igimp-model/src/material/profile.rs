@@ -1,6 +1,8 @@
 //! Properties of a material that vary with the level, with the depth below the surface, with the stress there, or by
 //! points in the plane.
 
+use std::borrow::Cow;
+
 use igimp_material::Ratios;
 
 use crate::{Ground, Material, Raster, Strength, front};
@@ -70,6 +72,23 @@ impl Profile {
             }
             _ => None,
         }
+    }
+
+    /// The same with a linear function of all values, which is zero at zero; a share of the stress stays.
+    #[must_use]
+    pub fn scaled(mut self, by: impl Fn(f64) -> f64) -> Self {
+        let put = |own: &mut f64| *own = by(*own);
+        match &mut self {
+            Self::Level(own) | Self::Depth(own) => match own {
+                Variation::Gradient {
+                    at_top, gradient, ..
+                } => [at_top, gradient].into_iter().for_each(put),
+                Variation::Table(rows) => rows.iter_mut().for_each(|row| put(&mut row[1])),
+            },
+            Self::Raster(own) => own.values.iter_mut().flatten().for_each(put),
+            Self::StressShare(_) => {}
+        }
+        self
     }
 
     /// The integral from a place up to a level; of a share of the stress, none is asked for, that of its value at the
@@ -182,9 +201,57 @@ pub struct Profiles {
     pub unit_weight: Option<Profile>,
     /// Permeability along the bedding \[m/s\].
     pub permeability: Option<Profile>,
+    /// All other parameters of the law that vary, by their keys in case files: soil has a law of its own there.
+    pub parameters: Vec<(&'static str, Profile)>,
+}
+
+impl Profiles {
+    /// How a parameter varies that asks for a law of its own at every place, by its key.
+    pub fn of_parameter(&self, key: &str) -> Option<&Profile> {
+        let mut own = self.parameters.iter().filter(|own| own.0 == key);
+        own.next().map(|own| &own.1)
+    }
 }
 
 impl Material {
+    /// Whether a parameter varies that asks for a law of its own at every place.
+    pub fn has_laws_by_place(&self) -> bool {
+        !self.profiles.parameters.is_empty()
+    }
+
+    /// The keys of the parameters that ask for a law of their own at every place, with their values at one.
+    pub fn values_at<const D: usize>(
+        &self,
+        place: &[f64; D],
+        ground: &Ground<D>,
+    ) -> impl Iterator<Item = (&'static str, f64)> {
+        let parameters = self.profiles.parameters.iter();
+        parameters.map(|(key, own)| (*key, own.at(place, ground)))
+    }
+
+    /// The material with the parameters that its law has at a place, as soil that starts there carries them, and without profiles; ratios
+    /// are apart ([`Self::ratios_at`]).
+    pub fn at<const D: usize>(&self, place: &[f64; D], ground: &Ground<D>) -> Cow<'_, Self> {
+        if !self.has_laws_by_place() {
+            return Cow::Borrowed(self);
+        }
+        let mut own = Self {
+            name: self.name.clone(),
+            profiles: Profiles::default(),
+            given: self.given.clone(),
+            ..*self
+        };
+        for (key, value) in self.values_at(place, ground) {
+            if !own.strength.set(key, value) {
+                own.poisson = value;
+            }
+        }
+        if let Some(stiffness) = own.strength.stiffness() {
+            [own.young, own.poisson] = stiffness;
+        }
+        Cow::Owned(own)
+    }
+
     /// Undrained strength or cohesion \[Pa\]; zero for a material that has neither. The greatest where it varies.
     pub fn cohesive(&self) -> f64 {
         self.strength.cohesive().unwrap_or(0.0)
@@ -223,6 +290,7 @@ impl Material {
             young,
             unit_weight: _,
             permeability: _,
+            parameters: _,
         } = &self.profiles;
         let over = |profile: &Option<Profile>, greatest: f64, least: f64| {
             let ratio = |own: &Profile| (own.at(place, ground) / greatest).max(least);

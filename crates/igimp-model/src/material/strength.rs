@@ -4,10 +4,20 @@ use std::sync::Arc;
 
 use igimp_assembly::SharedLaw;
 use igimp_material::{
-    CamClayParameters, Cone, DruckerPrager, Elasticity, HardeningSoil, HardeningSoilParameters,
-    HenckyElastic, HoekBrown, HoekBrownParameters, InertialFriction, MaterialError,
-    ModifiedCamClay, MohrCoulomb, ShearStiffness, Tresca, VonMises,
+    CamClayParameters, Cone, ConstitutiveModel as _, DruckerPrager, Elasticity, HardeningSoil,
+    HardeningSoilParameters, HenckyElastic, HoekBrown, HoekBrownParameters, InertialFriction,
+    MaterialError, ModifiedCamClay, MohrCoulomb, ShearStiffness, Tresca, VonMises,
 };
+
+/// M of a friction angle at the critical state, in triaxial compression \[-\].
+pub fn critical_ratio_of(friction_angle: f64) -> f64 {
+    6.0 * friction_angle.sin() / (3.0 - friction_angle.sin())
+}
+
+/// K₀ of friction by Jaky \[-\].
+pub fn jaky(friction_angle: f64) -> f64 {
+    1.0 - friction_angle.sin()
+}
 
 /// How plastic flow of frictional soil follows from its angle of dilation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -71,10 +81,54 @@ pub enum Strength {
 /// A parameter of a strength as it is printed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameter {
+    /// Its key in case files; empty where it has none of its own.
+    pub key: &'static str,
     /// The text before the value, such as `c_u = `.
     pub label: &'static str,
     /// The value.
     pub value: ParameterValue,
+}
+
+/// A parameter where a strength stores it.
+struct Slot<'a> {
+    key: &'static str,
+    /// The text before the value; none: it is not printed.
+    label: Option<&'static str>,
+    value: fn(f64) -> ParameterValue,
+    /// None: the label says it all.
+    number: Option<&'a mut f64>,
+}
+
+/// A parameter that is printed behind a label.
+fn slot<'a>(
+    (key, label): (&'static str, &'static str),
+    value: fn(f64) -> ParameterValue,
+    number: &'a mut f64,
+) -> Slot<'a> {
+    Slot {
+        key,
+        label: Some(label),
+        value,
+        number: Some(number),
+    }
+}
+
+/// A parameter that is not printed.
+fn unprinted<'a>(key: &'static str, number: &'a mut f64) -> Slot<'a> {
+    Slot {
+        label: None,
+        ..slot((key, ""), ParameterValue::Number, number)
+    }
+}
+
+/// Words among the parameters.
+fn note<'a>(label: &'static str) -> Slot<'a> {
+    Slot {
+        key: "",
+        label: Some(label),
+        value: |_| ParameterValue::Note,
+        number: None,
+    }
 }
 
 /// The value of a parameter, and what of a material may vary in its place.
@@ -96,21 +150,30 @@ pub enum ParameterValue {
     Note,
 }
 
-fn parameter(label: &'static str, value: ParameterValue) -> Parameter {
-    Parameter { label, value }
-}
-
 /// Cohesion \[Pa\], friction angle and angle of dilation \[rad\].
-fn frictional(cohesion: f64, friction_angle: f64, dilation_angle: f64) -> [Parameter; 3] {
-    [
-        parameter("c = ", ParameterValue::Cohesive(cohesion)),
-        parameter("φ = ", ParameterValue::Friction(friction_angle)),
-        parameter("ψ = ", ParameterValue::Angle(dilation_angle)),
+fn frictional<'a>(
+    cohesion: &'a mut f64,
+    friction_angle: &'a mut f64,
+    dilation_angle: &'a mut f64,
+) -> Vec<Slot<'a>> {
+    vec![
+        slot(("cohesion", "c = "), ParameterValue::Cohesive, cohesion),
+        slot(
+            ("friction", "φ = "),
+            ParameterValue::Friction,
+            friction_angle,
+        ),
+        slot(("dilation", "ψ = "), ParameterValue::Angle, dilation_angle),
     ]
 }
 
 /// Friction of fast shear and what makes shear fast.
 fn inertial(own: &InertialFriction) -> [Parameter; 4] {
+    let parameter = |label, value| Parameter {
+        key: "",
+        label,
+        value,
+    };
     [
         parameter("φ₂ = ", ParameterValue::Angle(own.friction_angle)),
         parameter("I₀ = ", ParameterValue::Number(own.inertial_number)),
@@ -140,15 +203,13 @@ impl Strength {
         }
     }
 
-    /// The parameters in the order in which they are printed.
-    pub fn parameters(&self) -> Vec<Parameter> {
-        match *self {
-            Self::Elastic => vec![parameter("no limit", ParameterValue::Note)],
+    /// The parameters of the law where they are stored, in the order in which they are printed: the one list of them.
+    fn slots(&mut self) -> Vec<Slot<'_>> {
+        use ParameterValue::{Angle, Cohesive, Modulus, Number, Stress};
+        match self {
+            Self::Elastic => vec![note("no limit")],
             Self::VonMises { undrained_strength } | Self::Tresca { undrained_strength } => {
-                vec![parameter(
-                    "c_u = ",
-                    ParameterValue::Cohesive(undrained_strength),
-                )]
+                vec![slot(("cu", "c_u = "), Cohesive, undrained_strength)]
             }
             Self::MohrCoulomb {
                 cohesion,
@@ -157,60 +218,115 @@ impl Strength {
                 flow,
                 tension_cutoff,
             } => {
-                let mut parameters = frictional(cohesion, friction_angle, dilation_angle).to_vec();
-                if flow == Flow::Davis {
-                    parameters.push(parameter("flow by Davis", ParameterValue::Note));
+                let mut slots = frictional(cohesion, friction_angle, dilation_angle);
+                if *flow == Flow::Davis {
+                    slots.push(note("flow by Davis"));
                 }
-                let limit = |limit| parameter("tension up to ", ParameterValue::Stress(limit));
-                parameters.extend(tension_cutoff.map(limit));
-                parameters
+                let name = ("tension_cutoff", "tension up to ");
+                slots.extend(tension_cutoff.as_mut().map(|own| slot(name, Stress, own)));
+                slots
             }
             Self::DruckerPrager {
                 cohesion,
                 friction_angle,
                 dilation_angle,
                 cone,
-                rate,
+                rate: _,
             } => {
-                let cone = match cone {
+                let mut slots = frictional(cohesion, friction_angle, dilation_angle);
+                slots.push(note(match cone {
                     Cone::Compression => "cone of triaxial compression",
                     Cone::Extension => "cone of triaxial extension",
                     Cone::PlaneStrain => "cone of plane strain",
-                };
-                let mut parameters = frictional(cohesion, friction_angle, dilation_angle).to_vec();
-                parameters.push(parameter(cone, ParameterValue::Note));
-                parameters.extend(rate.iter().flat_map(inertial));
-                parameters
+                }));
+                slots
             }
             Self::HoekBrown(own) => vec![
-                parameter("σ_ci = ", ParameterValue::Modulus(own.intact_strength)),
-                parameter("GSI = ", ParameterValue::Number(own.gsi)),
-                parameter("m_i = ", ParameterValue::Number(own.intact_ratio)),
-                parameter("D = ", ParameterValue::Number(own.disturbance)),
-                parameter("ψ = ", ParameterValue::Angle(own.dilation_angle)),
+                slot(("sci", "σ_ci = "), Modulus, &mut own.intact_strength),
+                slot(("gsi", "GSI = "), Number, &mut own.gsi),
+                slot(("mi", "m_i = "), Number, &mut own.intact_ratio),
+                slot(("disturbance", "D = "), Number, &mut own.disturbance),
+                slot(("dilation", "ψ = "), Angle, &mut own.dilation_angle),
             ],
-            Self::HardeningSoil(own) => vec![
-                parameter("c = ", ParameterValue::Cohesive(own.cohesion)),
-                parameter("φ = ", ParameterValue::Friction(own.friction_angle)),
-                parameter("ψ = ", ParameterValue::Angle(own.dilation_angle)),
-                parameter("E_50 = ", ParameterValue::Modulus(own.secant)),
-                parameter("E_ur = ", ParameterValue::Modulus(own.unloading)),
-                parameter("E_oed = ", ParameterValue::Modulus(own.oedometer)),
-                parameter("m = ", ParameterValue::Number(own.power)),
-                parameter("OCR = ", ParameterValue::Number(own.overconsolidation)),
-            ],
+            Self::HardeningSoil(own) => {
+                let angles = (&mut own.friction_angle, &mut own.dilation_angle);
+                let mut slots = frictional(&mut own.cohesion, angles.0, angles.1);
+                slots.extend([
+                    slot(("e50", "E_50 = "), Modulus, &mut own.secant),
+                    slot(("eur", "E_ur = "), Modulus, &mut own.unloading),
+                    slot(("eoed", "E_oed = "), Modulus, &mut own.oedometer),
+                    slot(("power", "m = "), Number, &mut own.power),
+                    slot(("ocr", "OCR = "), Number, &mut own.overconsolidation),
+                    unprinted("poisson", &mut own.poisson),
+                    unprinted("failure_ratio", &mut own.failure_ratio),
+                    unprinted("k0_normal", &mut own.k0_normal),
+                ]);
+                slots
+            }
             Self::ModifiedCamClay(own) => vec![
-                parameter("λ* = ", ParameterValue::Number(own.compression)),
-                parameter("κ* = ", ParameterValue::Number(own.swelling)),
-                parameter("M = ", ParameterValue::Number(own.critical_ratio)),
-                match own.shear {
-                    ShearStiffness::Poisson(own) => parameter("ν = ", ParameterValue::Number(own)),
-                    ShearStiffness::Constant(own) => {
-                        parameter("G = ", ParameterValue::Modulus(own))
-                    }
+                slot(("lambda", "λ* = "), Number, &mut own.compression),
+                slot(("kappa", "κ* = "), Number, &mut own.swelling),
+                slot(("critical_ratio", "M = "), Number, &mut own.critical_ratio),
+                match &mut own.shear {
+                    ShearStiffness::Poisson(own) => slot(("poisson", "ν = "), Number, own),
+                    ShearStiffness::Constant(own) => slot(("shear", "G = "), Modulus, own),
                 },
-                parameter("OCR = ", ParameterValue::Number(own.overconsolidation)),
+                slot(("ocr", "OCR = "), Number, &mut own.overconsolidation),
             ],
+        }
+    }
+
+    /// The parameters in the order in which they are printed.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        let mut own = *self;
+        let printed = own.slots().into_iter().filter_map(|slot| {
+            Some(Parameter {
+                key: slot.key,
+                label: slot.label?,
+                value: (slot.value)(slot.number.map_or(0.0, |own| *own)),
+            })
+        });
+        let mut parameters: Vec<Parameter> = printed.collect();
+        if let Self::DruckerPrager {
+            rate: Some(rate), ..
+        } = self
+        {
+            parameters.extend(inertial(rate));
+        }
+        parameters
+    }
+
+    /// Gives a parameter of the law another value, by its key; whether the law has it. Friction of Cam-clay is that at the critical state; in
+    /// Hardening Soil a ratio of stresses that is that of Jaky for the friction follows it.
+    pub(super) fn set(&mut self, key: &str, value: f64) -> bool {
+        match self {
+            Self::ModifiedCamClay(own) if key == "friction" => {
+                own.critical_ratio = critical_ratio_of(value);
+                return true;
+            }
+            Self::HardeningSoil(own)
+                if key == "friction"
+                    && own.k0_normal.total_cmp(&jaky(own.friction_angle)).is_eq() =>
+            {
+                own.k0_normal = jaky(value);
+            }
+            _ => {}
+        }
+        let mut slots = self.slots().into_iter().filter(|slot| slot.key == key);
+        let number = slots.find_map(|slot| slot.number);
+        number.map(|own| *own = value).is_some()
+    }
+
+    /// Young's modulus \[Pa\] and Poisson's ratio of a law with an elasticity of its own, at its reference pressure; none of others.
+    pub fn stiffness(&self) -> Option<[f64; 2]> {
+        match *self {
+            Self::ModifiedCamClay(own) => {
+                let law = ModifiedCamClay::new(own).ok()?;
+                let bound = law.stiffness_bound();
+                Some([bound.young(), bound.poisson()])
+            }
+            Self::HardeningSoil(own) => Some([own.unloading, own.poisson]),
+            _ => None,
         }
     }
 
@@ -353,5 +469,81 @@ impl Strength {
             })?),
             Self::ModifiedCamClay(parameters) => Arc::new(ModifiedCamClay::new(parameters)?),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// GOAL: a parameter that is set by its key is that one, and no other of the list moves; friction of Cam-clay is M, and K₀ of first
+    /// compression follows friction where it is that of Jaky.
+    #[test]
+    fn a_parameter_is_set_by_its_key() {
+        let soil = HardeningSoilParameters {
+            cohesion: 1e3,
+            friction_angle: 0.6,
+            dilation_angle: 0.1,
+            secant: 2e7,
+            unloading: 6e7,
+            oedometer: 2e7,
+            poisson: 0.2,
+            power: 0.5,
+            reference_pressure: 1e5,
+            failure_ratio: 0.9,
+            k0_normal: jaky(0.6),
+            overconsolidation: 1.5,
+        };
+        let clay = CamClayParameters {
+            compression: 0.1,
+            swelling: 0.02,
+            critical_ratio: 1.0,
+            shear: ShearStiffness::Poisson(0.3),
+            overconsolidation: 2.0,
+            reference_pressure: 1e5,
+        };
+        let sand = Strength::MohrCoulomb {
+            cohesion: 1e3,
+            friction_angle: 0.6,
+            dilation_angle: 0.1,
+            flow: Flow::Davis,
+            tension_cutoff: Some(500.0),
+        };
+        let all = [
+            sand,
+            Strength::ModifiedCamClay(clay),
+            Strength::HardeningSoil(soil),
+        ];
+        for strength in all {
+            let numbers = |of: &Strength| {
+                let mut of = *of;
+                let slots = of.slots().into_iter();
+                let numbers = slots.filter_map(|own| Some((own.key, *own.number?)));
+                numbers.collect::<Vec<_>>()
+            };
+            let before = numbers(&strength);
+            for (at, (key, value)) in before.iter().enumerate() {
+                let mut other = strength;
+                assert!(other.set(key, 1.01 * value));
+                for (k, (a, b)) in std::iter::zip(&before, numbers(&other)).enumerate() {
+                    let follows = *key == "friction" && a.0 == "k0_normal";
+                    let expected = if k == at { 1.01 * a.1 } else { a.1 };
+                    let expected = if follows {
+                        jaky(1.01 * value)
+                    } else {
+                        expected
+                    };
+                    assert!(expected.total_cmp(&b.1).is_eq(), "{key}: {}", a.0);
+                }
+            }
+            assert!(!{ strength }.set("gsi", 1.0));
+        }
+        let mut other = Strength::ModifiedCamClay(clay);
+        assert!(other.set("friction", 0.5));
+        let expected = CamClayParameters {
+            critical_ratio: critical_ratio_of(0.5),
+            ..clay
+        };
+        assert_eq!(other, Strength::ModifiedCamClay(expected));
     }
 }

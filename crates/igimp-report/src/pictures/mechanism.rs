@@ -12,7 +12,7 @@ use igimp_text::short;
 use super::field::edges;
 use super::{Canvas, Over, file_name, titled, write};
 use crate::error::ReportError;
-use crate::failure_mechanism::{Increment, SlipPoint};
+use crate::failure_mechanism::{Increment, IncrementInSpace, SlipPoint};
 
 /// Arrows stand so many to the longer side of the picture.
 const ARROWS: f64 = 34.0;
@@ -29,7 +29,7 @@ const FEW: f64 = 0.005;
 
 /// The last two equilibria of a search before it failed.
 #[derive(Clone, Copy, Debug)]
-pub struct Failing<'a> {
+pub struct Failing<'a, const D: usize> {
     /// Number of its stage, from 0.
     pub stage: usize,
     /// Strength reduction factor of the state \[-\].
@@ -37,9 +37,41 @@ pub struct Failing<'a> {
     /// Which state it is, such as `first-unstable`.
     pub what: &'a str,
     /// The last equilibrium but one.
-    pub before: &'a Particles<2>,
+    pub before: &'a Particles<D>,
     /// The last equilibrium.
-    pub last: &'a Particles<2>,
+    pub last: &'a Particles<D>,
+}
+
+impl<const D: usize> Failing<'_, D> {
+    fn moved(&self) -> Vec<[f64; D]> {
+        std::iter::zip(&self.before.displacement, &self.last.displacement)
+            .map(|(before, last)| std::array::from_fn(|axis| last[axis] - before[axis]))
+            .collect()
+    }
+}
+
+/// The surface over which soil slides in space as a table, if one stands out.
+pub fn slip_surface(failing: &Failing<'_, 3>, case: &Case<3>) -> Option<Table> {
+    let moved = failing.moved();
+    let increment = IncrementInSpace {
+        x: &failing.last.x,
+        half_length: &failing.last.half_length0,
+        moved: &moved,
+    };
+    let surface = increment.slip_surface();
+    let mut table = Table::new(
+        table_name(case, failing.stage),
+        &["x_[m]", "y_[m]", "z_[m]"],
+    );
+    for point in &surface {
+        table.push(point.to_vec());
+    }
+    (!surface.is_empty()).then_some(table)
+}
+
+/// The name of a table of the failure in a stage.
+fn table_name<const D: usize>(case: &Case<D>, stage: usize) -> String {
+    format!("{}-{}", stage + 1, file_name(&case.stages[stage].name))
 }
 
 /// The displacements between two equilibria of a failing body.
@@ -51,11 +83,8 @@ pub struct Mechanism {
 }
 
 /// The mechanism of a failure; none where nothing moved from the one equilibrium to the other.
-pub fn mechanism(failing: &Failing<'_>) -> Option<Mechanism> {
-    let (before, last) = (&failing.before.displacement, &failing.last.displacement);
-    let moved: Vec<[f64; 2]> = std::iter::zip(before, last)
-        .map(|(before, last)| [0, 1].map(|axis| last[axis] - before[axis]))
-        .collect();
+pub fn mechanism(failing: &Failing<'_, 2>) -> Option<Mechanism> {
+    let moved = failing.moved();
     let most = moved.iter().map(|d| d[0].hypot(d[1])).fold(0.0, f64::max);
     if most <= 0.0 {
         return None;
@@ -75,7 +104,7 @@ impl Mechanism {
     /// The slip line as a table, if one stands out.
     pub fn table(&self, case: &Case<2>, stage: usize) -> Option<Table> {
         let line = self.line.as_ref()?;
-        let name = format!("{}-{}", stage + 1, file_name(&case.stages[stage].name));
+        let name = table_name(case, stage);
         let mut table = Table::new(name, &["x_[m]", "y_[m]", "shear_strain_increment_[-]"]);
         for point in line {
             table.push(vec![point.x[0], point.x[1], point.shear]);
@@ -90,7 +119,7 @@ impl Mechanism {
 /// [`ResultsError::File`](igimp_results::ResultsError::File) and [`ReportError::Figure`].
 pub fn mechanism_picture(
     canvas: &Canvas<'_>,
-    failing: &Failing<'_>,
+    failing: &Failing<'_, 2>,
     found: &Mechanism,
     over: &Over,
 ) -> Result<FigureNote, ReportError> {

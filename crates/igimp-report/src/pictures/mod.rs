@@ -43,7 +43,7 @@ pub use field::{Canvas, Over, Seen, Shown, field_picture};
 pub(crate) use field::{Colours, edges};
 pub use histories::{is_of_section, monitor_pictures, section_pictures};
 pub use in_time::{SafetyInTime, safety_in_time_picture};
-pub use mechanism::{Failing, Mechanism, mechanism, mechanism_picture};
+pub use mechanism::{Failing, Mechanism, mechanism, mechanism_picture, slip_surface};
 pub use meshes::mesh_pictures;
 pub use model::model_picture;
 pub use safety::safety_picture;

@@ -13,7 +13,7 @@ use crate::error::ReportError;
 use crate::skin::{Boxes, Skin};
 
 /// How much the direction of a face itself counts beside that of the surface around it.
-const OWN: f64 = 0.3;
+const OWN: f64 = 1.0;
 
 /// A state in space that is drawn field by field; its surface is found once.
 #[derive(Debug)]
@@ -43,14 +43,15 @@ struct Coloured {
 }
 
 impl<'a> InSpace<'a> {
-    /// The state of a case of that title, for its results folder, with the triangles of rigid bodies. With `pore_water`
-    /// titles distinguish total from effective stress.
+    /// The state of a case of that title, for its results folder, with the triangles of rigid bodies and the lines along `edges`
+    /// of the bodies. With `pore_water` titles distinguish total from effective stress.
     pub fn new(
         folder: &'a Path,
         title: &'a str,
         pore_water: bool,
         state: Seen<'a, 3>,
         bodies: Vec<[[f64; 3]; 3]>,
+        edges: &[Vec<[f64; 3]>],
     ) -> Self {
         let corner = |sign: f64| {
             let domains = std::iter::zip(&state.particles.x, &state.particles.half_length);
@@ -59,10 +60,11 @@ impl<'a> InSpace<'a> {
                 .collect::<Vec<_>>()
         };
         let (low, high) = (corner(-1.0), corner(1.0));
-        let skin = Skin::of(Boxes {
+        let boxes = Boxes {
             low: &low,
             high: &high,
-        });
+        };
+        let skin = Skin::of(boxes, edges);
         Self {
             folder,
             title,
@@ -182,17 +184,25 @@ impl<'a> InSpace<'a> {
         }
     }
 
+    fn boxes(&self) -> Boxes<'_> {
+        Boxes {
+            low: &self.low,
+            high: &self.high,
+        }
+    }
+
     fn faces(&self, values: &[f64]) -> Vec<Face> {
+        let boxes = self.boxes();
         let mut faces = Vec::with_capacity(self.skin.count());
         for (k, &value) in values.iter().enumerate() {
             let lie = self.skin.lie[k];
             for face in (0..6).filter(|face| self.skin.faces[k] & (1 << face) != 0) {
-                let mut normal = lie.normal;
-                normal[face / 2] += OWN * [-1.0, 1.0][face % 2];
-                let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
+                let corners = self.skin.corners(boxes, k, face);
+                let own = across(&corners, [-1.0, 1.0][face % 2]);
+                let normal = [0, 1, 2].map(|axis| OWN * own[axis] + lie.normal[axis]);
                 faces.push(Face {
-                    corners: corners(&self.low[k], &self.high[k], face),
-                    normal: normal.map(|n| n / length.max(f64::MIN_POSITIVE)),
+                    corners,
+                    normal: unit(normal),
                     open: lie.open,
                     value,
                 });
@@ -205,19 +215,15 @@ impl<'a> InSpace<'a> {
     fn cut(&self, plane: Cut, own: &Coloured, title: String) -> FieldPlot {
         let [across, up] = [[1, 2], [0, 2], [0, 1]][plane.axis];
         let letters = ["x [m]", "y [m]", "z [m]"];
+        let boxes = self.boxes();
         let crossed = (0..self.low.len()).filter(|&k| {
             // Of domains that meet in the plane, those beyond it.
             self.low[k][plane.axis] <= plane.at && plane.at < self.high[k][plane.axis]
         });
         let (domains, values): (Vec<_>, Vec<_>) = crossed
             .map(|k| {
-                let (low, high) = (self.low[k], self.high[k]);
-                let corners = vec![
-                    [low[across], low[up]],
-                    [high[across], low[up]],
-                    [high[across], high[up]],
-                    [low[across], high[up]],
-                ];
+                let section = self.skin.section(boxes, k, plane.axis, plane.at);
+                let corners = section.map(|at| [at[across], at[up]]).to_vec();
                 (corners, own.values[k])
             })
             .unzip();
@@ -236,16 +242,20 @@ impl<'a> InSpace<'a> {
     }
 }
 
-/// The corners of a face of a box, in turn.
-fn corners(low: &[f64; 3], high: &[f64; 3], face: usize) -> [[f64; 3]; 4] {
-    let axis = face / 2;
-    let (one, two) = ((axis + 1) % 3, (axis + 2) % 3);
-    [[low, low], [high, low], [high, high], [low, high]].map(|[a, b]| {
-        let mut corner = [low, high][face % 2].to_owned();
-        corner[one] = a[one];
-        corner[two] = b[two];
-        corner
-    })
+/// The direction across the diagonals of a face, whose corners turn about it in that sense.
+fn across(corners: &[[f64; 3]; 4], sense: f64) -> [f64; 3] {
+    let way = |from: usize, to: usize| [0, 1, 2].map(|k| corners[to][k] - corners[from][k]);
+    let (u, v) = (way(0, 2), way(1, 3));
+    unit([0, 1, 2].map(|k| {
+        let [a, b] = [(k + 1) % 3, (k + 2) % 3];
+        sense * (u[a] * v[b] - u[b] * v[a])
+    }))
+}
+
+/// A direction with the length 1.
+fn unit(way: [f64; 3]) -> [f64; 3] {
+    let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
+    way.map(|x| x / length.max(f64::MIN_POSITIVE))
 }
 
 /// A place in few digits.

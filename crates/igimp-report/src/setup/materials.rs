@@ -78,9 +78,42 @@ pub fn of_material(material: &Material) -> SetupTable {
     table("Material", &["Parameter", "Value"], rows)
 }
 
+/// How a parameter of a law is printed: what its values are divided by, and its unit.
+fn scale_of(value: ParameterValue) -> (f64, &'static str) {
+    match value {
+        ParameterValue::Cohesive(_) | ParameterValue::Stress(_) => (1e3, " kPa"),
+        ParameterValue::Friction(_) | ParameterValue::Angle(_) => (1_f64.to_radians(), "°"),
+        ParameterValue::Modulus(_) => (1e6, " MPa"),
+        ParameterValue::Number(_) | ParameterValue::Note => (1.0, ""),
+    }
+}
+
+/// Parameters that vary and are not printed among those of the strength.
+fn beside(material: &Material) -> impl Iterator<Item = String> {
+    let printed = material.strength.parameters();
+    let is_beside = move |own: &&(&str, Profile)| {
+        own.0 != "poisson" && !printed.iter().any(|other| other.key == own.0)
+    };
+    let parameters = material.profiles.parameters.iter().filter(is_beside);
+    parameters.map(|(key, own)| match *key {
+        "friction" => format!(
+            "φ at the critical state = {}",
+            in_words(own, over(1_f64.to_radians()), "°")
+        ),
+        _ => format!("{key} = {}", in_words(own, short, "")),
+    })
+}
+
 /// The value of a parameter with its unit, by profile where it varies.
 fn value(parameter: Parameter, profiles: &Profiles) -> String {
     let degrees = |angle: f64| short(angle.to_degrees());
+    if parameter.key == "critical_ratio" && profiles.of_parameter("friction").is_some() {
+        return "by φ at the critical state".to_owned();
+    }
+    if let Some(profile) = profiles.of_parameter(parameter.key) {
+        let (scale, unit) = scale_of(parameter.value);
+        return in_words(profile, over(scale), unit);
+    }
     match (parameter.value, &profiles.strength, &profiles.friction) {
         (ParameterValue::Cohesive(_), Some(profile), _) => in_words(profile, over(1e3), " kPa"),
         (ParameterValue::Friction(_), _, Some(profile)) => {
@@ -114,7 +147,8 @@ fn material(material: &Material) -> Vec<String> {
         let varies = varies.then(|| {
             "φ in the end where it is greatest, elsewhere as much less by its tangent".to_owned()
         });
-        let each = parameters.map(printed).chain(effects).chain(varies);
+        let parameters = parameters.map(printed).chain(beside(material));
+        let each = parameters.chain(effects).chain(varies);
         each.collect::<Vec<_>>().join(", ")
     };
     vec![
@@ -122,7 +156,8 @@ fn material(material: &Material) -> Vec<String> {
         law_name(material).to_owned(),
         or_constant(&own.unit_weight, material.unit_weight, 1e3),
         or_constant(&own.young, material.young, 1e6),
-        short(material.poisson),
+        own.of_parameter("poisson")
+            .map_or_else(|| short(material.poisson), |own| in_words(own, short, "")),
         given_in_words(material).unwrap_or_else(of_file),
         material.k0.map_or_else(|| NONE.to_owned(), short),
     ]

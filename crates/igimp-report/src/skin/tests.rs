@@ -18,7 +18,7 @@ fn block(n: [usize; 3], is_left_out: impl Fn([usize; 3]) -> bool) -> Corners {
 }
 
 fn skin((low, high): &Corners) -> Skin {
-    Skin::of(Boxes { low, high })
+    Skin::of(Boxes { low, high }, &[])
 }
 
 #[test]
@@ -136,4 +136,56 @@ fn what_is_nowhere_is_not_seen_and_harms_nothing() {
     let found = skin(&(low, high));
     assert_eq!(found.faces[27], 0);
     assert_eq!(found.count(), 54 + 6);
+}
+
+/// The corners of the faces of a skin.
+fn corners_seen((low, high): &Corners, edges: &[Vec<[f64; 3]>]) -> Vec<[f64; 3]> {
+    let boxes = Boxes { low, high };
+    let found = Skin::of(boxes, edges);
+    let seen = (0..low.len()).flat_map(|k| (0..6).map(move |face| (k, face)));
+    seen.filter(|&(k, face)| found.faces[k] & (1 << face) != 0)
+        .flat_map(|(k, face)| found.corners(boxes, k, face))
+        .collect()
+}
+
+/// GOAL: a slope of boxes has no stairs, and a block keeps its sides and edges. ORACLE: the plane that boxes were left out above.
+#[test]
+fn slopes_have_no_stairs() {
+    for run in [1, 2, 3] {
+        let n = [24, 8, 24 / run];
+        let top = |x: f64| (24.0 - x) / run as f64;
+        let slope = block(n, |[x, _, z]| z as f64 + 0.5 > top(x as f64 + 0.5));
+        let seen = corners_seen(&slope, &[]);
+        let inside = |at: &&[f64; 3]| {
+            (4.0..20.0).contains(&at[0]) && (0.5..7.5).contains(&at[1]) && at[2] > 1.5
+        };
+        let off = |at: &[f64; 3]| (at[2] - top(at[0])).abs();
+        let most = seen.iter().filter(inside).map(off).filter(|&off| off < 1.0);
+        let most = most.fold(0.0, f64::max);
+        // Stairs leave their plane by half a box and more; those of 1:1 lie a quarter of a box to either side of theirs.
+        assert!(most < [0.56, 0.4, 0.4][run - 1], "1:{run}: {most}");
+        // The sides stay where they are, and meet in edges.
+        let ends = seen.iter().fold([f64::MAX, f64::MIN], |[a, b], at| {
+            [a.min(at[1]), b.max(at[1])]
+        });
+        assert_eq!(ends, [0.0, 8.0]);
+    }
+    let cube = block([6; 3], |_| false);
+    for corner in corners_seen(&cube, &[]) {
+        assert_eq!(corner, corner.map(f64::round));
+    }
+}
+
+/// GOAL: an edge that is drawn is an edge of the skin. ORACLE: the crest of a vertical cut, with and without it.
+#[test]
+fn edges_stay_sharp() {
+    let cut = block([12, 6, 8], |[x, _, z]| x > 5 && z > 3);
+    let crest = vec![[6.0, 0.0, 8.0], [6.0, 3.0, 8.0], [6.0, 6.0, 8.0]];
+    let near = |edges: &[Vec<[f64; 3]>]| {
+        let seen = corners_seen(&cut, edges).into_iter();
+        seen.map(|at| (at[0] - 6.0).abs().max((at[2] - 8.0).abs()))
+            .fold(f64::MAX, f64::min)
+    };
+    assert_eq!(near(&[crest]), 0.0);
+    assert!(near(&[]) > 0.2);
 }

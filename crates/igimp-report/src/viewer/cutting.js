@@ -79,6 +79,7 @@ class Cutting {
       part["cut-told"].textContent = `${"xyz"[axis]} = ${short(at)} m`;
     }
     scene.slice();
+    this.viewer.section.tell();
     scene.paint();
   }
 }

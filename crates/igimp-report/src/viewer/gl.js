@@ -1,4 +1,4 @@
-// Boxes drawn by WebGL2: a quad for every face that is seen, one for every box that the cut goes through, pieces of the
+// Boxes drawn by WebGL2: a quad for every face that is seen, the face of a cut, pieces of the
 // plane in their place where there are some, and rigid bodies as translucent triangles.
 
 // A colour of a style as three shares.
@@ -29,9 +29,9 @@ class Surface {
     if (!this.gl) throw new Error("no WebGL2");
     const { gl } = this;
     this.programs = { boxes: program(gl, [BOXES, INK]), bodies: program(gl, [BODIES, GREY]), pieces: program(gl, [PIECES, PLAIN]), strips: program(gl, [STRIPS, STRIP]) };
-    this.arrays = { faces: gl.createVertexArray(), caps: gl.createVertexArray(), bodies: gl.createVertexArray(), pieces: gl.createVertexArray(), slices: gl.createVertexArray(), strips: gl.createVertexArray(), seams: gl.createVertexArray(), water: gl.createVertexArray() };
+    this.arrays = { faces: gl.createVertexArray(), bodies: gl.createVertexArray(), pieces: gl.createVertexArray(), slices: gl.createVertexArray(), strips: gl.createVertexArray(), seams: gl.createVertexArray(), water: gl.createVertexArray(), slip: gl.createVertexArray() };
     this.buffers = new Map();
-    this.count = { faces: 0, caps: 0, bodies: 0, pieces: 0, slices: 0, strips: 0, seams: 0, water: 0 };
+    this.count = { faces: 0, bodies: 0, pieces: 0, slices: 0, strips: 0, seams: 0, water: 0, slip: 0 };
     [this.levels, this.light] = [0, 0];
   }
 
@@ -51,7 +51,7 @@ class Surface {
   // Boxes relative to `origin`, and which of them the faces that are seen belong to.
   shape(boxes, triangles) {
     const { gl } = this;
-    const { low, high, lie, faces, origin, pieces } = boxes;
+    const { low, high, lie, moves, faces, origin, pieces } = boxes;
     this.boxes = boxes;
     const near = (numbers) => Float32Array.from(numbers, (x, k) => x - origin[k % 3]);
     const [own, ends] = [near(low), near(high)];
@@ -67,11 +67,18 @@ class Surface {
     this.hand("faces", 1, 3, gl.FLOAT, pick(ends, 3));
     this.hand("faces", 2, 4, gl.UNSIGNED_BYTE, pick(lie, 4));
     this.hand("faces", 4, 1, gl.UNSIGNED_BYTE, faces.face);
-    this.hand("caps", 0, 3, gl.FLOAT, own);
-    this.hand("caps", 1, 3, gl.FLOAT, ends);
+    for (let axis = 0; axis < 3; axis += 1) {
+      // The corners of a face in the order of a strip.
+      const own = new Uint8Array(4 * faces.box.length);
+      faces.box.forEach((box, k) => {
+        const around = aroundFace(faces.face[k]);
+        [0, 1, 3, 2].forEach((turn, j) => (own[4 * k + j] = moves[24 * box + 3 * around[turn] + axis]));
+      });
+      this.hand("faces", 7 + axis, 4, gl.UNSIGNED_BYTE, own);
+    }
     this.hand("bodies", 0, 3, gl.FLOAT, near(triangles), 0);
     const corners = pieces ? this.fans(pieces, origin) : 0;
-    this.count = { ...this.count, faces: faces.box.length, caps: own.length / 3, bodies: triangles.length / 3, pieces: corners, slices: 0 };
+    this.count = { ...this.count, faces: faces.box.length, bodies: triangles.length / 3, pieces: corners, slices: 0 };
     this.levels = 0;
   }
 
@@ -98,12 +105,11 @@ class Surface {
     [0, 4].forEach((first, k) => {
       const own = Float32Array.from({ length: corners.length / 2 }, (_, at) => corners[8 * (at >> 2) + first + (at & 3)]);
       this.hand("faces", 5 + k, 4, gl.FLOAT, pick(own, 4));
-      this.hand("caps", 5 + k, 4, gl.FLOAT, own);
     });
     this.levelSlices();
   }
 
-  // Levels at the corners of the slanted cut.
+  // Levels at the corners of the cut.
   levelSlices() {
     const { gl, corners, slicePlaces, boxes } = this;
     if (this.levels === 0 || this.count.slices === 0) return;
@@ -133,7 +139,7 @@ class Surface {
     return this.owners.length;
   }
 
-  // The faces of a slanted cut: triangles by their corners, and whose each corner is.
+  // The faces of a cut: triangles by their corners, and whose each corner is.
   slice({ places, owners }, origin) {
     const { gl } = this;
     this.hand("slices", 0, 3, gl.FLOAT, Float32Array.from(places, (x, k) => x - origin[k % 3]), 0);
@@ -161,7 +167,6 @@ class Surface {
       this.hand("pieces", 1, 4, gl.UNSIGNED_BYTE, own, 0);
     }
     this.hand("faces", 3, 4, gl.UNSIGNED_BYTE, this.pick(colours, 4));
-    this.hand("caps", 3, 4, gl.UNSIGNED_BYTE, colours);
   }
 
   // A scene as its camera sees it; the cut has the direction of what is taken away, and how far it stands.
@@ -207,7 +212,7 @@ class Surface {
     gl.disable(gl.SCISSOR_TEST);
   }
 
-  // Rigid bodies, and water: faint in the soil, clear above it.
+  // Rigid bodies, water and where soil slips: faint in the soil, clear before it.
   paintSheets(at) {
     const { gl, count } = this;
     const draw = (of, test, colour, share) => {
@@ -217,18 +222,20 @@ class Surface {
       gl.uniform4f(at.grey, ...sharesOf(colour), share);
       gl.drawArrays(gl.TRIANGLES, 0, count[of]);
     };
+    draw("slip", gl.GREATER, SLIP, 0.3);
+    draw("slip", gl.LEQUAL, SLIP, 0.6);
     draw("water", gl.GREATER, WATER, 0.14);
     draw("water", gl.LEQUAL, WATER, 0.5);
     draw("bodies", gl.LEQUAL, cssColour("--soft"), 0.62);
     gl.depthFunc(gl.LEQUAL);
   }
 
-  // Water surfaces: triangles by their corners.
-  sheets(triangles, { origin }) {
+  // Surfaces of a kind: triangles by their corners.
+  sheets(of, triangles, { origin }) {
     const { gl } = this;
     const corners = triangles.flat();
-    this.hand("water", 0, 3, gl.FLOAT, Float32Array.from(corners.flat(), (x, k) => x - origin[k % 3]), 0);
-    this.count.water = corners.length;
+    this.hand(of, 0, 3, gl.FLOAT, Float32Array.from(corners.flat(), (x, k) => x - origin[k % 3]), 0);
+    this.count[of] = corners.length;
   }
 
   // Outlines, faint behind the soil and dark before it, and the lines of a cut that faces the eye.
@@ -261,18 +268,11 @@ class Surface {
     const at = use(this.programs.boxes);
     gl.uniform1f(at.lines, dimension === 2 ? 0.16 : 0.3);
     gl.uniform1f(at.flatly, dimension === 2 ? 1 : 0);
-    gl.uniform1f(at.caps, 0);
     gl.bindVertexArray(this.arrays.faces);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.count.faces);
-    if (cut && cut.axis < 0) {
-      if (this.count.slices === 0) return;
-      use(this.programs.pieces);
-      gl.bindVertexArray(this.arrays.slices);
-      gl.drawArrays(gl.TRIANGLES, 0, this.count.slices);
-    } else if (cut) {
-      gl.uniform1f(at.caps, 1);
-      gl.bindVertexArray(this.arrays.caps);
-      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.count.caps);
-    }
+    if (!cut || this.count.slices === 0) return;
+    use(this.programs.pieces);
+    gl.bindVertexArray(this.arrays.slices);
+    gl.drawArrays(gl.TRIANGLES, 0, this.count.slices);
   }
 }

@@ -1,4 +1,4 @@
-//! What pages draw over the frames of a stage: water tables, free surfaces of seepage, and the slip line.
+//! What pages draw over the frames of a stage: water tables, free surfaces of seepage, and the slip line or surface.
 //!
 //! Lines in the plane, rasters in space. `igimp view` and the frames of a report take them from here.
 
@@ -17,7 +17,7 @@ use crate::pictures::water::tables_after;
 /// Places along each side of the plan at which the level of a water table in space is taken.
 const PLACES: usize = 25;
 
-/// A water table or a free surface.
+/// A water table, a free surface, or where soil slips.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Surface {
@@ -39,8 +39,8 @@ pub enum Surface {
 pub struct Over {
     /// The water at the end of the stage.
     pub water: Vec<Surface>,
-    /// The line along which soil shears most as it begins to fail, of a search; else empty \[m\].
-    pub slip: Vec<[f64; 2]>,
+    /// Where soil shears most as it begins to fail, of a search: a line, in space a surface.
+    pub slip: Option<Surface>,
 }
 
 /// What is drawn over the frames of every stage of a case, by the tables of its results folder as far as these are there.
@@ -55,7 +55,7 @@ pub fn by_stage<const D: usize>(case: &Case<D>, folder: &Path) -> Vec<Over> {
         let slip = table(&root, "slip_lines", &format!("{}-{name}", stage + 1));
         Over {
             water,
-            slip: slip.map_or_else(Vec::new, |rows| points(&rows)),
+            slip: slip.map(|rows| slip_of::<D>(&rows)),
         }
     };
     (0..case.stages.len()).map(stage).collect()
@@ -68,10 +68,14 @@ fn table(root: &Path, within: &str, name: &str) -> Option<Vec<Vec<f64>>> {
     is_plain.then(|| rows::read(&path).ok().map(|read| read.rows))?
 }
 
-/// The first two columns.
-fn points(rows: &[Vec<f64>]) -> Vec<[f64; 2]> {
-    let point = |row: &Vec<f64>| row.first_chunk::<2>().copied();
-    rows.iter().filter_map(point).collect()
+/// The slip line by the first two columns of its table, in space the surface by its three.
+fn slip_of<const D: usize>(rows: &[Vec<f64>]) -> Surface {
+    if D == 2 {
+        let point = |row: &Vec<f64>| row.first_chunk::<2>().copied();
+        return Surface::Line(rows.iter().filter_map(point).collect());
+    }
+    let point = |row: &Vec<f64>| row.first_chunk::<3>().map(|row| (*row, Some(row[2])));
+    over_lines(&rows.iter().filter_map(point).collect::<Vec<_>>())
 }
 
 /// The water tables at the end of a stage.

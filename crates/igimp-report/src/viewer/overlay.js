@@ -100,10 +100,15 @@ class Overlay {
     });
   }
 
-  // The line along which soil shears most as it begins to fail.
+  // The line along which soil shears most as it begins to fail, or the surface.
   slip(pen, place) {
-    const points = this.scene.bodies.slip.map(([x, y]) => this.see(place, x, y));
-    if (points.length < 2) return;
+    const { slip } = this.scene.bodies;
+    if (!slip) return;
+    if (this.scene.dimension === 3) {
+      this.water.surface(pen, place, slip, SLIP);
+      return;
+    }
+    const points = slip.map(([x, y]) => this.see(place, x, y));
     pen.lineJoin = "round";
     for (const [width, colour] of [[5, "rgba(255,255,255,0.8)"], [2.4, SLIP]]) {
       pen.lineWidth = width;
@@ -226,7 +231,7 @@ class Overlay {
   }
 
   paintSection(pen, place) {
-    const [from, to] = this.section.map(([x, y]) => this.see(place, x, y));
+    const [from, to] = this.section.map((point) => this.see(place, ...point));
     pen.setLineDash([6, 4]);
     pen.strokeStyle = cssColour("--cursor");
     pen.lineWidth = 2;

@@ -17,7 +17,6 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::Bodies;
-use crate::outlines::Outlines;
 use crate::patches::{Carriers, Pieces};
 use crate::skin::{Boxes, Lie, Skin};
 
@@ -27,6 +26,8 @@ const PLANES: [usize; 4] = [9, 5, 3, 1];
 const CRACK: f64 = 0.1;
 /// Arrays that are left out when numbers are rounded.
 const LEFT_OUT: [&str; 4] = ["deformation gradient", "mass", "volume", "regime"];
+/// Of zlib: more takes twice the time, and saves hardly any room.
+const LEVEL: Compression = Compression::new(2);
 /// Steps of a rounded number; one step more encodes NaN.
 const STEPS: f64 = 65_534.0;
 
@@ -147,32 +148,47 @@ fn of_boxes(frame: &Frame<'_>, keep: Keep, bodies: Option<&Bodies>) -> Option<Pa
     let (skin, kept, planes) = if dimension == 2 {
         (None, all, None)
     } else {
-        let skin = Skin::of(boxes);
+        let edges = match bodies {
+            Some(Bodies::Space(outlines)) => FrameParticles::of(frame)
+                .map_or_else(Vec::new, |particles| outlines.now(&particles)),
+            _ => Vec::new(),
+        };
+        let skin = Skin::of(boxes, &edges);
         let (kept, planes) = if frame.cells <= keep.boxes {
             (all, None)
         } else {
             thinned(boxes, &skin, keep.boxes)
         };
-        (Some(skin), kept, planes)
+        (Some((skin, edges)), kept, planes)
     };
     let mut places = vec![
         position("low", &low, &kept, boxes, keep),
         position("high", &high, &kept, boxes, keep),
     ];
-    if let Some(skin) = &skin {
+    if let Some((skin, edges)) = &skin {
         let faces: Vec<u8> = kept.iter().map(|&k| skin.faces[k as usize]).collect();
         let lie: Vec<u8> = kept
             .iter()
             .flat_map(|&k| bytes_of(skin.lie[k as usize]))
             .collect();
-        places.extend([bytes("faces", 1, &faces), bytes("lie", 4, &lie)]);
+        let moves: Vec<u8> = (kept.iter())
+            .flat_map(|&k| skin.moves[k as usize].into_iter().flatten())
+            .map(|share| (i16::from(share) + 128) as u8)
+            .collect();
+        places.extend([
+            bytes("faces", 1, &faces),
+            bytes("lie", 4, &lie),
+            bytes("moves", 24, &moves),
+        ]);
+        // A body without edges has none to draw.
+        if let Some(Bodies::Space(_)) = bodies {
+            let ends = ends_of(&edges.iter().flatten());
+            places.extend(lines(["edges", "edge-ends"], edges, keep, &ends));
+        }
     }
-    let shapes = match bodies {
-        Some(Bodies::Plane(pieces)) if dimension == 2 => of_pieces(frame, keep, pieces),
-        Some(Bodies::Space(outlines)) if dimension == 3 => of_outlines(frame, keep, outlines),
-        _ => None,
-    };
-    places.extend(shapes.unwrap_or_default());
+    if let (Some(Bodies::Plane(pieces)), 2) = (bodies, dimension) {
+        places.extend(of_pieces(frame, keep, pieces).unwrap_or_default());
+    }
     let fields = frame.arrays("CellData");
     let wanted: Vec<&Stored<'_>> = fields
         .iter()
@@ -216,13 +232,6 @@ fn of_pieces(frame: &Frame<'_>, keep: Keep, pieces: &Pieces) -> Option<Vec<Array
     arrays.push(whole("whose", whose.iter().copied()));
     arrays.extend(lines(["edges", "edge-ends"], &edges, keep, &ends));
     Some(arrays)
-}
-
-/// The edges of the bodies in space: corners one after another, and where each line ends among them.
-fn of_outlines(frame: &Frame<'_>, keep: Keep, outlines: &Outlines) -> Option<Vec<Array>> {
-    let edges = outlines.now(&FrameParticles::of(frame)?);
-    let ends = ends_of(&edges.iter().flatten());
-    Some(lines(["edges", "edge-ends"], &edges, keep, &ends).into())
 }
 
 /// Least and largest coordinate by axis.
@@ -426,7 +435,7 @@ fn array(name: &str, components: usize, kind: &'static str, bytes: &[u8]) -> Arr
         .flat_map(|k| bytes.iter().skip(k).step_by(width))
         .copied()
         .collect();
-    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(6));
+    let mut encoder = ZlibEncoder::new(Vec::new(), LEVEL);
     let packed = encoder
         .write_all(&sorted)
         .and_then(|()| encoder.finish())

@@ -12,14 +12,18 @@ function paintBoxes(pen, place, scene) {
   };
   for (let k = 0; k < faces.box.length; k += 1) {
     const [box, face] = [faces.box[k], faces.face[k]];
-    const [axis, side] = [Math.floor(face / 2), 2 * (face % 2) - 1];
-    if (side * place.eye[axis] <= 1e-6 || scene.isLeftOut(box)) continue;
-    const [low, high] = [scene.corner("low", box), scene.corner("high", box)];
-    if (cut && !clipped(low, high, cut)) continue;
-    const about = [0, 1, 2].map((j) => (lie[4 * box + j] - 128) / 127 + (j === axis ? 0.3 * side : 0));
+    const side = 2 * (face % 2) - 1;
+    if (scene.isLeftOut(box)) continue;
+    const corners = cornersOf(scene.boxes, box);
+    const [a, b, c, d] = aroundFace(face).map((corner) => corners[corner]);
+    const diagonals = [[a, c], [b, d]].map(([from, to]) => to.map((x, j) => x - from[j]));
+    const across = cross(...diagonals).map((x) => side * x);
+    if (dot(across, place.eye) <= 0) continue;
+    if (cut && !clipped(corners, cut)) continue;
+    const about = across.map((x, j) => x / Math.hypot(...across) + (lie[4 * box + j] - 128) / 127);
     const length = Math.hypot(...about) || 1;
     const light = dimension === 2 ? 1 : lightOf(place, about.map((x) => x / length), lie[4 * box + 3] / 255);
-    add(box, face, light, cornersOf(low, high, face));
+    add(box, face, light, aroundFace(face).map((corner) => corners[corner]));
   }
   if (cut && dot(cut.normal, place.eye) > 0) {
     for (let box = 0; box < count; box += 1) {
@@ -39,10 +43,10 @@ function paintBoxes(pen, place, scene) {
   }
 }
 
-// Takes from a box what the cut takes away; false where that is all of it, or the face that is cut off.
-function clipped(low, high, { axis, normal, offset }) {
-  const at = offset * normal[axis];
-  if (normal[axis] > 0) high[axis] = Math.min(high[axis], at);
-  else low[axis] = Math.max(low[axis], at);
-  return low[axis] < high[axis];
+// Takes from the corners of a box what the cut takes away; false where that is all of it.
+function clipped(corners, { axis, normal, offset }) {
+  const beyond = (corner) => normal[axis] * corner[axis] - offset;
+  if (corners.every((corner) => beyond(corner) >= 0)) return false;
+  for (const corner of corners) if (beyond(corner) > 0) corner[axis] = offset * normal[axis];
+  return true;
 }

@@ -14,16 +14,28 @@ function extentOf(points, start = { low: [Infinity, Infinity, Infinity], high: [
   return { low, high };
 }
 
-// A face of a box: its axis and side by number, its corners in turn.
-function cornersOf(low, high, face) {
-  const [axis, one, two] = [0, 1, 2].map((k) => (Math.floor(face / 2) + k) % 3);
-  return [[0, 0], [1, 0], [1, 1], [0, 1]].map(([a, b]) => {
-    const corner = [0, 0, 0];
-    corner[axis] = face % 2 === 1 ? high[axis] : low[axis];
-    corner[one] = a ? high[one] : low[one];
-    corner[two] = b ? high[two] : low[two];
-    return corner;
-  });
+// The eight corners of a box, on the surface of the body without stairs: bit k of their numbers for the upper end along axis k.
+function cornersOf({ low, high, moves }, box) {
+  return Array.from({ length: 8 }, (_, corner) =>
+    [0, 1, 2].map((k) => {
+      const at = 3 * box + k;
+      return ((corner >> k) & 1 ? high : low)[at] + ((moves[24 * box + 3 * corner + k] - 128) / 127) * (high[at] - low[at]);
+    }),
+  );
+}
+
+// The same with the corners of the box itself beside them, six numbers each.
+function cornersBeside(boxes, box) {
+  const { low, high } = boxes;
+  return cornersOf(boxes, box).map((own, corner) => [...own, ...[0, 1, 2].map((k) => ((corner >> k) & 1 ? high : low)[3 * box + k])]);
+}
+
+// The numbers of the corners of a face of a box in turn, by the number of the face: its axis and side.
+function aroundFace(face) {
+  const axis = Math.floor(face / 2);
+  const [one, two] = [1, 2].map((k) => 1 << ((axis + k) % 3));
+  const first = (face % 2) << axis;
+  return [first, first | one, first | one | two, first | two];
 }
 
 class Scene {
@@ -32,7 +44,7 @@ class Scene {
     this.below = below;
     this.dimension = 0;
     this.boxes = null;
-    this.bodies = { lines: [], triangles: [], members: [], water: [], slip: [], soil: null };
+    this.bodies = { lines: [], triangles: [], members: [], water: [], slip: null, soil: null };
     this.segments = [];
     this.seams = [];
     this.outlined = true;
@@ -57,14 +69,15 @@ class Scene {
     this.dimension = dimension;
     const count = shapes.low ? shapes.low.length / 3 : 0;
     const none = new Uint8Array(0);
-    const { low = none, high = none, lie = new Uint8Array(4 * count).fill(128) } = shapes;
+    const neutral = (per) => new Uint8Array(per * count).fill(128);
+    const { low = none, high = none, lie = neutral(4), moves = neutral(24) } = shapes;
     this.bodies = bodies;
     this.extent = extentOf(high, extentOf(low, this.extent));
     const masks = shapes.faces || new Uint8Array(count).fill(32);
     const origin = [0, 1, 2].map((k) => (count > 0 ? 0.5 * (this.extent.low[k] + this.extent.high[k]) : 0));
     const pieces = shapes.pieces ? { corners: shapes.pieces, ends: shapes["piece-ends"], whose: shapes.whose } : null;
     const edges = shapes.edges ? { corners: shapes.edges, ends: shapes["edge-ends"] } : null;
-    this.boxes = { low, high, lie, masks, origin, count, pieces, edges };
+    this.boxes = { low, high, lie, moves, masks, origin, count, pieces, edges };
     this.cover();
     this.slice();
     this.canvas.dataset.lines = bodies.lines.length / 6;
@@ -72,7 +85,7 @@ class Scene {
     this.canvas.dataset.water = bodies.water.length;
     this.canvas.dataset.pieces = pieces ? pieces.ends.length : 0;
     this.canvas.dataset.edges = edges ? edges.ends.length : 0;
-    this.canvas.dataset.slip = bodies.slip.length;
+    this.canvas.dataset.slip = bodies.slip ? (bodies.slip.x || bodies.slip).length : 0;
     if (dimension === 3) this.lineate(edges);
   }
 
@@ -84,7 +97,11 @@ class Scene {
     Object.assign(this.canvas.dataset, { edgeLength: lengthOf(soil), rigidEdgeLength: lengthOf(rigid) });
     if (!this.surface) return;
     this.surface.lines("strips", this.segments, this.boxes);
-    this.surface.sheets(this.overlay.water.triangles(), this.boxes);
+    const { water, slip } = this.bodies;
+    this.surface.sheets("water", water.flatMap((own) => sheetOf(own, this.extent)), this.boxes);
+    const sheet = slip ? sheetOf(slip, this.extent) : [];
+    this.surface.sheets("slip", sheet, this.boxes);
+    this.canvas.dataset.slipSheet = sheet.length;
   }
 
   // Shows the outlines of bodies, or leaves them out.
@@ -135,15 +152,14 @@ class Scene {
     return this.colours[4 * box + 3] === 0;
   }
 
-  // The face of the cut: its lines, and of a slanted one its triangles, which an ordinary canvas does not have.
+  // The face of the cut: its lines and its triangles; an ordinary canvas has none of a slanted cut.
   slice() {
     const { surface, cut, boxes, bodies, canvas } = this;
     this.seams = this.dimension === 3 && cut ? seamsOf(boxes, bodies.soil, cut) : [];
     canvas.dataset.seamLength = lengthOf(this.seams);
     if (!surface) return;
     surface.lines("seams", this.seams, boxes);
-    if (!cut || cut.axis >= 0) return;
-    const face = sliceOf(boxes, cut);
+    const face = cut ? sliceOf(boxes, cut) : { places: [], owners: [], area: 0 };
     surface.slice(face, boxes.origin);
     canvas.dataset.cutArea = face.area;
   }
@@ -270,16 +286,16 @@ class Scene {
 
   mark(pen, place) {
     if (this.marked < 0 || this.marked >= this.boxes.count) return;
-    const [low, high] = [this.corner("low", this.marked), this.corner("high", this.marked)];
     pen.strokeStyle = cssColour("--cursor");
     pen.lineWidth = 2;
     if (this.boxes.pieces) {
       this.overlay.markPiece(pen, place, this.marked);
       return;
     }
+    const corners = cornersOf(this.boxes, this.marked);
     for (let face = 0; face < 6; face += 1) {
       if ((2 * (face % 2) - 1) * place.eye[Math.floor(face / 2)] <= 1e-6) continue;
-      this.trace(pen, cornersOf(low, high, face).map((corner) => projected(place, this.camera, corner)));
+      this.trace(pen, aroundFace(face).map((corner) => projected(place, this.camera, corners[corner])));
       pen.stroke();
     }
   }

@@ -1,4 +1,4 @@
-// A section drawn by hand in the plane: values along it, as a curve and as a table.
+// A section drawn by hand, in the plane or on the face of a cut in space: values along it, as a curve and as a table.
 
 // Places along a section.
 const PLACES = 200;
@@ -6,14 +6,25 @@ const PLACES = 200;
 // Reach of a particle in a mean along a section, in half the diagonals of its box.
 const REACH = 1.6;
 
-// The mean of the particles around a point, the nearer the heavier.
-function meanAround(scene, values, [x, y]) {
-  const { low, high, count } = scene.boxes;
-  let [sum, weights] = [0, 0];
+// The boxes that may count along a line: the particles around its places, by how far these reach.
+function boxesAlong({ low, high, count }, [from, to], dimension) {
+  const axes = [0, 1, 2].slice(0, dimension);
+  const found = [];
   for (let box = 0; box < count; box += 1) {
     const at = 3 * box;
-    const reach = REACH * 0.5 * Math.hypot(high[at] - low[at], high[at + 1] - low[at + 1]);
-    const off = Math.hypot(0.5 * (low[at] + high[at]) - x, 0.5 * (low[at + 1] + high[at + 1]) - y) / reach;
+    const reach = REACH * 0.5 * Math.hypot(...axes.map((k) => high[at + k] - low[at + k]));
+    const centre = axes.map((k) => 0.5 * (low[at + k] + high[at + k]));
+    const isBeside = axes.some((k) => centre[k] < Math.min(from[k], to[k]) - reach || centre[k] > Math.max(from[k], to[k]) + reach);
+    if (!isBeside) found.push({ box, reach, centre });
+  }
+  return found;
+}
+
+// The mean of the particles around a point, the nearer the heavier.
+function meanAround(around, values, at) {
+  let [sum, weights] = [0, 0];
+  for (const { box, reach, centre } of around) {
+    const off = Math.hypot(...centre.map((x, k) => x - at[k])) / reach;
     if (!(off < 1) || !Number.isFinite(values[box])) continue;
     const weight = (1 - off) ** 2;
     sum += weight * values[box];
@@ -25,19 +36,23 @@ function meanAround(scene, values, [x, y]) {
 // Values along a line at equal distances: of the field whose contours are drawn where there are pieces, else means of the
 // particles around, or the particle's where there is one alone; none outside the bodies.
 function alongSection(scene, values, [from, to]) {
-  const { boxes: { pieces }, bodies: { soil } } = scene;
+  const { boxes, bodies: { soil }, dimension } = scene;
+  const { pieces, low, high } = boxes;
   const field = pieces ? fieldOver(pieces, values, scene.centres(), soil) : null;
-  const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
+  const axes = from.map((_, k) => k);
+  const length = Math.hypot(...axes.map((k) => to[k] - from[k]));
+  const around = field ? [] : boxesAlong(boxes, [from, to], dimension);
+  const holding = (at) => around.find(({ box }) => axes.every((k) => low[3 * box + k] <= at[k] && at[k] <= high[3 * box + k]));
   return Array.from({ length: PLACES + 1 }, (_, k) => {
     const share = k / PLACES;
-    const at = [0, 1].map((axis) => from[axis] + share * (to[axis] - from[axis]));
+    const at = axes.map((axis) => from[axis] + share * (to[axis] - from[axis]));
     if (field) {
       const piece = scene.overlay.pieceOver(...at);
       return [share * length, piece < 0 ? NaN : field(piece, ...at), ...at];
     }
-    const box = scene.holding(at);
-    const mean = box < 0 ? NaN : meanAround(scene, values, at);
-    return [share * length, box >= 0 && Number.isNaN(mean) ? values[box] : mean, ...at];
+    const own = holding(at);
+    const mean = own ? meanAround(around, values, at) : NaN;
+    return [share * length, own && Number.isNaN(mean) ? values[own.box] : mean, ...at];
   });
 }
 
@@ -78,8 +93,9 @@ function sectionCurve(svg, rows, labels, divide) {
 
 // The values of a section as a table with SI units.
 function sectionTable(rows, header) {
-  const lines = rows.filter((row) => Number.isFinite(row[1])).map(([s, value, x, y]) => [s, x, y, value].map((own) => own.toExponential(6)).join(","));
-  return [`distance_[m],x_[m],y_[m],"${header.replaceAll('"', '""')}"`, ...lines, ""].join("\n");
+  const lines = rows.filter((row) => Number.isFinite(row[1])).map(([s, value, ...at]) => [s, ...at, value].map((own) => own.toExponential(6)).join(","));
+  const places = ["x_[m]", "y_[m]", "z_[m]"].slice(0, rows[0].length - 2);
+  return [`distance_[m],${places.join(",")},"${header.replaceAll('"', '""')}"`, ...lines, ""].join("\n");
 }
 
 // The section of a viewer: drawn with the pointer once its button was pressed, told of in every frame.
@@ -108,19 +124,29 @@ class SectionTool {
     return this.button.getAttribute("aria-pressed") === "true";
   }
 
-  // The place of the pointer [m]; the event goes no further.
+  // The place of the pointer [m], in space on the face of the cut; the event goes no further.
   place(event) {
     event.stopPropagation();
     event.preventDefault();
     const { part, scene } = this.viewer;
     const box = part.canvas.getBoundingClientRect();
-    const [x, y] = lifted(scene.layout(), scene.camera, event.clientX - box.left, event.clientY - box.top);
-    return [x, y];
+    const layout = scene.layout();
+    const at = lifted(layout, scene.camera, event.clientX - box.left, event.clientY - box.top);
+    if (scene.dimension === 2) return at.slice(0, 2);
+    const { normal, offset } = scene.cut;
+    const way = (offset - dot(normal, at)) / dot(normal, layout.eye);
+    return at.map((x, k) => x + way * layout.eye[k]);
+  }
+
+  // Whether there is a plane to draw on that is not seen from its edge.
+  hasPlane() {
+    const { dimension, cut } = this.viewer.scene;
+    return dimension === 2 || (cut !== null && Math.abs(dot(cut.normal, this.viewer.scene.layout().eye)) > 0.05);
   }
 
   begin(event) {
     const { canvas } = this.viewer.part;
-    if (!this.isOn() || event.target !== canvas) return;
+    if (!this.isOn() || event.target !== canvas || !this.hasPlane()) return;
     this.from = this.place(event);
   }
 
@@ -138,7 +164,7 @@ class SectionTool {
   // Takes a section up, or away.
   lay(section) {
     const { scene } = this.viewer;
-    const isLine = section && Math.hypot(section[1][0] - section[0][0], section[1][1] - section[0][1]) > 0;
+    const isLine = section && Math.hypot(...section[0].map((x, k) => section[1][k] - x)) > 0;
     scene.overlay.section = isLine ? section : null;
     this.tell();
     scene.paint();
@@ -147,10 +173,9 @@ class SectionTool {
   // The curve in the frame that is shown.
   tell() {
     const { part, scene, wish, field, values, shownEntry } = this.viewer;
-    this.button.hidden = scene.dimension !== 2;
-    if (wish.section && scene.dimension === 2) {
-      const [a, b, c, d] = wish.section;
-      scene.overlay.section = [[a, b], [c, d]];
+    this.button.hidden = scene.dimension === 3 && !scene.cut;
+    if (wish.section && wish.section.length === 2 * scene.dimension) {
+      scene.overlay.section = [wish.section.slice(0, scene.dimension), wish.section.slice(scene.dimension)];
       wish.section = null;
     }
     const { section } = scene.overlay;

@@ -55,42 +55,46 @@ layout(location = 3) in vec4 colour;
 layout(location = 4) in float face;
 layout(location = 5) in vec4 lower;
 layout(location = 6) in vec4 upper;
-uniform vec4 cut;
-uniform float caps, flatly;
+// How the corners of the face have moved onto the surface without stairs, in bytes, by axis.
+layout(location = 7) in vec4 movedX;
+layout(location = 8) in vec4 movedY;
+layout(location = 9) in vec4 movedZ;
+uniform float flatly;
 out vec2 at;
 out vec3 place;
 out float level;
 flat out vec3 tint;
 ${LIGHT}
 ${BETWEEN}
+vec3 moves(int corner) {
+  return (vec3(movedX[corner], movedY[corner], movedZ[corner]) * 255.0 - 128.0) / 127.0;
+}
 void main() {
   vec2 corner = vec2(gl_VertexID == 1 || gl_VertexID == 3, gl_VertexID >= 2);
-  // The axis across a cap is that of the cut.
-  int axis = caps > 0.5 ? (cut.x != 0.0 ? 0 : cut.y != 0.0 ? 1 : 2) : int(face) / 2;
-  float side = caps > 0.5 ? cut[axis] : 2.0 * float(int(face) % 2) - 1.0;
-  vec3 normal = vec3(0.0);
-  normal[axis] = side;
+  int axis = int(face) / 2;
+  float side = 2.0 * float(int(face) % 2) - 1.0;
   vec3 size = high - low;
   int one = (axis + 1) % 3, two = (axis + 2) % 3;
   place = low;
   // A little larger than it is, over the seams between neighbours.
   place[one] += size[one] * corner.x + (corner.x - 0.5) * 0.7 * scale.w;
   place[two] += size[two] * corner.y + (corner.y - 0.5) * 0.7 * scale.w;
-  if (caps > 0.5) place[axis] = cut.w * side;
-  else if (side > 0.0) place[axis] = high[axis];
-  // Where the cut runs between boxes, or through a narrow crack, those that stay are seen.
-  vec2 ends = vec2(low[axis], high[axis]) + size[axis] * (side > 0.0 ? vec2(1e-4, 0.1) : vec2(-0.1, -1e-4));
-  bool crosses = caps < 0.5 || (ends.x <= place[axis] && place[axis] <= ends.y);
+  if (side > 0.0) place[axis] = high[axis];
+  level = between(lower, upper, (place - low) / size);
+  place += moves(gl_VertexID) * size;
+  // Across the diagonals of the face.
+  vec3 on = vec3(0.0), off = vec3(0.0);
+  on[one] = on[two] = off[two] = 1.0;
+  off[one] = -1.0;
+  vec3 across = side * cross((on + moves(3) - moves(0)) * size, (off + moves(2) - moves(1)) * size);
   vec3 about = (lie.xyz * 255.0 - 128.0) / 127.0;
-  vec3 smoothed = normalize(normal * 0.3 + about);
-  bool isBack = dot(normal, eye) <= 1e-6;
+  vec3 smoothed = normalize(normalize(across) + about);
+  bool isBack = dot(across, eye) <= 0.0;
   if (flatly > 0.5) tint = colour.rgb;
-  else if (caps > 0.5) tint = lifted(colour.rgb) * 0.97;
   else tint = lifted(colour.rgb) * (isBack ? 0.35 : lightOf(smoothed, lie.w));
   at = corner;
-  level = between(lower, upper, (place - low) / size);
   // The insides of the far walls are seen through cracks.
-  bool shown = colour.a > 0.5 && crosses && !(isBack && (caps > 0.5 || flatly > 0.5));
+  bool shown = colour.a > 0.5 && !(isBack && flatly > 0.5);
   gl_Position = shown ? seen(place) : vec4(2.0, 2.0, 2.0, 1.0);
 }`;
 
@@ -101,12 +105,12 @@ in vec3 place;
 in float level;
 flat in vec3 tint;
 uniform vec4 cut;
-uniform float caps, lines;
+uniform float lines;
 out vec4 ink;
 ${CONTOURED}
 void main() {
   float drawn = contoured(level);
-  if (caps < 0.5 && dot(cut.xyz, place) > cut.w) discard;
+  if (dot(cut.xyz, place) > cut.w) discard;
   // Lines along the edges of boxes that are large enough for them.
   vec2 step = max(fwidth(at), vec2(1e-6));
   vec2 from = min(at, 1.0 - at) / step;

@@ -1,6 +1,6 @@
-// A cut along a slanted plane: its face in every box that it crosses.
+// A cut along a plane: its face in every box that it crosses.
 
-// Corners of a box by their numbers, and its edges.
+// The edges of a box by its corners, whose numbers have bit k for the upper end along axis k.
 const EDGES = [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]];
 
 // The direction of what is taken away, by the direction in which the plane dips, from x towards y, and its dip [°].
@@ -15,9 +15,8 @@ function offsetsOf(normal, { low, high }) {
   return [0, 1].map((end) => ends[0][end] + ends[1][end] + ends[2][end]);
 }
 
-// The corners, in turn, of the polygon in which a plane crosses a box.
-function crossing(low, high, normal, offset) {
-  const corners = Array.from({ length: 8 }, (_, k) => [k & 1 ? high[0] : low[0], k & 2 ? high[1] : low[1], k & 4 ? high[2] : low[2]]);
+// The corners, in turn, of the polygon in which a plane crosses a box of eight corners; what stands beside these is there too.
+function crossing(corners, normal, offset) {
   const beyond = corners.map((corner) => dot(normal, corner) - offset);
   const points = [];
   for (const [a, b] of EDGES) {
@@ -27,20 +26,42 @@ function crossing(low, high, normal, offset) {
   }
   if (points.length < 3) return [];
   const middle = [0, 1, 2].map((k) => points.reduce((sum, point) => sum + point[k], 0) / points.length);
-  const from = (point) => point.map((x, k) => x - middle[k]);
+  const from = (point) => middle.map((x, k) => point[k] - x);
   const one = from(points[0]);
   const two = cross(normal, one);
   const angle = (point) => Math.atan2(dot(two, from(point)), dot(one, from(point)));
   return points.sort((a, b) => angle(a) - angle(b));
 }
 
-// The face of a slanted cut through all boxes as triangles, and its area [m²].
-function sliceOf({ low, high, count }, { normal, offset }) {
+// The corners, in turn, of the face of a cut in a box, each with its place on the box itself beside it; none where it does not
+// cross the box. Where the cut runs between boxes, or through a narrow crack, the face is in those that stay.
+function faceIn(boxes, box, { axis, normal, offset }) {
+  const [low, high] = [boxes.low, boxes.high].map((numbers) => numbers.subarray(3 * box, 3 * box + 3));
+  if (axis < 0) {
+    // Corners leave a box by less than its size.
+    let [off, reach] = [-offset, 0];
+    for (let k = 0; k < 3; k += 1) {
+      off += 0.5 * normal[k] * (low[k] + high[k]);
+      reach += 1.3 * Math.abs(normal[k]) * (high[k] - low[k]);
+    }
+    return Math.abs(off) > reach ? [] : crossing(cornersBeside(boxes, box), normal, offset);
+  }
+  const at = offset * normal[axis];
+  const size = high[axis] - low[axis];
+  const more = normal[axis] > 0 ? [1e-4, 0.1] : [-0.1, -1e-4];
+  if (at < low[axis] + more[0] * size || at > high[axis] + more[1] * size) return [];
+  const within = Math.min(Math.max(at, low[axis] + 1e-3 * size), high[axis] - 1e-3 * size);
+  const face = crossing(cornersBeside(boxes, box), normal, within * normal[axis]);
+  for (const corner of face) corner[axis] = at;
+  return face;
+}
+
+// The face of a cut through all boxes as triangles, whose they are, and its area [m²].
+function sliceOf(boxes, cut) {
   const [places, owners] = [[], []];
   let area = 0;
-  for (let box = 0; box < count; box += 1) {
-    const ends = [low, high].map((numbers) => [0, 1, 2].map((k) => numbers[3 * box + k]));
-    const points = crossing(...ends, normal, offset);
+  for (let box = 0; box < boxes.count; box += 1) {
+    const points = faceIn(boxes, box, cut).map((point) => point.slice(0, 3));
     for (let k = 1; k + 1 < points.length; k += 1) {
       for (const point of [points[0], points[k], points[k + 1]]) {
         places.push(...point);

@@ -228,7 +228,7 @@ class Viewer {
       const frame = await this.frame(entry);
       const field = this.choose(frame.shown());
       const [shapes, values] = [await frame.shapes(), await frame.values(field)];
-      const bodies = { lines: [], triangles: [], members: [], water: entry.water || [], slip: entry.slip || [], soil: null };
+      const bodies = { lines: [], triangles: [], members: [], water: entry.water || [], slip: entry.slip, soil: null };
       const soil = frame.arrayOf("material");
       if (soil) bodies.soil = await frame.numbers(soil);
       if (frame.members && frame.members.count > 0) bodies.members = (await frame.members.shapes()).corners;
@@ -345,7 +345,7 @@ class Viewer {
       return mark;
     }));
     part["bar-label"].textContent = `${field.title}${this.unit[1] ? ` [${this.unit[1]}]` : ""}${field.rest}`;
-    part.when.textContent = `${this.shownEntry.label}${this.scene.bodies.slip.length > 1 ? "; red: where soil shears most as it fails" : ""}`;
+    part.when.textContent = `${this.shownEntry.label}${this.scene.bodies.slip ? "; red: where soil shears most as it fails" : ""}`;
     part.slider.setAttribute("aria-valuetext", this.shownEntry.label);
   }
 

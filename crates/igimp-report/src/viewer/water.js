@@ -1,4 +1,5 @@
-// Water tables and free surfaces over the body: lines in the plane; in space surfaces on a raster, where they meet the cut.
+// Water tables and free surfaces over the body: lines in the plane; in space surfaces on a raster, where they meet the cut, and
+// where soil slips.
 
 const WATER = "#0072b2";
 
@@ -42,6 +43,11 @@ function thinned({ x, y, z }, { low, high }, most) {
   return { x: across.map((i) => x[i]), y: along.map((j) => y[j]), z: along.map((j) => across.map((i) => z[j][i])) };
 }
 
+// The triangles of a surface by their corners, as far as the plan of the soil goes.
+function sheetOf(raster, extent) {
+  return trianglesOf(thinned(raster, extent, 24));
+}
+
 class Water {
   constructor(scene) {
     this.scene = scene;
@@ -51,21 +57,21 @@ class Water {
     const { bodies, dimension } = this.scene;
     for (const own of bodies.water) {
       if (dimension === 2) this.line(pen, place, own.map(([x, y]) => projected(place, this.scene.camera, [x, y, 0])));
-      else this.surface(pen, place, own);
+      else Water.sign(pen, ...this.surface(pen, place, own, WATER));
     }
   }
 
   // A line, with the sign of a free surface at its highest end.
   line(pen, place, points) {
-    Water.heavy(pen, [points]);
+    Water.heavy(pen, [points], WATER);
     const { left, right } = place.room;
     const inside = points.filter(([x]) => x > left + 8 && x < place.width - right - 8);
     const [x, y] = inside.length > 0 ? inside.reduce((best, own) => (own[1] < best[1] ? own : best)) : [left + 14, points[0][1]];
     Water.sign(pen, x, y);
   }
 
-  static heavy(pen, lines) {
-    for (const [width, colour] of [[4, "rgba(255,255,255,0.7)"], [1.8, WATER]]) {
+  static heavy(pen, lines, own) {
+    for (const [width, colour] of [[4, "rgba(255,255,255,0.7)"], [1.8, own]]) {
       pen.lineWidth = width;
       pen.strokeStyle = colour;
       pen.beginPath();
@@ -75,6 +81,7 @@ class Water {
   }
 
   static sign(pen, x, y) {
+    if (!Number.isFinite(y)) return;
     pen.fillStyle = WATER;
     pen.beginPath();
     pen.moveTo(x, y);
@@ -83,35 +90,28 @@ class Water {
     pen.fill();
   }
 
-  // The triangles of all surfaces, as far as the plan of the soil goes, by their corners.
-  triangles() {
-    const { bodies, extent } = this.scene;
-    return bodies.water.flatMap((raster) => trianglesOf(thinned(raster, extent, 24)));
-  }
-
-  // A heavy line where the cut meets a surface. Without WebGL2 the surface is drawn here too, over the soil.
-  surface(pen, place, raster) {
+  // A heavy line where the cut meets a surface, and its highest place. Without WebGL2 the surface is drawn here too, over the soil.
+  surface(pen, place, raster, colour) {
     const { scene } = this;
     const seen = (points) => points.map((own) => projected(place, scene.camera, own));
-    const triangles = trianglesOf(thinned(raster, scene.extent, 24));
+    const triangles = sheetOf(raster, scene.extent);
     const parts = scene.cut ? triangles.map((own) => parted(own, scene.cut)) : triangles.map((kept) => ({ kept, met: [] }));
-    if (!scene.surface) Water.sheet(pen, parts.map(({ kept }) => seen(kept)));
+    if (!scene.surface) Water.sheet(pen, parts.map(({ kept }) => seen(kept)), colour);
     const lines = parts.map(({ met }) => seen(met)).filter((own) => own.length > 1);
-    Water.heavy(pen, lines);
-    const points = lines.flat();
-    if (points.length > 0) Water.sign(pen, ...points.reduce((best, own) => (own[1] < best[1] ? own : best)));
-    scene.canvas.dataset.waterCut = lines.length;
+    Water.heavy(pen, lines, colour);
+    scene.canvas.dataset[colour === WATER ? "waterCut" : "slipCut"] = lines.length;
+    return lines.flat().reduce((best, own) => (own[1] < best[1] ? own : best), [0, Infinity]);
   }
 
-  static sheet(pen, parts) {
+  static sheet(pen, parts, colour) {
     pen.beginPath();
     for (const points of parts) {
       points.forEach(([x, y], k) => (k === 0 ? pen.moveTo(x, y) : pen.lineTo(x, y)));
       if (points.length > 0) pen.closePath();
     }
-    pen.fillStyle = "rgba(0,114,178,0.22)";
+    pen.fillStyle = `${colour}38`;
     pen.fill();
-    pen.strokeStyle = "rgba(0,114,178,0.45)";
+    pen.strokeStyle = `${colour}73`;
     pen.lineWidth = 0.6;
     pen.stroke();
   }

@@ -111,23 +111,27 @@ impl Place {
             Field::P => total(Field::PEff),
             // Given pore pressure is known at every particle.
             Field::U => {
-                let excess = self.by_cells(particles, grid, |p| particles.excess[p]);
+                let excess = self.by_cells(particles, grid, field, |p| particles.excess[p]);
                 self.value(particles, |p| particles.pore_pressure[p]) + excess
             }
-            _ => self.by_cells(particles, grid, own),
+            _ => self.by_cells(particles, grid, field, own),
         }
     }
 
     /// The value at the place of a field that is nearly constant in a cell: the mean of the cells that the nearest particles lie
-    /// in, each carried on along the plane through the means around.
+    /// in, each carried on along the plane through the means around, as far as the field can go.
     fn by_cells<const D: usize>(
         &self,
         particles: &Particles<D>,
         grid: &Grid<D>,
-        field: impl Fn(usize) -> f64,
+        field: Field,
+        own: impl Fn(usize) -> f64,
     ) -> f64 {
-        let values = self.anchors.iter();
-        mean(values.filter_map(|anchor| anchor.by_cells(particles, grid, self.soils, &field)))
+        let read = |anchor: &Anchor| {
+            let (value, range) = anchor.by_cells(particles, grid, self.soils, &own)?;
+            Some(kept(field, value, range))
+        };
+        mean(self.anchors.iter().filter_map(read))
     }
 
     /// The value of a field of particles at the place, the mean of those that its nearest particles tell; not a number where none
@@ -139,6 +143,17 @@ impl Place {
     ) -> f64 {
         let values = self.anchors.iter();
         mean(values.filter_map(|anchor| anchor.value(particles, &field)))
+    }
+}
+
+/// A value that was carried on, kept to what its field can be (theory, eq. 40i). Accumulated strain and shares of strength stay
+/// in the range of the particles that they were read from. Deviatoric stress does where it would be negative: where it grows
+/// with the depth a line is right.
+fn kept(field: Field, value: f64, [least, most]: [f64; 2]) -> f64 {
+    match field {
+        Field::PlasticStrain | Field::Utilisation if least <= most => value.clamp(least, most),
+        Field::Q if value < 0.0 => least,
+        _ => value,
     }
 }
 
@@ -196,21 +211,27 @@ impl Anchor {
         Some(own + along_plane(&self.offset, 1.0, &changes.collect::<Vec<_>>()))
     }
 
-    /// The value at the place by the means of the particle's cell and of those around it; none where the particle is not there.
+    /// The value at the place by the means of the particle's cell and of those around it, and the range of the particles there;
+    /// none where the particle is not there.
     fn by_cells<const D: usize>(
         &self,
         particles: &Particles<D>,
         grid: &Grid<D>,
         soils: usize,
         field: impl Fn(usize) -> f64,
-    ) -> Option<f64> {
+    ) -> Option<(f64, [f64; 2])> {
         let particle = particles.place_of(self.number)?;
         let Some(own_cell) = grid.cell_at(&particles.x[particle]) else {
-            return Some(field(particle));
+            let own = field(particle);
+            return Some((own, [own; 2]));
         };
         let mut cells = means_around((particles, soils), grid, (particle, own_cell), field);
+        let ranges = cells.iter().map(|(_, own)| own.range);
+        let range = ranges.fold(NO_RANGE, |all, own| {
+            [all[0].min(own[0]), all[1].max(own[1])]
+        });
         let Some(own) = cells.iter().position(|(cell, _)| *cell == own_cell) else {
-            return Some(f64::NAN);
+            return Some((f64::NAN, range));
         };
         let own = cells.swap_remove(own).1.finished();
         let offset = std::array::from_fn(|axis| self.offset[axis] - own.place[axis]);
@@ -220,7 +241,7 @@ impl Anchor {
             (way, other.value - own.value, other.volume)
         });
         let change = along_plane(&offset, own.volume, &changes.collect::<Vec<_>>());
-        Some(own.value + change)
+        Some((own.value + change, range))
     }
 }
 
@@ -255,18 +276,35 @@ fn means_around<const D: usize>(
     cells
 }
 
-/// The mean of a field over the particles of a cell by their volume, and its place seen from a particle \[m\].
-#[derive(Clone, Copy, Debug, Default)]
+/// The range of no values.
+const NO_RANGE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+/// The mean of a field over the particles of a cell by their volume, its place seen from a particle \[m\], and its least and its
+/// greatest value.
+#[derive(Clone, Copy, Debug)]
 struct CellMean {
     volume: f64,
     place: [f64; 3],
     value: f64,
+    range: [f64; 2],
+}
+
+impl Default for CellMean {
+    fn default() -> Self {
+        Self {
+            volume: 0.0,
+            place: [0.0; 3],
+            value: 0.0,
+            range: NO_RANGE,
+        }
+    }
 }
 
 impl CellMean {
     fn add(&mut self, volume: f64, place: [f64; 3], value: f64) {
         self.volume += volume;
         self.value += volume * value;
+        self.range = [self.range[0].min(value), self.range[1].max(value)];
         for axis in 0..3 {
             self.place[axis] += volume * place[axis];
         }
@@ -278,6 +316,7 @@ impl CellMean {
             volume: self.volume,
             place: self.place.map(|sum| sum / self.volume),
             value: self.value / self.volume,
+            range: self.range,
         }
     }
 }
@@ -479,13 +518,36 @@ mod tests {
             [0.02, 1.99],
         ] {
             let place = place(&particles, &point).unwrap();
-            let stair = place.by_cells(&particles, &grid, |p| linear(middle(p)));
-            let exact = place.by_cells(&particles, &grid, |p| linear(particles.x[p]));
+            let stair = place.by_cells(&particles, &grid, Field::SigmaEffYy, |p| linear(middle(p)));
+            let exact = place.by_cells(&particles, &grid, Field::Q, |p| linear(particles.x[p]));
             assert!((stair - linear(point)).abs() < 1e-9, "{point:?}: {stair}");
             assert!((exact - linear(point)).abs() < 1e-9, "{point:?}: {exact}");
             let jump = |p: usize| f64::from(u8::from(particles.x[p][0] > 1.5));
-            let jump = place.by_cells(&particles, &grid, jump);
+            let jump = place.by_cells(&particles, &grid, Field::SigmaEffYy, jump);
             assert!((-1.0..=2.0).contains(&jump), "{point:?}: {jump}");
         }
+    }
+
+    /// GOAL: a band of plastic strain is read within the range of its particles everywhere, and stress that cannot be negative is
+    /// not. ORACLE: the fields, 0 to 1 and from 0 on; the linear reading beside, which leaves both.
+    #[test]
+    fn no_strain_is_negative() {
+        let particles = body();
+        let axis = |cells: usize| Axis::uniform(0.0, 0.5, cells).unwrap();
+        let grid = Grid {
+            axes: [axis(6), axis(5)],
+        };
+        let band = |p: usize| f64::from(u8::from((1.5..2.0).contains(&particles.x[p][0])));
+        let mut left = false;
+        for k in 0..60 {
+            let place = place(&particles, &[0.05 * f64::from(k), 0.9]).unwrap();
+            let read = |field| place.by_cells(&particles, &grid, field, band);
+            let linear = read(Field::SigmaEffYy);
+            left |= !(-0.01..=1.01).contains(&linear);
+            assert!((0.0..=1.0).contains(&read(Field::PlasticStrain)));
+            assert!((0.0..=1.0).contains(&read(Field::Utilisation)));
+            assert!(read(Field::Q) >= 0.0);
+        }
+        assert!(left);
     }
 }

@@ -1,5 +1,6 @@
 //! Files for ParaView: frames of particles, grid, rigid bodies and reinforcement.
 
+pub mod film;
 pub mod frames;
 pub mod particles;
 pub mod pvd;

@@ -3,6 +3,7 @@
 
 use igimp_assembly::Particles;
 use igimp_material::Tensor;
+use igimp_schema::field::arrays;
 use igimp_shape::Grid;
 
 use crate::fields::{deviatoric_stress, mean_pressure};
@@ -61,8 +62,8 @@ pub fn of_particles<const D: usize>(
         ""
     };
     let mut cell_data = vec![
-        DataArray::vectors("displacement [m]", &particles.displacement),
-        DataArray::symmetric("sigma [Pa], tension +", &sigma),
+        DataArray::vectors(arrays::DISPLACEMENT, &particles.displacement),
+        DataArray::symmetric(arrays::TOTAL, &sigma),
         DataArray::scalars(
             "p [Pa], compression +",
             by_particle(&|k| mean_pressure(&sigma[k])),
@@ -81,7 +82,7 @@ pub fn of_particles<const D: usize>(
     if extras.pore_water {
         let excess = &particles.excess;
         cell_data.extend([
-            DataArray::symmetric("sigma_eff [Pa], tension +", effective),
+            DataArray::symmetric(arrays::EFFECTIVE, effective),
             DataArray::scalars(
                 "p_eff [Pa], compression +",
                 by_particle(&|k| mean_pressure(&effective[k])),
@@ -121,8 +122,8 @@ pub fn of_particles<const D: usize>(
 /// Velocity and acceleration.
 fn of_motion<const D: usize>(particles: &Particles<D>) -> [DataArray; 2] {
     [
-        DataArray::vectors("velocity [m/s]", &particles.velocity),
-        DataArray::vectors("acceleration [m/s2]", &particles.acceleration),
+        DataArray::vectors(arrays::VELOCITY, &particles.velocity),
+        DataArray::vectors(arrays::ACCELERATION, &particles.acceleration),
     ]
 }
 

@@ -1,18 +1,11 @@
 //! Frames of particles read back as fields, in the printed sign: for pictures of what a run left.
 
 use igimp_model::Field;
+use igimp_schema::field::InFrames;
 
 use crate::fields::length;
 use crate::vtu::CellKind;
 use crate::vtu::read::Frame;
-
-/// Components of symmetric tensors in a frame.
-const XX: usize = 0;
-const YY: usize = 1;
-const ZZ: usize = 2;
-const XY: usize = 3;
-const YZ: usize = 4;
-const XZ: usize = 5;
 
 /// The particles of a frame: where they are, how they are deformed, and which they are.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,59 +78,21 @@ fn component(
 /// The values of a field by particle, as [`fields::values`](crate::fields::values) gives them in SI units, compression
 /// positive; none where the frame does not have the field.
 ///
-/// Strength, friction and stiffness are in frames of soil whose particles carry values of their own.
+/// Strength, friction and stiffness are in frames of soil whose particles carry values of their own. Without water total and
+/// effective stress are the same, and there is no pore pressure.
 pub fn values(frame: &Frame<'_>, field: Field) -> Option<Vec<f64>> {
-    let scalar = |name| component(frame, (name, 1), 0, 1.0);
-    let of = |name, axis| component(frame, (name, 3), axis, 1.0);
-    let lengths = |name| {
-        let numbers = array(frame, name, 3)?;
-        Some(numbers.as_chunks::<3>().0.iter().map(length).collect())
+    let of_frame = match field.in_frames() {
+        InFrames::Scalar(name) => component(frame, (name, 1), 0, 1.0),
+        InFrames::Component(name, axis) => component(frame, (name, 3), axis, 1.0),
+        InFrames::Length(name) => array(frame, name, 3)
+            .map(|numbers| numbers.as_chunks::<3>().0.iter().map(length).collect()),
+        InFrames::Tension(name, place) => component(frame, (name, 6), place, -1.0),
+        InFrames::Middle(axis) => centres(frame, axis),
     };
-    let total = |axis| component(frame, ("sigma [Pa], tension +", 6), axis, -1.0);
-    // Without water total and effective stress are the same.
-    let effective = |axis| {
-        let own = component(frame, ("sigma_eff [Pa], tension +", 6), axis, -1.0);
-        own.or_else(|| total(axis))
-    };
-    let none = || Some(vec![0.0; frame.cells]);
-    match field {
-        Field::Displacement => lengths("displacement [m]"),
-        Field::DisplacementX => of("displacement [m]", 0),
-        Field::DisplacementY => of("displacement [m]", 1),
-        Field::DisplacementZ => of("displacement [m]", 2),
-        Field::Speed => lengths("velocity [m/s]"),
-        Field::VelocityX => of("velocity [m/s]", 0),
-        Field::VelocityY => of("velocity [m/s]", 1),
-        Field::VelocityZ => of("velocity [m/s]", 2),
-        Field::Acceleration => lengths("acceleration [m/s2]"),
-        Field::AccelerationX => of("acceleration [m/s2]", 0),
-        Field::AccelerationY => of("acceleration [m/s2]", 1),
-        Field::AccelerationZ => of("acceleration [m/s2]", 2),
-        Field::X => centres(frame, 0),
-        Field::Y => centres(frame, 1),
-        Field::Z => centres(frame, 2),
-        Field::SigmaXx => total(XX),
-        Field::SigmaYy => total(YY),
-        Field::SigmaZz => total(ZZ),
-        Field::TauXy => total(XY),
-        Field::TauYz => total(YZ),
-        Field::TauXz => total(XZ),
-        Field::P => scalar("p [Pa], compression +"),
-        Field::SigmaEffXx => effective(XX),
-        Field::SigmaEffYy => effective(YY),
-        Field::SigmaEffZz => effective(ZZ),
-        Field::PEff => {
-            scalar("p_eff [Pa], compression +").or_else(|| scalar("p [Pa], compression +"))
-        }
-        Field::U => scalar("u [Pa], compression +").or_else(none),
-        Field::UExcess => scalar("u_excess [Pa], compression +").or_else(none),
-        Field::Q => scalar("q [Pa]"),
-        Field::PlasticStrain => scalar("plastic strain [-]"),
-        Field::Utilisation => scalar("utilisation [-]"),
-        Field::Strength => scalar("strength [Pa]"),
-        Field::Friction => scalar("friction angle [rad]"),
-        Field::Young => scalar("Young's modulus [Pa]"),
-    }
+    of_frame.or_else(|| match field {
+        Field::U | Field::UExcess => Some(vec![0.0; frame.cells]),
+        _ => values(frame, field.of_total()?),
+    })
 }
 
 /// A coordinate of the centres of the domains.

@@ -1,11 +1,13 @@
 //! Keys of earlier versions, and what took their place: a file with one of them is refused, and its message says what to write.
 
-/// Keys that went, with the table that they stood in and the remedy.
-const RETIRED: [(&str, &str, &str); 1] = [(
-    "grid",
-    "bbar",
-    "`bbar` is `locking` now: locking = \"b-bar\" for bbar = true, \"none\" for bbar = false, and \"shared-strain\" is the default",
-)];
+/// Keys that went or are met elsewhere, with the table that they stood in and the remedy.
+const RETIRED: [(&str, &str, &str); 3] = [
+    ("grid", "bbar", LOCKING),
+    ("grid", "b_bar", LOCKING),
+    ("grid", "b-bar", LOCKING),
+];
+
+const LOCKING: &str = "`bbar` is `locking` now: locking = \"b-bar\" for bbar = true, \"none\" for bbar = false, and \"shared-strain\" is the default";
 
 /// What took the place of a key of a table; the name of the table may not be known.
 pub(super) fn remedy(table: Option<&str>, key: &str) -> Option<&'static str> {
@@ -24,6 +26,8 @@ mod tests {
     fn a_key_that_went_names_its_successor() {
         let told = remedy(Some("grid"), "bbar").unwrap();
         assert!(told.contains("locking = \"b-bar\""), "{told}");
+        assert_eq!(remedy(Some("grid"), "b_bar"), Some(told));
+        assert_eq!(remedy(Some("grid"), "b-bar"), Some(told));
         assert_eq!(remedy(Some("solver"), "bbar"), None);
         assert_eq!(remedy(Some("grid"), "cell"), None);
     }

@@ -15,6 +15,10 @@ pub enum Dimension {
     UnitWeightGradient,
     /// Angle \[rad\].
     Angle,
+    /// Growth of an angle with depth \[rad/m\].
+    AngleGradient,
+    /// Growth of a number with depth \[1/m\].
+    NumberGradient,
     /// Acceleration \[m/s²\].
     Acceleration,
     /// Force per metre run, in plane strain \[N/m\].
@@ -51,6 +55,8 @@ impl Dimension {
             Self::StressGradient => "a stress per depth",
             Self::UnitWeightGradient => "a unit weight per depth",
             Self::Angle => "an angle",
+            Self::AngleGradient => "an angle per depth",
+            Self::NumberGradient => "a number per depth",
             Self::Acceleration => "an acceleration",
             Self::ForcePerLength => "a force per length",
             Self::MomentPerLength => "a moment per length",
@@ -75,6 +81,8 @@ impl Dimension {
             Self::StressGradient => "kPa/m",
             Self::UnitWeightGradient => "kN/m3/m",
             Self::Angle => "deg",
+            Self::AngleGradient => "deg/m",
+            Self::NumberGradient => "1/m",
             Self::Acceleration => "m/s2",
             Self::ForcePerLength => "kN/m",
             Self::MomentPerLength => "kNm/m",
@@ -99,6 +107,8 @@ impl Dimension {
             Self::StressGradient => "Pa/m",
             Self::UnitWeightGradient => "N/m3/m",
             Self::Angle => "rad",
+            Self::AngleGradient => "rad/m",
+            Self::NumberGradient => "1/m",
             Self::Acceleration => "m/s2",
             Self::ForcePerLength => "N/m",
             Self::MomentPerLength => "Nm/m",
@@ -123,6 +133,8 @@ impl Dimension {
             Self::StressGradient => "1.5 kPa/m",
             Self::UnitWeightGradient => "0.2 kN/m3/m",
             Self::Angle => "30 deg",
+            Self::AngleGradient => "0.5 deg/m",
+            Self::NumberGradient => "0.1 1/m",
             Self::Acceleration => "9.81 m/s2",
             Self::ForcePerLength => "100 kN/m",
             Self::MomentPerLength => "50 kNm/m",
@@ -303,7 +315,7 @@ const fn pounds_inch(symbol: &'static str, dimension: Dimension, times: f64, pow
     customary(symbol, dimension, times, true, (INCH, power))
 }
 
-static UNITS: [Unit; 126] = [
+static UNITS: [Unit; 130] = [
     ten("m", Dimension::Length, 0),
     ten("mm", Dimension::Length, -3),
     ten("cm", Dimension::Length, -2),
@@ -355,6 +367,13 @@ static UNITS: [Unit; 126] = [
     degrees("degree"),
     degrees("degrees"),
     ten("rad", Dimension::Angle, 0),
+    Unit {
+        dimension: Dimension::AngleGradient,
+        ..degrees("deg/m")
+    },
+    ten("rad/m", Dimension::AngleGradient, 0),
+    feet("1/ft", Dimension::NumberGradient, 1.0, -1),
+    ten("1/m", Dimension::NumberGradient, 0),
     ten("m/s2", Dimension::Acceleration, 0),
     ten("cm/s2", Dimension::Acceleration, -2),
     ten("mm/s2", Dimension::Acceleration, -3),

@@ -24,7 +24,8 @@ table! {
 table! {
     WISHES: Wishes, "What is wanted of the lines of the grid.";
     lines: table(LINES: Lines), default "{}", "places that grid lines go through";
-    fit: choice(Fit), default "\"none\"", "whether grid lines go through layer boundaries";
+    fit: choice(Fit), derived "\"none\", and \"bodies\" with rigid bodies", "edges that grid lines are fitted to", in_plane,
+        choice(Fit), derived "\"none\"", "edges that grid lines are fitted to", in_space;
     zones: table(ZONES: Zones), default "{}", "stretches of finer cells";
     growth: number(Positive), default "1.3",
         "ratio of neighbouring cells beside zones and thin layers; from 1.05 to 2";
@@ -55,10 +56,12 @@ table! {
 }
 
 choices! {
-    /// Whether grid lines go through layer boundaries.
+    /// Edges that grid lines are fitted to.
     Fit;
     None "none", "lines are where cell, lines and zones put them";
-    Layers "layers", "level lines move onto the level edges of bodies: layer boundaries and surfaces";
+    Layers "layers", "level lines move onto the level edges of soil: layer boundaries and surfaces";
+    Bodies "bodies", "upright sides of rigid bodies stand in the middle of a cell, their level sides on lines";
+    All "all", "both";
 }
 
 choices! {

@@ -54,6 +54,39 @@ variants! {
     after MATERIAL_COMMON: MaterialCommon;
 }
 
+impl Model {
+    /// The keys of linear elasticity, if the model has them.
+    pub fn stiffness(&self) -> Option<&Stiffness> {
+        match self {
+            Self::Elastic(own) => own.as_ref().ok().map(|own| &own.stiffness),
+            Self::VonMises(own) => own.as_ref().ok().map(|own| &own.stiffness),
+            Self::Tresca(own) => own.as_ref().ok().map(|own| &own.stiffness),
+            Self::MohrCoulomb(own) => own.as_ref().ok().map(|own| &own.stiffness),
+            Self::DruckerPrager(own) => own.as_ref().ok().map(|own| &own.stiffness),
+            Self::HoekBrown(own) => own.as_ref().ok().map(|own| &own.stiffness),
+            Self::CamClay(_) | Self::HardeningSoil(_) => None,
+        }
+    }
+
+    /// The keys of an undrained strength, if the model has them.
+    pub fn undrained(&self) -> Option<&Undrained> {
+        match self {
+            Self::VonMises(Ok(own)) => Some(&own.strength),
+            Self::Tresca(Ok(own)) => Some(&own.strength),
+            _ => None,
+        }
+    }
+
+    /// The keys of cohesion and friction, if the model has them.
+    pub fn frictional(&self) -> Option<&Frictional> {
+        match self {
+            Self::MohrCoulomb(Ok(own)) => Some(&own.strength),
+            Self::DruckerPrager(Ok(own)) => Some(&own.strength),
+            _ => None,
+        }
+    }
+}
+
 table! {
     ELASTIC: Elastic, "Hencky elasticity without a strength limit.";
     stiffness: part(STIFFNESS: Stiffness);
@@ -63,7 +96,7 @@ table! {
     STIFFNESS: Stiffness, "Linear elasticity.";
     young: apart(either(quantity(Stress, Positive), table(STRESS_PROFILE: Profile))), required "\"20 MPa\"",
         "Young's modulus";
-    poisson: apart(number(NotNegative)), required "0.3", "Poisson's ratio, below 0.5";
+    poisson: apart(either(number(NotNegative), table(NUMBER_PROFILE: Profile))), required "0.3", "Poisson's ratio, below 0.5";
 }
 
 table! {
@@ -155,7 +188,7 @@ table! {
     MOHR_COULOMB: MohrCoulomb, "Elastic and perfectly plastic, Mohr-Coulomb with non-associated flow.";
     strength: part(FRICTIONAL: Frictional);
     flow: apart(choice(Flow)), default "\"dilation\"", "how plastic flow follows from the angle of dilation";
-    tension_cutoff: apart(quantity(Stress, NotNegative)), optional "the apex of the cone limits tension",
+    tension_cutoff: apart(either(quantity(Stress, NotNegative), table(STRESS_PROFILE: Profile))), optional "the apex of the cone limits tension",
         "largest tensile stress; zero or missing where cohesion varies";
     softening: apart(table(FRICTIONAL_SOFTENING: FrictionalSoftening)), optional "strength stays as soil is sheared",
         "strength that goes with plastic strain";
@@ -196,25 +229,25 @@ table! {
         "cohesion c";
     friction: apart(either(quantity(Angle, NotNegative), table(FRICTION_PROFILE: Rows))), required "\"20 deg\"",
         "friction angle, below 90 deg";
-    dilation: apart(quantity(Angle, NotNegative)), default "\"0 deg\"", "dilation angle, nowhere above the friction angle";
+    dilation: apart(either(quantity(Angle, NotNegative), table(ANGLE_PROFILE: Profile))), default "\"0 deg\"", "dilation angle, nowhere above the friction angle";
 }
 
 table! {
     CAM_CLAY: CamClay,
     "Modified Cam-clay: clay whose yield surface grows and shrinks with plastic volume, and whose stiffness grows with pressure. \
      Begins with a stage of type k0.";
-    lambda: number(Positive), required "0.2", "slope of the compression line over ln p: of natural volumetric strain, or of void ratio \
+    lambda: either(number(Positive), table(NUMBER_PROFILE: Profile)), required "0.2", "slope of the compression line over ln p: of natural volumetric strain, or of void ratio \
         with `void_ratio`";
-    kappa: number(Positive), required "0.04", "slope of the swelling lines, below `lambda`";
+    kappa: either(number(Positive), table(NUMBER_PROFILE: Profile)), required "0.04", "slope of the swelling lines, below `lambda`";
     void_ratio: number(Positive), optional "`lambda` and `kappa` are of natural volumetric strain",
         "void ratio by which `lambda` and `kappa` of void ratio are divided, as 1 + e";
-    friction: quantity(Angle, Positive), optional "`critical_ratio` says it",
+    friction: either(quantity(Angle, Positive), table(ANGLE_PROFILE: Profile)), optional "`critical_ratio` says it",
         "friction angle at the critical state, in triaxial compression";
-    critical_ratio: number(Positive), optional "`friction` says it", "M = q/p at the critical state";
-    poisson: number(NotNegative), optional "`shear` says it",
+    critical_ratio: either(number(Positive), table(NUMBER_PROFILE: Profile)), optional "`friction` says it", "M = q/p at the critical state";
+    poisson: either(number(NotNegative), table(NUMBER_PROFILE: Profile)), optional "`shear` says it",
         "Poisson's ratio, below 0.5, of a shear modulus that grows with pressure";
-    shear: quantity(Stress, Positive), optional "`poisson` says it", "shear modulus, if it is a constant";
-    ocr: number(Positive), default "1.0",
+    shear: either(quantity(Stress, Positive), table(STRESS_PROFILE: Profile)), optional "`poisson` says it", "shear modulus, if it is a constant";
+    ocr: either(number(Positive), table(NUMBER_PROFILE: Profile)), default "1.0",
         "preconsolidation pressure over p + q^2/(M^2 p) of the initial stress, 1 or more";
     reference_pressure: quantity(Stress, Positive), default "\"100 kPa\"",
         "pressure whose stiffness contact, ties of small cuts and estimates go by";
@@ -222,11 +255,11 @@ table! {
 
 table! {
     HOEK_BROWN: HoekBrown, "Elastic and perfectly plastic rock mass, Hoek-Brown of 2002.";
-    sci: quantity(Stress, Positive), required "\"30 MPa\"", "uniaxial compressive strength of intact rock";
-    gsi: number(Positive), required "45.0", "geological strength index, at most 100";
-    mi: number(Positive), required "10.0", "m_i of intact rock";
-    disturbance: number(NotNegative), default "0.0", "factor of disturbance D, from 0 of rock left whole to 1 of blasted slopes";
-    dilation: quantity(Angle, NotNegative), default "\"0 deg\"", "dilation angle, nowhere above the friction angle that acts";
+    sci: either(quantity(Stress, Positive), table(STRESS_PROFILE: Profile)), required "\"30 MPa\"", "uniaxial compressive strength of intact rock";
+    gsi: either(number(Positive), table(NUMBER_PROFILE: Profile)), required "45.0", "geological strength index, at most 100";
+    mi: either(number(Positive), table(NUMBER_PROFILE: Profile)), required "10.0", "m_i of intact rock";
+    disturbance: either(number(NotNegative), table(NUMBER_PROFILE: Profile)), default "0.0", "factor of disturbance D, from 0 of rock left whole to 1 of blasted slopes";
+    dilation: either(quantity(Angle, NotNegative), table(ANGLE_PROFILE: Profile)), default "\"0 deg\"", "dilation angle, nowhere above the friction angle that acts";
     stiffness: part(STIFFNESS: Stiffness);
 }
 
@@ -234,20 +267,20 @@ table! {
     HARDENING_SOIL: HardeningSoil,
     "Hardening Soil of Schanz, Vermeer and Bonnier (1999): shear hardens along a hyperbola up to the strength of Mohr-Coulomb, a cap \
      hardens in compression, and stiffness grows with the least compression.";
-    cohesion: quantity(Stress, NotNegative), required "\"0 kPa\"", "cohesion c";
-    friction: quantity(Angle, Positive), required "\"35 deg\"", "friction angle, 1 deg to 80 deg";
-    dilation: quantity(Angle, NotNegative), default "\"0 deg\"", "dilation angle at failure, nowhere above the friction angle or 30 deg";
-    e50: quantity(Stress, Positive), required "\"30 MPa\"",
+    cohesion: either(quantity(Stress, NotNegative), table(STRESS_PROFILE: Profile)), required "\"0 kPa\"", "cohesion c";
+    friction: either(quantity(Angle, Positive), table(ANGLE_PROFILE: Profile)), required "\"35 deg\"", "friction angle, 1 deg to 80 deg";
+    dilation: either(quantity(Angle, NotNegative), table(ANGLE_PROFILE: Profile)), default "\"0 deg\"", "dilation angle at failure, nowhere above the friction angle or 30 deg";
+    e50: either(quantity(Stress, Positive), table(STRESS_PROFILE: Profile)), required "\"30 MPa\"",
         "secant modulus at half the strength in drained triaxial compression, at a cell pressure of `reference_pressure`, where the cap does not yield; with `ocr` = 1 soil is softer";
-    eur: quantity(Stress, Positive), optional "three times `e50`", "Young's modulus of unloading and reloading there";
-    eoed: quantity(Stress, Positive), optional "as `e50`",
+    eur: either(quantity(Stress, Positive), table(STRESS_PROFILE: Profile)), optional "three times `e50`", "Young's modulus of unloading and reloading there";
+    eoed: either(quantity(Stress, Positive), table(STRESS_PROFILE: Profile)), optional "as `e50`",
         "tangent modulus of first compression in the oedometer, at an axial stress of `reference_pressure`";
-    poisson: number(NotNegative), default "0.2", "Poisson's ratio of unloading, below 0.5";
-    power: number(NotNegative), default "0.5", "power m by which stiffness grows with stress, at most 1";
+    poisson: either(number(NotNegative), table(NUMBER_PROFILE: Profile)), default "0.2", "Poisson's ratio of unloading, below 0.5";
+    power: either(number(NotNegative), table(NUMBER_PROFILE: Profile)), default "0.5", "power m by which stiffness grows with stress, at most 1";
     reference_pressure: quantity(Stress, Positive), default "\"100 kPa\"", "pressure at which the moduli are as stated";
-    failure_ratio: number(Positive), default "0.9", "R_f, strength over the asymptote of the hyperbola, below 1";
-    k0_normal: number(Positive), optional "1 - sin(friction)", "ratio of stresses in first one-dimensional compression, below 1";
-    ocr: number(Positive), default "1.0",
+    failure_ratio: either(number(Positive), table(NUMBER_PROFILE: Profile)), default "0.9", "R_f, strength over the asymptote of the hyperbola, below 1";
+    k0_normal: either(number(Positive), table(NUMBER_PROFILE: Profile)), optional "1 - sin(friction)", "ratio of stresses in first one-dimensional compression, below 1";
+    ocr: either(number(Positive), table(NUMBER_PROFILE: Profile)), default "1.0",
         "preconsolidation pressure over (q^2/M^2 + p^2)^0.5 of the initial stress, 1 or more";
 }
 
@@ -355,12 +388,12 @@ macro_rules! rows {
 
 /// Declares the keys of values that grow with depth.
 macro_rules! growth {
-    ($declare:ident $schema:ident $(: $name:ident)?, $of:ident, $gradient:ident) => {
+    ($declare:ident $schema:ident $(: $name:ident)?, $value:ident $value_args:tt, $gradient:ident) => {
         $declare! {
             $schema $(: $name)?, "Growth with depth.";
-            at_surface: quantity($of, NotNegative), optional "another form is given",
+            at_surface: $value $value_args, optional "another form is given",
                 "value at the surface, the highest soil of the case on the same vertical line";
-            at_top: quantity($of, NotNegative), optional "another form is given",
+            at_top: $value $value_args, optional "another form is given",
                 "value at the level `from` and above";
             gradient: quantity($gradient, Any), optional "another form is given",
                 "growth with depth below the surface, or below `from`";
@@ -370,12 +403,18 @@ macro_rules! growth {
     };
 }
 
-growth! { table STRESS_GROWTH: Growth, Stress, StressGradient }
+growth! { table STRESS_GROWTH: Growth, quantity(Stress, NotNegative), StressGradient }
 rows! { table STRESS_ROWS: Rows, "Stresses over levels or depths.", quantity(Stress, NotNegative) }
 points! { table STRESS_POINTS: Points, "Stresses by points in the plane.", quantity(Stress, NotNegative) }
-growth! { schema WEIGHT_GROWTH, UnitWeight, UnitWeightGradient }
+growth! { schema WEIGHT_GROWTH, quantity(UnitWeight, NotNegative), UnitWeightGradient }
 rows! { schema WEIGHT_ROWS, "Unit weights over levels or depths.", quantity(UnitWeight, NotNegative) }
 points! { schema WEIGHT_POINTS, "Unit weights by points in the plane.", quantity(UnitWeight, NotNegative) }
+growth! { schema ANGLE_GROWTH, quantity(Angle, NotNegative), AngleGradient }
+rows! { schema ANGLE_ROWS, "Angles over levels or depths.", quantity(Angle, NotNegative) }
+points! { schema ANGLE_POINTS, "Angles by points in the plane.", quantity(Angle, NotNegative) }
+growth! { schema NUMBER_GROWTH, number(NotNegative), NumberGradient }
+rows! { schema NUMBER_ROWS, "Numbers over levels or depths.", number(NotNegative) }
+points! { schema NUMBER_POINTS, "Numbers by points in the plane.", number(NotNegative) }
 
 table! {
     STRESS_PROFILE: Profile,
@@ -424,4 +463,20 @@ schema! {
     growth: part(WEIGHT_GROWTH: Growth);
     table: part(WEIGHT_ROWS: Rows);
     points: part(WEIGHT_POINTS: Points);
+}
+
+schema! {
+    ANGLE_PROFILE,
+    "An angle that varies with the level or with the depth, stated alike.";
+    growth: part(ANGLE_GROWTH: Growth);
+    table: part(ANGLE_ROWS: Rows);
+    points: part(ANGLE_POINTS: Points);
+}
+
+schema! {
+    NUMBER_PROFILE,
+    "A number that varies with the level or with the depth, stated alike.";
+    growth: part(NUMBER_GROWTH: Growth);
+    table: part(NUMBER_ROWS: Rows);
+    points: part(NUMBER_POINTS: Points);
 }

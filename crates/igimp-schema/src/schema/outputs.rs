@@ -6,7 +6,7 @@ use crate::field::Field;
 
 table! {
     SOLVER: Solver, "Newton's method, step cutting, linear solver.";
-    tolerance: number(Share), default "1e-9", "out-of-balance force over external force and reactions";
+    tolerance: number(SmallShare), default "1e-9", "out-of-balance force over external force and reactions";
     max_iterations: whole(1, 1000), default "25", "most corrections per step";
     step_cutting: table(STEP_CUTTING: StepCutting), default "{}", "what happens to a step that does not converge";
     linear: choice(LinearSolver), default "\"auto\"", "linear solver";
@@ -161,15 +161,15 @@ choices! {
 table! {
     PARAVIEW: Paraview, "When particles are written for ParaView.";
     every: either(choice(OutputTime), whole(1, 1_000_000)),
-        derived "\"film\" where a stage moves in time, else \"stage\"",
-        "\"stage\", \"film\", \"never\" or a number of steps";
+        derived "\"film\", in a study of meshes or a sweep \"stage\"",
+        "\"film\", \"stage\", \"never\" or a number of steps";
 }
 
 choices! {
     /// When particles are written for ParaView.
     OutputTime;
+    Film "film", "along every stage, up to 40 times, and at its end: in a motion at equal times, in others where soil has moved on, by about a twentieth of its way";
     Stage "stage", "at the end of every stage";
-    Film "film", "some tens of times in every stage and at its end: up to 40 in a motion, at equal times, and 20 in others, at equal shares of the stage";
     Never "never", "not at all";
 }
 

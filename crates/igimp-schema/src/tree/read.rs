@@ -38,6 +38,21 @@ pub enum Either<A, B> {
     Second(B),
 }
 
+impl<A: Copy, B> At<Either<A, B>> {
+    /// The first, if it is that.
+    pub fn first(&self) -> Option<At<A>> {
+        let Either::First(value) = self.value else {
+            return None;
+        };
+        Some(At {
+            value,
+            place: self.place,
+            key_place: self.key_place,
+            written: self.written,
+        })
+    }
+}
+
 /// A table under a name.
 #[derive(Clone, Debug)]
 pub struct Named<T> {

@@ -16,6 +16,7 @@ mod newton;
 mod newton_failures;
 mod nonlocal;
 mod one_dimension;
+mod push_out;
 mod reinforcement;
 mod softening;
 mod undrained;

@@ -8,15 +8,13 @@ use igimp_estimate::speed::Speed;
 use igimp_estimate::watch::side_by_side;
 use igimp_estimate::{Estimate, estimate, readable, time, together};
 use igimp_model::{Case, Every, Stage, StageKind, meshes};
-use igimp_text::{count, on_a_line};
+use igimp_results::paraview::film;
+use igimp_text::{count, on_a_line, short};
 
 use super::table;
 
 /// A particle in a frame, packed, in the plane and in space \[bytes\].
-const FRAME: [f64; 2] = [250.0, 450.0];
-/// Most frames of a motion that makes a film, and those of another stage.
-const FILM_OF_MOTION: usize = 40;
-const FILM: usize = 20;
+const FRAME: [f64; 2] = [250.0, 350.0];
 
 /// The size of a case and what it will cost.
 #[derive(Clone, Debug)]
@@ -53,9 +51,12 @@ pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Told, CaseErr
         row("method", case.method.label()),
         row("particles", count(size.particles)),
         row("cells", format!("{} ({cells})", count(size.cells))),
+    ];
+    rows.extend(lines(case).map(|text| row("lines", text)));
+    rows.extend([
         row("unknowns", format!("about {}", count(size.unknowns))),
         row("solver", size.systems.method.clone()),
-    ];
+    ]);
     rows.extend(allowed);
     rows.extend(size.systems.on_several.map(|(bytes, computers)| {
         let text = format!(
@@ -73,7 +74,7 @@ pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Told, CaseErr
         row("time", time::sentence(&time)),
         row("results", case.output.folder.display().to_string()),
     ]);
-    rows.extend(film(case, size.particles).map(|text| row("frames", text)));
+    rows.extend(frames(case, size.particles).map(|text| row("frames", text)));
     let stages: Vec<Vec<String>> = case
         .stages
         .iter()
@@ -105,25 +106,47 @@ pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Told, CaseErr
     Ok(told)
 }
 
+/// Sides of rigid bodies that stand in the middle of a cell, if any do.
+fn lines<const D: usize>(case: &Case<D>) -> Option<String> {
+    let sides = meshes::mid_cell(case);
+    let places: Vec<String> = sides.iter().map(|&x| short(x)).collect();
+    let text = format!(
+        "sides of rigid bodies mid-cell at x = {} m",
+        places.join(", ")
+    );
+    (!sides.is_empty()).then_some(text)
+}
+
 /// How many frames a run writes along its stages, and what they take; none where it writes those of their ends alone.
-fn film<const D: usize>(case: &Case<D>, particles: usize) -> Option<String> {
-    let (most, every, how) = match case.output.paraview {
-        Every::Film => ([FILM_OF_MOTION, FILM], 1, "up to"),
-        // Steps that are cut have frames too.
-        Every::Steps(every) => ([usize::MAX; 2], every.max(1), "about"),
+fn frames<const D: usize>(case: &Case<D>, particles: usize) -> Option<String> {
+    let every = case.output.paraview;
+    let one_in = film::one_in(particles);
+    let of_stage = |stage: &Stage| {
+        let along = match every {
+            Every::Steps(every) => stage.steps / every.max(1),
+            _ => stage.steps.min(stage.kind.film_frames().div_ceil(one_in)),
+        };
+        // That of the end, that of the beginning of a motion, and the states at the ends of a search.
+        match stage.kind {
+            StageKind::Dynamic(_) => (along + 2, along + 2),
+            StageKind::StrengthReduction(_) => (3, 3),
+            _ => (along + 1, film::MOST.div_ceil(one_in) + 1),
+        }
+    };
+    let stages = case.stages.iter().map(of_stage);
+    let (about, most) = stages.fold((0, 0), |sum, own| (sum.0 + own.0, sum.1 + own.1));
+    let size = |frames| readable((frames * particles) as f64 * FRAME[D - 2]);
+    let how = match every {
         Every::Never | Every::Stage => return None,
+        Every::Film if most == about => "up to",
+        // Steps that are cut may have frames too.
+        Every::Film | Every::Steps(_) => "about",
     };
-    let of_stage = |stage: &Stage| match stage.kind {
-        StageKind::Dynamic(_) => (stage.steps / every).min(most[0]) + 2,
-        StageKind::StrengthReduction(_) => 3,
-        _ => (stage.steps / every).min(most[1]) + 1,
-    };
-    let frames: usize = case.stages.iter().map(of_stage).sum();
-    let bytes = (frames * particles) as f64 * FRAME[D - 2];
-    Some(format!(
-        "{how} {frames}, about {} in paraview/",
-        readable(bytes)
-    ))
+    let mut text = format!("{how} {about}, about {} in paraview/", size(about));
+    if every == Every::Film && most > about {
+        let _ = write!(text, "; at most {most}, {}", size(most));
+    }
+    Some(text)
 }
 
 /// Adds the meshes of a study of the mesh error, each with its size, and the cost of all.
@@ -229,12 +252,14 @@ mod tests {
                 format!("output.paraview={{ every = {every} }}"),
                 "stages.0.steps=10".to_owned(),
             ];
-            film(&column.case_file(settings).unwrap().into_case(), 1000)
+            super::frames(&column.case_file(settings).unwrap().into_case(), 1000)
         };
         let frames = |every: &str| told(every).unwrap().split(',').next().unwrap().to_owned();
         assert_eq!(frames("1"), "about 11");
         assert_eq!(frames("5"), "about 3");
-        assert_eq!(frames("\"film\""), "up to 11");
+        assert_eq!(frames("\"film\""), "about 11");
+        let told_of_film = told("\"film\"").unwrap();
+        assert!(told_of_film.contains("; at most 41, "), "{told_of_film}");
         assert_eq!(told("\"stage\""), None);
     }
 

@@ -130,7 +130,13 @@ fn explain(safety: &SafetySummary) -> String {
         parts.push(format!("without {}", safety.excluded.join(", ")));
     }
     if let Some(share) = safety.moving_mass {
-        parts.push(format!("{:.0} % of the mass moves", 100.0 * share));
+        let percent = 100.0 * share;
+        let told = if percent >= 1.0 {
+            format!("{percent:.0}")
+        } else {
+            short(percent)
+        };
+        parts.push(format!("{told} % of the mass moves"));
     }
     if let Some(path) = &safety.path {
         let at = |what: &str, point: &PathPoint| {
@@ -157,11 +163,11 @@ fn explain(safety: &SafetySummary) -> String {
     }
 }
 
-/// The strength that the factor of safety changes most with.
+/// The strength that the factor of safety changes most with, by ∂ ln F/∂ ln of it, which may be above 1.
 fn largest_share(shares: &StrengthShares) -> Option<String> {
     let strengths = shares.strengths();
     let largest = strengths.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
-    largest.map(|(name, what, share)| format!("most by {what} of {name}, {:.0} %", 100.0 * share))
+    largest.map(|(name, what, share)| format!("1 % of {what} of {name} changes F by {share:.2} %"))
 }
 
 #[cfg(test)]

@@ -201,16 +201,18 @@ impl Sweep {
             })
     }
 
-    /// The case of a task.
+    /// The case of a task: with frames along its stages where the case or the sweep asks for them.
     ///
     /// # Errors
     /// [`SweepError::Task`].
     pub fn case_of(&self, task: &Task) -> Result<CaseFile, SweepError> {
-        CaseFile::read(&self.case, &task.settings).map_err(|source| SweepError::Task {
-            task: task.number,
-            settings: task.label(),
-            source,
-        })
+        let file = CaseFile::read(&self.case, &task.settings);
+        file.map(CaseFile::with_few_frames)
+            .map_err(|source| SweepError::Task {
+                task: task.number,
+                settings: task.label(),
+                source,
+            })
     }
 
     /// Enters the folder of all tasks: alone, for all of them, or together with those who run one each.

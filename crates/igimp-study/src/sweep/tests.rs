@@ -261,6 +261,53 @@ fn an_unknown_case_names_the_task() {
     assert!(error.starts_with("task 1 ("), "{error}");
 }
 
+/// GOAL: of many runs each keeps the frames of the ends of its stages, unless the case or the sweep states it otherwise.
+/// CASE: a sweep, and a study of two meshes; a run alone is a film. ORACLE: the case and its completed file.
+#[test]
+fn many_runs_are_no_films() {
+    use igimp_model::Every;
+
+    let scratch = Scratch::new("films");
+    let shipped = igimp_input::shipped::find("column").unwrap();
+    let case = scratch.0.join("column.toml");
+    let path = scratch.0.join("study.toml");
+    let frames = |text: &str, more: &str| {
+        std::fs::write(&case, text).unwrap();
+        let sweep = format!(
+            "igimp_sweep = 1\ncase = \"column.toml\"\n[parameters]\n{more}stages.0.steps = [5, 6]\n\
+             [output]\nfolder = \"out\"\n"
+        );
+        std::fs::write(&path, sweep).unwrap();
+        let sweep = Sweep::read(&path).unwrap();
+        let file = sweep.case_of(&sweep.tasks[0]).unwrap();
+        let every = file.any_case().output().paraview;
+        let completed = file.explain();
+        let name = if every == Every::Film {
+            "film"
+        } else {
+            "stage"
+        };
+        assert!(
+            completed.contains(&format!("every = \"{name}\"")),
+            "{completed}"
+        );
+        every
+    };
+    assert_eq!(frames(shipped.text, ""), Every::Stage);
+    let more = "output.paraview.every = [\"film\"]\n";
+    assert_eq!(frames(shipped.text, more), Every::Film);
+    let stated = shipped
+        .text
+        .replace("[output]\n", "[output]\nparaview = { every = \"film\" }\n");
+    assert_eq!(frames(&stated, ""), Every::Film);
+    let every = |settings: &[&str]| {
+        let file = shipped.case_file(settings.iter().copied()).unwrap();
+        file.any_case().output().paraview
+    };
+    assert_eq!(every(&[]), Every::Film);
+    assert_eq!(every(&["mesh_study.meshes=2"]), Every::Stage);
+}
+
 #[test]
 fn endings_follow_the_summary() {
     let mut summary = summary(1.0);

@@ -9,12 +9,11 @@ use std::process::{Command, Stdio};
 use igimp_input::shipped::SHIPPED;
 use serde_json::Value;
 
-/// Coarse, with a checkpoint after every other step and a frame after every tenth.
-const SETTINGS: [&str; 6] = [
+/// Coarse, with a checkpoint after every other step, and with the frames of a film, as every run has.
+const SETTINGS: [&str; 5] = [
     "grid.cell=2 m",
     "stages.run-out.steps=60",
     "output.checkpoint.every=2",
-    "output.paraview={ every = 10 }",
     "output.figures=[]",
     "output.report=false",
 ];

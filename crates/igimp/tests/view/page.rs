@@ -18,11 +18,11 @@ fn the_page_works_in_a_browser() {
         line.split(',').nth(column).unwrap().parse().unwrap()
     };
     let view = View::of(&folder, "results");
-    // The monitor stands in the middle of a particle; compression is positive in tables alone.
-    // Each look starts a browser: every frame once, and both fields.
-    let displacement = ("displacement%20[m],%20length", 3, 1.0);
-    let stress = ("sigma%20[Pa],%20tension%20%2B,%20yy", 4, -1.0);
-    for (frame, (field, column, sign)) in [
+    // The monitor stands in the middle of a particle, whose stress is that of its cell: of the weight above the middle of the
+    // cell, a quarter of a metre down. Each look starts a browser: every frame once, and both fields.
+    let displacement = "displacement%20[m],%20length";
+    let stress = "sigma%20[Pa],%20tension%20%2B,%20yy";
+    for (frame, field) in [
         (1, displacement),
         (2, stress),
         (3, displacement),
@@ -31,9 +31,13 @@ fn the_page_works_in_a_browser() {
         let wishes = format!("frame={frame}&field={field}&hover=0.9,1.85");
         let page = looked_at(browser, &folder, &view, &wishes);
         let value: f64 = attribute(&page, "found", "data-value").parse().unwrap();
-        let expected = sign * number(frame, column);
+        let (expected, off) = if field == stress {
+            (-18e3 * 0.25 * frame as f64 / 3.0, 0.01)
+        } else {
+            (number(frame, 3), 1e-6)
+        };
         assert!(
-            (value - expected).abs() <= 1e-6 * expected.abs(),
+            (value - expected).abs() <= off * expected.abs(),
             "frame {frame}, {field}: {value} for {expected}"
         );
         let label = attribute(&page, "slider", "aria-valuetext");
@@ -246,7 +250,7 @@ fn histories_are_drawn_over_time() {
     let view = View::of(&folder, "results");
     let page = looked_at(browser, &folder, &view, "frame=1");
     assert!(page.contains("middle: displacement y [m]") && page.contains("time [s]"));
-    assert!(!page.contains("middle: time") && !page.contains("row of the table"));
+    assert!(!page.contains("middle: time"));
 }
 
 /// GOAL: a section across a body has the stress of its weight; the edges of the body are drawn.

@@ -8,6 +8,31 @@ use std::time::{Duration, Instant};
 
 use crate::support::{Folder, View};
 
+/// GOAL: a run in statics that states nothing of frames is a film in the view. CASE: a block under its weight in twelve steps.
+/// ORACLE: a frame for each step, the last at the end of the stage; with `every = "stage"` that one alone.
+#[test]
+fn a_run_is_a_film_without_a_key() {
+    let served = |name: &str, every: &str| -> Vec<String> {
+        let frames = format!("output.paraview={{ {every} }}");
+        let settings = ["--set", "stages.0.steps=12", "--set", &frames];
+        let folder = Folder::with_results(name, &settings);
+        let view = View::of(&folder, "results");
+        let (status, _, index) = view.get("index.json");
+        assert_eq!(status, 200);
+        let index: serde_json::Value = serde_json::from_str(&index).unwrap();
+        let frames = index["frames"].as_object().unwrap();
+        for name in frames.keys() {
+            let name = name.replace("paraview/", "packed/paraview/");
+            assert_eq!(view.get(&name).0, 200, "{name}");
+        }
+        let when = |own: &serde_json::Value| own["when"].as_str().unwrap().to_owned();
+        frames.values().map(when).collect()
+    };
+    let steps: Vec<String> = (1..=12).map(|step| format!("step {step}")).collect();
+    assert_eq!(served("film", ""), steps);
+    assert_eq!(served("no-film", "every = \"stage\""), ["step 12"]);
+}
+
 #[test]
 fn the_page_and_the_results_are_served() {
     let folder = Folder::with_results("serves", &[]);

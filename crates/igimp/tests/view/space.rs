@@ -80,6 +80,69 @@ fn a_run_in_space_is_shown() {
     );
 }
 
+/// GOAL: a section is drawn by hand on the face of a cut. ORACLE: γ times the depth, within half a particle of 0.25 m.
+#[test]
+fn a_section_is_drawn_on_a_cut() {
+    let Some(browser) = browser() else {
+        return;
+    };
+    let more = ["--set", "output.figures=[]"];
+    let folder = results_of("section-in-space", CUBE, &more);
+    let view = View::of(&folder, "results");
+    let field = "sigma%20[Pa],%20tension%20%2B,%20zz";
+    let wishes = format!("cut=1,0.55&field={field}&section=1.1,1.1,1.7,1.1,1.1,0.3");
+    let page = looked_at(browser, &folder, &view, &wishes);
+    for (end, depth) in [("data-first", 0.3), ("data-last", 1.7)] {
+        let value: f64 = attribute(&page, "section", end).parse().unwrap();
+        assert!(
+            (value + 18e3 * depth).abs() < 0.5 * 0.25 * 18e3,
+            "{end}: {value}"
+        );
+    }
+    assert_eq!(attribute(&page, "section", "data-places"), "201");
+    assert!(page.contains("from (1.1, 1.1, 1.7) to (1.1, 1.1, 0.3) m"));
+}
+
+/// GOAL: a search in space has the surface over which the slope slides, as a table and on its page.
+/// ORACLE: the surface lies in the ground, above the base on which soil stands; on the plane of symmetry it reaches from behind the
+/// crest, at x = 7 m, to the face below.
+#[test]
+fn a_search_in_space_shows_where_soil_slips() {
+    let shipped = include_str!("../../../igimp-input/cases/slope_3d.toml");
+    let (before, _) = shipped
+        .split_once("[[stages]]\nname = \"to collapse\"")
+        .unwrap();
+    let case = format!(
+        "{before}[[stages]]\nname = \"safety\"\ntype = \"strength-reduction\"\n[output]\nfigures = []\n"
+    );
+    let folder = results_of("slip-in-space", &case, &[]);
+    let table = std::fs::read_to_string(folder.0.join("results/slip_lines/2-safety.csv")).unwrap();
+    let mut rows = table.lines();
+    assert_eq!(rows.next(), Some("x_[m],y_[m],z_[m]"));
+    let point = |row: &str| -> [f64; 3] {
+        let numbers: Vec<f64> = row.split(',').map(|own| own.parse().unwrap()).collect();
+        numbers.try_into().unwrap()
+    };
+    let points: Vec<[f64; 3]> = rows.map(point).collect();
+    let ground = |x: f64| (17.0 - x).clamp(5.0, 10.0);
+    for [x, _, z] in &points {
+        assert!((1.0..ground(*x)).contains(z), "{x} {z}");
+    }
+    let middle = points.iter().filter(|[_, y, _]| *y < 0.5);
+    let ends = middle.fold([f64::MAX, f64::MIN], |[a, b], [x, ..]| {
+        [a.min(*x), b.max(*x)]
+    });
+    assert!(ends[0] < 7.0 && ends[1] > 9.0, "{ends:?}");
+    let Some(browser) = browser() else {
+        return;
+    };
+    let view = View::of(&folder, "results");
+    let page = looked_at(browser, &folder, &view, "cut=1,0.4");
+    let corners: usize = attribute(&page, "canvas", "data-slip-cut").parse().unwrap();
+    assert!(corners > 2, "{corners}");
+    assert!(page.contains("red: where soil shears most as it fails"));
+}
+
 /// GOAL: in space the free surface of a computed flow is drawn over its frames, and stands out where the cut meets it.
 /// ORACLE: a pond over the cube stands at its level throughout.
 #[test]

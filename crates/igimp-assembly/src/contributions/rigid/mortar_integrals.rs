@@ -76,8 +76,10 @@ impl<'a, const D: usize> Gathering<'a, D> {
         let faces = self.faces();
         let thin = thin(&faces, surface.side_count());
         for (particle, face) in &faces {
-            let sees = !thin[face.side].iter().any(|other| other.hides(face));
-            if face.is_far() && !sees {
+            let before = thin[face.side].iter();
+            let mut hiding = before.filter(|other| other.hides(face)).peekable();
+            let sees = hiding.peek().is_none();
+            if face.is_far() && !sees || hiding.any(|other| other.is_cut_before(face)) {
                 continue;
             }
             let law = particles.law[*particle];
@@ -113,7 +115,8 @@ impl<'a, const D: usize> Gathering<'a, D> {
             let sides = 0..body.surface.side_count();
             let own = sides.filter_map(|side| Face::of(body, side, x, half));
             let beyond = particles.beyond_domain(particle, self.section);
-            faces.extend(own.map(|face| (particle, face.grown(&beyond))));
+            let drawn = &particles.half_length0[particle];
+            faces.extend(own.map(|face| (particle, face.grown(&beyond).drawn_with(drawn))));
         }
         faces
     }

@@ -442,7 +442,7 @@ fn less_than_collapses<const D: usize>(
             "type = \"dynamic\" with a duration and at_rest = 5e-3 for stage \"{}\": soil that gains speed needs no equilibrium",
             stage.name
         )],
-        StageKind::Dynamic(_) | StageKind::Wait => Vec::new(),
+        _ => Vec::new(),
     }
 }
 

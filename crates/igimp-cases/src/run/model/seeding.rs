@@ -3,14 +3,15 @@
 use igimp_assembly::{ParticleSeed, Particles, SharedLaw};
 use igimp_geometry::seed::fill;
 use igimp_material::Ratios;
-use igimp_model::{Case, share_cells};
+use igimp_model::{Case, laws_at_points};
 use igimp_shape::Grid;
 
 use crate::error::CaseError;
 use crate::run::state::gravity_of_weights;
 use crate::run::water::Seeded;
 
-/// Particles of all bodies, and what they were seeded in. Cells that several soils share append their laws.
+/// Particles of all bodies, and what they were seeded in. Places with parameters of their own, and cells that several soils share, append
+/// their laws.
 pub(super) fn seeded<const D: usize>(
     case: &Case<D>,
     (grid, cell_height): (&Grid<D>, f64),
@@ -21,7 +22,7 @@ pub(super) fn seeded<const D: usize>(
     let ratios = |seed: &ParticleSeed<D>| case.materials[seed.law].ratios_at(&seed.x, &ground);
     let mut ratios: Vec<Ratios> = seeds.iter().map(ratios).collect();
     let parts = (&mut seeds[..], &body[..], &mut ratios[..]);
-    share_cells(case, (grid, cell_height), parts, laws)?;
+    laws_at_points(case, (grid, cell_height), parts, laws)?;
     let mut domain = Vec::new();
     if case.water.iter().any(|condition| condition.carried) {
         let own = seeds.iter().map(|seed| [seed.x, seed.half_length]);

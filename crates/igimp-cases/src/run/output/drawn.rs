@@ -5,9 +5,11 @@ use std::time::Instant;
 
 use igimp_assembly::SharedLaw;
 use igimp_model::{Case, Every, in_plane};
+use igimp_report::outlines::Outlines;
 use igimp_report::patches::Pieces;
 use igimp_report::pictures::{self, Canvas, Failing, Seen, Shown, mechanism};
 use igimp_results::paraview::frames::{Scene, StateOfSearch};
+use igimp_results::paraview::read_back::FrameParticles;
 use igimp_results::rigid;
 use igimp_results::summary::StageSummary;
 use rayon::prelude::*;
@@ -18,6 +20,27 @@ use crate::run::model::Model;
 use crate::run::output::outlines;
 use crate::run::resume::End;
 use crate::run::state::State;
+
+/// The state at an end of a search, with its name.
+type Named<const D: usize> = (&'static str, End<D>);
+
+/// The states at the ends of a search with the equilibria before them. The one that failed has moved most and comes first; where
+/// no step led to it, the stable one tells.
+fn failing<const D: usize>(
+    kept: &[Named<D>],
+    stage: usize,
+) -> impl Iterator<Item = (Failing<'_, D>, &State<D>)> {
+    kept.iter().rev().filter_map(move |(what, end)| {
+        let failing = Failing {
+            stage,
+            srf: end.srf,
+            what,
+            before: &end.before.as_ref()?.particles,
+            last: &end.state.body.particles,
+        };
+        Some((failing, &end.state))
+    })
+}
 
 impl<const D: usize> Output<D> {
     /// Frames and pictures of the states at the ends of a search, and of the way in which the body fails.
@@ -59,12 +82,20 @@ impl<const D: usize> Output<D> {
             let states: Vec<StateOfSearch> = kept.iter().map(state).collect();
             self.frames.collect(&stage, &summary.name, &states)?;
         }
-        let kept_in_plane =
-            in_plane::<Vec<(&'static str, End<D>)>, Vec<(&'static str, End<2>)>>(&kept);
-        let (Some(case), Some(kept)) = (in_plane(model.case), kept_in_plane) else {
+        if let (Some(case), Some(kept)) =
+            (in_plane(model.case), in_plane::<_, Vec<Named<2>>>(&kept))
+        {
+            return self.mechanism(case, model, number, kept);
+        }
+        let (Some(case), Some(kept)) = (in_plane(model.case), in_plane::<_, Vec<Named<3>>>(&kept))
+        else {
             return Ok(());
         };
-        self.mechanism(case, model, number, kept)
+        let surface = failing(kept, number).find_map(|(own, _)| pictures::slip_surface(&own, case));
+        match surface {
+            Some(table) => Ok(table.write_csv(&self.folder.slip_lines())?),
+            None => Ok(()),
+        }
     }
 
     /// The way in which the body fails: the slip line as a table, and its picture.
@@ -73,18 +104,9 @@ impl<const D: usize> Output<D> {
         case: &Case<2>,
         model: &Model<'_, D>,
         number: usize,
-        kept: &[(&'static str, End<2>)],
+        kept: &[Named<2>],
     ) -> Result<(), CaseError> {
-        // The state that failed has moved most; where no step led to it, the stable one tells.
-        for (what, end) in kept.iter().rev() {
-            let Some(before) = &end.before else { continue };
-            let failing = Failing {
-                stage: number,
-                srf: end.srf,
-                what,
-                before: &before.particles,
-                last: &end.state.body.particles,
-            };
+        for (failing, state) in failing(kept, number) {
             let Some(found) = mechanism(&failing) else {
                 continue;
             };
@@ -98,7 +120,7 @@ impl<const D: usize> Output<D> {
                     case,
                     pieces: &pieces,
                 };
-                let over = outlines::of_state(case, model, &end.state);
+                let over = outlines::of_state(case, model, state);
                 let picture = pictures::mechanism_picture(&canvas, &failing, &found, &over)?;
                 self.figures.push(picture);
             }
@@ -115,6 +137,16 @@ impl<const D: usize> Output<D> {
         };
         self.pieces = Some(Arc::clone(&pieces));
         Ok(pieces)
+    }
+
+    /// The edges of the bodies in space, found once.
+    fn edges(&mut self, case: &Case<3>) -> Result<Arc<Outlines>, CaseError> {
+        let edges = match &self.edges {
+            Some(edges) => Arc::clone(edges),
+            None => Arc::new(Outlines::of(case)?),
+        };
+        self.edges = Some(Arc::clone(&edges));
+        Ok(edges)
     }
 
     /// The pictures of the fields that the case wants to see, with the units and colours that suit the
@@ -187,22 +219,29 @@ impl<const D: usize> Output<D> {
         compared: &[Seen<'_, 3>],
     ) -> Result<(), CaseError> {
         let case = model.case;
-        let standing = in_plane::<_, Case<3>>(case).map(|case| {
-            let structures = outlines::structures(case, &state.controls, &state.body);
-            rigid::cells(&structures.rigid)
-        });
-        let bodies = standing.map_or_else(Vec::new, |cells| {
-            let corners = cells.connectivity.as_chunks::<3>().0.iter();
-            corners
-                .map(|corners| corners.map(|point| cells.points[point]))
-                .collect()
-        });
-        let seen = Seen {
-            particles: &state.body.particles,
-            laws,
+        let Some(in_space) = in_plane::<_, Case<3>>(case) else {
+            return Ok(());
         };
+        let structures = outlines::structures(in_space, &state.controls, &state.body);
+        let cells = rigid::cells(&structures.rigid);
+        let corners = cells.connectivity.as_chunks::<3>().0.iter();
+        let bodies = corners.map(|corners| corners.map(|point| cells.points[point]));
+        let particles = &state.body.particles;
+        let edges = self.edges(in_space)?.now(&FrameParticles {
+            x: particles.x.clone(),
+            def_grad: particles.def_grad.clone(),
+            number: particles.number.clone(),
+        });
+        let seen = Seen { particles, laws };
         let (root, pore_water) = (self.folder.root(), case.has_pore_water());
-        let drawn = pictures::InSpace::new(root, &case.title, pore_water, seen, bodies);
+        let drawn = pictures::InSpace::new(
+            root,
+            &case.title,
+            pore_water,
+            seen,
+            bodies.collect(),
+            &edges,
+        );
         let condition = state.controls.water.and_then(|k| case.water.get(k));
         let drawn = drawn.with_water(
             condition

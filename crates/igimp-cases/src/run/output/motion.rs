@@ -1,11 +1,10 @@
 //! What stages that move in time have beside the others: frames with times, and the picture of their energy.
 
-use igimp_model::{Case, Every, Stage, StageKind};
+use igimp_model::{Case, Every, StageKind};
 use igimp_report::pictures::{self, Shown};
 use igimp_results::paraview::frames::Scene;
-use igimp_results::summary::{FigureNote, StageSummary};
+use igimp_results::summary::FigureNote;
 
-use super::moment::AcceptedStep;
 use super::records::Records;
 use super::{Output, outlines};
 use crate::error::CaseError;
@@ -68,42 +67,4 @@ pub(super) fn shown<const D: usize>(case: &Case<D>, number: usize, state: &State
         StageKind::Dynamic(_) => shown.at_time(state.controls.time),
         _ => shown,
     }
-}
-
-/// Whether an accepted step has a frame: of those that are counted, every so many, or as many as make a film.
-pub(super) fn has_frame<const D: usize>(
-    every: Every,
-    stage: &Stage,
-    summary: &StageSummary,
-    taken: &AcceptedStep<'_, D>,
-) -> bool {
-    let report = &taken.accepted.report;
-    let number = frame_number(stage, summary, taken);
-    let most = stage.kind.film_frames();
-    let is_every = |every: usize| number.is_some_and(|own| own.is_multiple_of(every.max(1)));
-    match every {
-        Every::Never | Every::Stage => false,
-        Every::Steps(every) => is_every(every),
-        Every::Film if report.energy.is_some() => is_every(stage.steps.div_ceil(most)),
-        Every::Film => {
-            let place = |share: f64| (most as f64 * share + 1e-6).floor();
-            place(report.to) > place(report.from)
-        }
-    }
-}
-
-/// The number of an accepted step among those that frames are counted by: of a stage that takes time the parts of its duration
-/// that steps land on, else all.
-fn frame_number<const D: usize>(
-    stage: &Stage,
-    summary: &StageSummary,
-    taken: &AcceptedStep<'_, D>,
-) -> Option<usize> {
-    let report = taken.accepted.report;
-    if report.energy.is_none() {
-        return Some(summary.steps);
-    }
-    let part = report.to * stage.steps as f64;
-    let lands = (part - part.round()).abs() < 1e-6;
-    lands.then_some(part.round() as usize)
 }

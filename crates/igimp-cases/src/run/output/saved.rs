@@ -46,6 +46,7 @@ impl<const D: usize> Output<D> {
             free_fields: Vec::new(),
             convergence_rows: self.convergence.len(),
             frames: self.frames.len(),
+            film: self.film,
             steps: self.steps,
             stage: None,
             controls: controls.clone(),

@@ -1,27 +1,42 @@
-//! A slope that does not stand under its weight. Where nothing but searches follow, its factor of safety is still asked for: they
-//! raise gravity anew on undeformed bodies, at strengths that hold them (theory, eqs. 31 to 34).
+//! A slope that does not stand under its weight. Searches that follow still ask for its factor of safety: they raise gravity
+//! anew on undeformed bodies, at strengths that hold them (theory, eqs. 31 to 34), with the loads, the water and the shares of
+//! gravity of stages between. Other stages have no body to begin with.
 
-use igimp_model::{Case, ReductionPath, StageKind, StrengthReduction};
+use igimp_model::{Case, ReductionPath, StrengthReduction};
 use igimp_results::ending::EndReason;
 use igimp_results::summary::{SafetySummary, StageOutcome, StageSummary};
 use igimp_text::short;
 
 use super::loading::target;
+use crate::fallen::{answered, asks, has_fallen, stands_on};
 use crate::run::session::Session;
-use crate::run::state::State;
+use crate::run::state::{Controls, State};
 
-/// Whether a stage raises gravity and searches alone follow, so that want of equilibrium in it is an answer: F < 1.
-/// Rigid bodies and reinforcement stand elsewhere on undeformed bodies: with them nothing is raised anew.
-pub(crate) fn is_answered<const D: usize>(case: &Case<D>, number: usize) -> bool {
-    let stages = &case.stages;
-    let searches = |kind: &StageKind| matches!(kind, StageKind::StrengthReduction(_));
-    matches!(stages[number].kind, StageKind::Gravity { .. })
-        && case.rigid.is_empty()
-        && stages.iter().all(|stage| stage.install.is_empty())
-        && number + 1 < stages.len()
-        && stages[number + 1..]
-            .iter()
-            .all(|stage| searches(&stage.kind))
+/// The summary of a stage that has no body to begin with, as that of a stage before did not stand.
+pub(crate) fn passed_over<const D: usize>(
+    session: &Session<'_, D>,
+    number: usize,
+) -> Option<StageSummary> {
+    let (case, stages) = (session.model.case, &session.summary.stages);
+    let fell =
+        (0..number).find(|&of| has_fallen(case, stages, of) && stands_on(case, of, number))?;
+    if asks(case, fell, number) {
+        return None;
+    }
+    let cause = format!(
+        "the body of stage \"{}\" does not stand under its weight",
+        case.stages[fell].name
+    );
+    let beyond = None;
+    let reason = EndReason::NoEquilibrium { beyond, cause };
+    Some(StageSummary {
+        name: case.stages[number].name.clone(),
+        kind: case.stages[number].kind.name().to_owned(),
+        outcome: StageOutcome::NotConverged,
+        code: reason.code().to_owned(),
+        reason: reason.to_string(),
+        ..StageSummary::default()
+    })
 }
 
 /// What is said of it.
@@ -33,7 +48,7 @@ pub(crate) fn remark(summary: &StageSummary) -> String {
     )
 }
 
-/// The search of a stage and the state that it begins with, where the stage before it fell.
+/// The search of a stage and the state that it begins with, where the body that it asks for fell.
 pub(crate) fn anew<const D: usize>(
     session: &Session<'_, D>,
     number: usize,
@@ -41,23 +56,28 @@ pub(crate) fn anew<const D: usize>(
     state: &State<D>,
 ) -> Option<(StrengthReduction, State<D>)> {
     let case = session.model.case;
-    let from = case.stages[number].start_from?;
-    let before = session.summary.stages.get(from)?;
-    let cause = String::new();
-    let fell = EndReason::NoEquilibrium {
-        beyond: None,
-        cause,
+    let of = answered(case, &session.summary.stages, number)?;
+    let reduction = StrengthReduction {
+        path: ReductionPath::Gravity,
+        ..reduction.clone()
     };
-    let has_fallen = before.outcome == StageOutcome::Stopped && before.code == fell.code();
-    (has_fallen && is_answered(case, from)).then(|| {
-        let reduction = StrengthReduction {
-            path: ReductionPath::Gravity,
-            ..reduction.clone()
-        };
-        let controls = target(case, &case.stages[from], &state.controls);
-        let body = state.body.clone();
-        (reduction, State { body, controls })
-    })
+    let controls = controls(case, of, case.stages[number].start_from?, &state.controls);
+    let body = state.body.clone();
+    Some((reduction, State { body, controls }))
+}
+
+/// The controls at the end of a stage that goes back to a body that fell, from those with which it did.
+fn controls<const D: usize>(
+    case: &Case<D>,
+    of: usize,
+    number: usize,
+    fallen: &Controls,
+) -> Controls {
+    let stage = &case.stages[number];
+    match stage.start_from {
+        Some(from) if number > of => target(case, stage, &controls(case, of, from, fallen)),
+        _ => target(case, stage, fallen),
+    }
 }
 
 /// A remark where the search finds that the body stands after all.

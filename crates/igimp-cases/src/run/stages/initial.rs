@@ -28,7 +28,7 @@ pub(crate) fn level_ground<const D: usize>(
     let mut fields = (*state.body.particles).clone();
     for particle in 0..fields.x.len() {
         let x = fields.x[particle];
-        let material = case.material_of(fields.law[particle]);
+        let material = &*case.material_of(fields.law[particle]).at(&x, &ground);
         let number = fields.number[particle];
         let [vertical, pond] = match &water {
             None => [-ground.weight_above(&x), 0.0],

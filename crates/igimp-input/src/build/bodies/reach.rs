@@ -8,7 +8,7 @@ use super::sequence::Sequence;
 const MET: f64 = 1e-9;
 
 /// Bodies that are ever there, each by its own extent; none where one is not known.
-fn ever<'a, const D: usize>(
+pub(super) fn ever<'a, const D: usize>(
     bodies: &'a [Option<BodyPart<D>>],
     sequence: &'a Sequence,
 ) -> Option<impl Iterator<Item = &'a BodyPart<D>>> {

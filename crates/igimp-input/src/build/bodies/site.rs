@@ -8,7 +8,7 @@ use igimp_model::{BodyPart, LoadKind};
 
 use crate::build::bodies::sequence::Sequence;
 use crate::build::grid::Frame;
-use crate::geometry::{near_edge, top_edges};
+use igimp_geometry::outline::{near_edge, top_edges};
 
 /// Bodies and grid as far as they were found right.
 pub(crate) struct Site {

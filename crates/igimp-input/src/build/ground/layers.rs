@@ -16,24 +16,26 @@ use igimp_schema::tree::Node;
 use igimp_seepage::Soil;
 use igimp_text::short;
 
+use super::gaps::{self, NARROW};
 use crate::build::Thing;
 use crate::build::bodies::polygon_place;
 use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Site;
 use crate::build::grid::Frame;
-use crate::build::materials::linear_stiffness;
-use crate::geometry::{Facing, facing, largest_run};
+use igimp_geometry::outline::{facing, largest_run};
 
 /// Error of the stress beside a boundary that is worth a warning \[-\].
 const WORTH: f64 = 0.04;
-/// Gaps narrower than this share of the smallest cell are warned of: nodes see soil on both sides \[-\].
-const NARROW: f64 = 1.0;
 /// Cells across a layer that resolve its strength.
 const ENOUGH: f64 = 3.0;
 /// The same across a slope, where its sides cut cells \[-\].
 const ENOUGH_ACROSS_SLOPES: f64 = 4.0;
+/// A body stiffer than its neighbours by this factor hardly yields with them \[-\].
+const FAR_STIFFER: f64 = 50.0;
 /// γH/E beyond which the ground has another shape when its weight acts \[-\].
 const SOFT: f64 = 0.05;
+/// γH/E beyond which displacements are a share of the height, whatever the geometry \[-\].
+const SINKS: f64 = 0.3;
 /// γH/E below which round-off shows in the strains \[-\].
 const STIFF: f64 = 1e-6;
 
@@ -63,6 +65,8 @@ pub(crate) fn check(layers: &Layers<'_>, problems: &mut Problems) {
         return;
     };
     let ground = ground_of(&bodies, &materials);
+    let there = (&bodies[..], layers.site, layers.sequence);
+    gaps::check(layers.own, frame, there, problems);
     let neighbours = check_pairs(layers, frame, (&bodies, &materials, &ground), problems);
     check_thickness(layers, frame, &bodies, &neighbours, problems);
 }
@@ -72,13 +76,16 @@ fn complete<T>(parts: &[Option<T>]) -> Option<Vec<&T>> {
 }
 
 /// The ground of bodies and materials.
-fn ground_of<'a>(bodies: &[&'a BodyPart<2>], materials: &[&'a Material]) -> Ground<2> {
+fn ground_of<'a, const D: usize>(
+    bodies: &[&'a BodyPart<D>],
+    materials: &[&'a Material],
+) -> Ground<D> {
     Ground::new(bodies.iter().map(|body| (*body, materials[body.material])))
 }
 
 /// The modulus of compression without lateral strain at a place, with the water that does not leave.
 fn constrained(material: &Material, place: [f64; 2], ground: &Ground<2>) -> f64 {
-    let nu = material.poisson;
+    let nu = material.at(&place, ground).poisson;
     let soil = material.young_at(&place, ground) * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
     match material.drainage {
         Drainage::Undrained { stiffness, .. } => soil + stiffness.modulus,
@@ -105,7 +112,7 @@ fn is_stronger(own: &Strength, other: &Strength) -> bool {
     }
 }
 
-/// Boundaries within cells and gaps; tells which bodies touch a stiffer one, or one of their own
+/// Boundaries within cells; tells which bodies touch a stiffer one, or one of their own
 /// material, or nothing.
 fn check_pairs(
     layers: &Layers<'_>,
@@ -116,8 +123,8 @@ fn check_pairs(
     let [width, height] = frame.axes.each_ref().map(|axis| axis.extremes()[0]);
     let narrow = NARROW * width.min(height);
     let grid = Root::<2>::grid(layers.tree).ok();
-    let is_fitted =
-        (grid.iter()).any(|own| own.wishes.as_ref().is_ok_and(|own| *own.fit == Fit::Layers));
+    let fit = (grid.as_ref()).and_then(|own| Some(**own.wishes.as_ref().ok()?.fit.as_ref()?));
+    let is_fitted = matches!(fit, Some(Fit::Layers | Fit::All));
     let is_shared = (grid.iter()).any(|own| {
         own.mixed_cells
             .as_ref()
@@ -131,13 +138,7 @@ fn check_pairs(
             }
             let pieces = facing(a.polygon(), b.polygon(), narrow);
             let place = layers.own[second].as_ref().map(polygon_place);
-            let gap = pieces.iter().find(|piece| {
-                piece.distance > layers.site.round_off && !layers.site.is_inside(None, piece.middle)
-            });
             let names = [&a.name, &b.name].map(|name| clip(name, 40));
-            if let Some(gap) = gap {
-                warn_of_gap(gap, &names, Report { place, problems });
-            }
             let middle = pieces.first().map_or([0.0; 2], |piece| piece.middle);
             let moduli = [a, b].map(|body| constrained(materials[body.material], middle, ground));
             let mut touching = pieces
@@ -183,18 +184,6 @@ fn check_pairs(
     neighbours
 }
 
-fn warn_of_gap(gap: &Facing, [a, b]: &[String; 2], report: Report<'_>) {
-    let Report { place, problems } = report;
-    let text = format!(
-        "a gap of {} m parts body `{b}` from body `{a}` at {}",
-        short(gap.distance),
-        point(gap.middle)
-    );
-    problems
-        .warning(place, text)
-        .help("bodies closer than a cell stick together: let them share the edge, or leave a cell between them");
-}
-
 /// Whether water flows through two soils as they consolidate, and through one much faster.
 fn unlike_for_water(soils: [&Material; 2]) -> bool {
     let flows = |own: &Material| matches!(own.drainage, Drainage::Undrained { flows: true, .. });
@@ -213,6 +202,8 @@ struct Neighbours {
     has_any: bool,
     has_stiffer: bool,
     has_same: bool,
+    /// Bodies of soil that yields, and is far softer than itself.
+    far_softer: usize,
 }
 
 impl Neighbours {
@@ -221,6 +212,9 @@ impl Neighbours {
         self.has_any = true;
         self.has_stiffer |= its > mine || is_stronger(&other.strength, &own.strength);
         self.has_same |= std::ptr::eq(own, other);
+        let never_yields = own.strength == Strength::Elastic || mine > FAR_STIFFER * its;
+        let is_soil = other.strength != Strength::Elastic;
+        self.far_softer += usize::from(never_yields && mine > its && is_soil);
     }
 }
 
@@ -350,7 +344,21 @@ fn width_across_slants(outline: &[[f64; 2]]) -> f64 {
     widths.fold(f64::INFINITY, f64::min)
 }
 
-/// Warns of bodies thinner than three cells, across a slope than four, that are alone, or softer or weaker than what they touch.
+/// The thinnest run of a body along an axis that does not span the grid: in cells, the axis, and its ends \[m\].
+fn thinnest(site: &Site, frame: &Frame<2>, outline: &[[f64; 2]]) -> Option<(f64, usize, [f64; 2])> {
+    let runs = [0, 1].into_iter().filter_map(|axis| {
+        let [from, to] = largest_run(outline, axis);
+        let spans =
+            from <= frame.lower[axis] + site.round_off && to >= frame.upper[axis] - site.round_off;
+        let own = &frame.axes[axis];
+        let is_single = own.cells() == 1;
+        (!spans && !is_single).then(|| (own.place(to) - own.place(from), axis, [from, to]))
+    });
+    runs.min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// Warns of bodies thinner than three cells, across a slope than four, that are alone, or softer or weaker than the soil that
+/// they touch; and of upright ones with soil on both sides that never yield.
 fn check_thickness(
     layers: &Layers<'_>,
     frame: &Frame<2>,
@@ -359,46 +367,38 @@ fn check_thickness(
     problems: &mut Problems,
 ) {
     for (index, body) in bodies.iter().enumerate() {
-        let Neighbours {
-            has_any,
-            has_stiffer,
-            has_same,
-        } = neighbours[index];
-        if has_same || has_any && !has_stiffer {
+        let own = &neighbours[index];
+        let thin = thinnest(layers.site, frame, body.polygon());
+        let thin = thin.filter(|(cells, ..)| *cells < ENOUGH - 1e-6);
+        let place = layers.own[index].as_ref().map(polygon_place);
+        let name = clip(&body.name, 40);
+        if let Some((cells, 0, ends)) = thin
+            && own.far_softer > 0
+            && !own.has_stiffer
+            && is_between_soil(layers, index, ends)
+        {
+            warn_of_wall(&name, cells, Report { place, problems });
             continue;
         }
-        let thinnest = [0, 1]
-            .into_iter()
-            .filter_map(|axis| {
-                let [from, to] = largest_run(body.polygon(), axis);
-                let spans = from <= frame.lower[axis] + layers.site.round_off
-                    && to >= frame.upper[axis] - layers.site.round_off;
-                let own = &frame.axes[axis];
-                let is_single = own.cells() == 1;
-                (!spans && !is_single).then(|| (own.place(to) - own.place(from), to - from))
-            })
-            .min_by(|a, b| a.0.total_cmp(&b.0));
+        if own.has_same || own.has_any && !own.has_stiffer {
+            continue;
+        }
         let [width, height] = frame.axes.each_ref().map(|axis| axis.extremes()[0]);
         let across = width_across_slants(body.polygon());
         let slanting = (across / width.min(height), across);
-        let (told, needed, (cells, thickness)) =
-            match thinnest.filter(|(cells, _)| *cells < ENOUGH - 1e-6) {
-                Some(thinnest) => ("where three are needed", ENOUGH, thinnest),
-                None if slanting.0 < ENOUGH_ACROSS_SLOPES => (
-                    "across its slope, where four are needed",
-                    ENOUGH_ACROSS_SLOPES,
-                    slanting,
-                ),
-                None => continue,
-            };
+        let (told, needed, (cells, thickness)) = match thin {
+            Some((cells, _, [from, to])) => ("where three are needed", ENOUGH, (cells, to - from)),
+            None if slanting.0 < ENOUGH_ACROSS_SLOPES => (
+                "across its slope, where four are needed",
+                ENOUGH_ACROSS_SLOPES,
+                slanting,
+            ),
+            None => continue,
+        };
         problems
             .warning(
-                layers.own[index].as_ref().map(polygon_place),
-                format!(
-                    "body `{}` is {} cells thick, {told}",
-                    clip(&body.name, 40),
-                    short(cells)
-                ),
+                place,
+                format!("body `{name}` is {} cells thick, {told}", short(cells)),
             )
             .help("neither its bending nor sliding along it is resolved")
             .help(format!(
@@ -406,6 +406,33 @@ fn check_thickness(
                 short(thickness / needed)
             ));
     }
+}
+
+/// Whether soil lies on the left and on the right of a body, somewhere along its height.
+fn is_between_soil(layers: &Layers<'_>, body: usize, [from, to]: [f64; 2]) -> bool {
+    let (lower, upper) = bounding_box(&layers.site.polygons[body]);
+    let off = 1e-3 * (to - from);
+    [from - off, to + off].iter().all(|&x| {
+        (0..8).any(|k| {
+            let y = lower[1] + (f64::from(k) + 0.5) / 8.0 * (upper[1] - lower[1]);
+            layers.site.is_inside(None, [x, y])
+        })
+    })
+}
+
+fn warn_of_wall(name: &str, cells: f64, report: Report<'_>) {
+    let Report { place, problems } = report;
+    let thick = match short(cells).as_str() {
+        "1" => "1 cell".to_owned(),
+        other => format!("{other} cells"),
+    };
+    problems
+        .warning(
+            place,
+            format!("body `{name}` is {thick} thick with soil on both sides, and hardly yields"),
+        )
+        .help("soil sticks to it in the cells that both share: nothing slides along it, its bending is not resolved, and a factor of safety is too high")
+        .help("a wall that soil slides along is a [[rigid]] body; one that bends has three cells across it, and a body of weaker soil along each face");
 }
 
 /// Whether weight is raised on a geometry that moves and a factor of safety is looked for: it is then that of the shape
@@ -422,15 +449,21 @@ fn searched_in_another_shape(stages: &[Option<Stage>]) -> bool {
         && stages().any(|stage| raises(stage) && stage.geometry == Geometry::Moving)
 }
 
+/// Whether weight is raised on the given geometry, where displacements are told as if they were small.
+fn raises_on_given(stages: &[Option<Stage>]) -> bool {
+    stages.iter().flatten().any(|stage| {
+        matches!(stage.kind, StageKind::Gravity { .. }) && stage.geometry == Geometry::Given
+    })
+}
+
 /// Warns of materials whose stiffness is out of proportion to the weight.
-pub(crate) fn check_stiffness(
-    layers: &Layers<'_>,
+pub(crate) fn check_stiffness<const D: usize>(
+    (tree, bodies, materials): (&Node, &[Option<BodyPart<D>>], &[Option<Material>]),
     stages: &[Option<Stage>],
     gravity: Option<f64>,
     problems: &mut Problems,
 ) {
-    let (Some(bodies), Some(materials)) = (complete(layers.bodies), complete(layers.materials))
-    else {
+    let (Some(bodies), Some(materials)) = (complete(bodies), complete(materials)) else {
         return;
     };
     let kinds = || stages.iter().flatten().map(|stage| &stage.kind);
@@ -445,58 +478,80 @@ pub(crate) fn check_stiffness(
         return;
     }
     let ground = ground_of(&bodies, &materials);
-    let levels = |body: &BodyPart<2>| {
-        let (lower, upper) = bounding_box(body.polygon());
-        [lower[1], upper[1]]
+    let levels = |body: &BodyPart<D>| {
+        let (lower, upper) = body.region.bounds();
+        [lower[D - 1], upper[D - 1]]
     };
     let top = bodies
         .iter()
         .map(|body| levels(body)[1])
         .fold(f64::MIN, f64::max);
-    let stated = Root::<2>::materials(layers.tree).map_or_else(|_| Vec::new(), |own| own.value.0);
+    let stated = Root::<D>::materials(tree).map_or_else(|_| Vec::new(), |own| own.value.0);
     for (index, material) in materials.iter().enumerate() {
         let own = bodies.iter().filter(|body| body.material == index);
         let Some(body) = own.min_by(|a, b| levels(a)[0].total_cmp(&levels(b)[0])) else {
             continue;
         };
         let lowest = levels(body)[0];
-        let (lower, upper) = bounding_box(body.polygon());
-        let middle = [0.5 * (lower[0] + upper[0]), 0.5 * (top + lowest)];
+        let (lower, upper) = body.region.bounds();
+        let mut middle: [f64; D] = std::array::from_fn(|axis| 0.5 * (lower[axis] + upper[axis]));
+        middle[D - 1] = 0.5 * (top + lowest);
         let weight = material.unit_weight_at(&middle, &ground);
         let young = material.young_at(&middle, &ground);
         let ratio = weight * (top - lowest) / young;
         let own = stated.get(index).and_then(|own| own.value.as_ref().ok());
-        let place = (own.and_then(|own| linear_stiffness(&own.form)))
+        let place = (own.and_then(|own| own.form.stiffness()))
             .and_then(|own| own.young.as_ref().ok())
             .map(|own| own.place);
-        let name = clip(&material.name, 40);
-        if ratio > SOFT && changes_shape && material.strength != Strength::Elastic {
-            problems
-                .warning(
-                    place,
-                    format!("`{name}` is soft: unit_weight * height / young = {}", short(ratio)),
-                )
-                .help(
-                    "on a geometry that moves weight changes the shape of the ground, and the factor of safety is that of the new shape",
-                )
-                .help(format!(
-                    "geometry = \"given\" in the stages that raise weight keeps the shape; so does young from {} kPa on",
-                    short(1e-3 * young * ratio / SOFT)
-                ));
-        } else if ratio > 0.0 && ratio < STIFF {
-            problems
-                .warning(
-                    place,
-                    format!(
-                        "`{name}` is stiff: unit_weight * height / young = {}",
-                        short(ratio)
-                    ),
-                )
-                .help("its strains are so small that round-off shows in the residual")
-                .help(format!(
-                    "young of {} kPa or less is stiff enough for any soil or rock",
-                    short(1e-3 * young * ratio / STIFF)
-                ));
-        }
+        let shape = [changes_shape, raises_on_given(stages)]
+            .map(|own| own && material.strength != Strength::Elastic);
+        let report = Report { place, problems };
+        warn_of_stiffness(material, (young, ratio, top - lowest), shape, report);
+    }
+}
+
+/// Warns of a Young's modulus \[Pa\] by its ratio γH/E and the height \[m\], where weight changes the shape, and where it acts on the
+/// given one.
+fn warn_of_stiffness(
+    material: &Material,
+    (young, ratio, height): (f64, f64, f64),
+    [changes_shape, is_given]: [bool; 2],
+    Report { place, problems }: Report<'_>,
+) {
+    let name = clip(&material.name, 40);
+    let kpa_at = |bound: f64| short(1e-3 * young * ratio / bound);
+    let told = |what: &str| {
+        let ratio = short(ratio);
+        format!("`{name}` is {what}: unit_weight * height / young = {ratio}")
+    };
+    if ratio > SOFT && changes_shape {
+        problems
+            .warning(place, told("soft"))
+            .help(
+                "on a geometry that moves weight changes the shape of the ground, and the factor of safety is that of the new shape",
+            )
+            .help(format!(
+                "geometry = \"given\" in the stages that raise weight keeps the shape; so does young from {} kPa on",
+                kpa_at(SOFT)
+            ));
+    } else if ratio > SINKS && is_given {
+        problems
+            .warning(place, told("soft"))
+            .help(format!(
+                "on the given geometry weight sinks it by some {} m, and displacements are those of small strain; the factor of safety does not follow it",
+                short(0.5 * ratio * height)
+            ))
+            .help(format!(
+                "soil has a young of 1 MPa or more; from {} kPa on the ratio is below {SINKS}",
+                kpa_at(SINKS)
+            ));
+    } else if ratio > 0.0 && ratio < STIFF {
+        problems
+            .warning(place, told("stiff"))
+            .help("its strains are so small that round-off shows in the residual")
+            .help(format!(
+                "young of {} kPa or less is stiff enough for any soil or rock",
+                kpa_at(STIFF)
+            ));
     }
 }

@@ -10,7 +10,7 @@ use igimp_schema::tree::read::Either;
 
 use super::Bearing;
 use crate::build::bodies::site::Solids;
-use crate::geometry::{distinct, self_crossing};
+use igimp_geometry::outline::{distinct, self_crossing};
 
 /// Places along each side of a loaded rectangle at which soil is looked for.
 const SAMPLES: usize = 7;

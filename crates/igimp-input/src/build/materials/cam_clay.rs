@@ -1,119 +1,103 @@
 //! Modified Cam-clay: its parameters from what a file states.
 
-use igimp_material::{CamClayParameters, ConstitutiveModel, ModifiedCamClay, ShearStiffness};
-use igimp_model::Strength;
-use igimp_schema::diagnostic::Problems;
+use igimp_material::{CamClayParameters, ShearStiffness};
+use igimp_model::{Strength, critical_ratio_of};
 use igimp_schema::schema::materials::CamClay;
-use igimp_schema::text::number;
-use igimp_schema::tree::read::At;
+use igimp_schema::source::Place;
 
-/// M of a friction angle of 90°, in triaxial compression \[-\]: along q = M p the stress at the sides is zero.
-const STEEPEST: f64 = 3.0;
+use super::parameters::{ANGLE, Limit, NUMBER, NUMBER_OR_NONE, OCR, Parameters, STRESS, Stated};
+use super::profiles::Terms;
+
+/// M of a friction angle of 90° is 3, in triaxial compression: along q = M p the stress at the sides is zero.
+const CRITICAL_RATIO: Limit = (
+    |value| value < 3.0,
+    "`critical_ratio` is below 3, and here it is {}: no friction angle has more in triaxial compression",
+    "M = 6 sin(friction)/(3 - sin(friction)): clay has 0.7 to 1.4",
+);
+const FRICTION: Limit = (
+    |angle| angle.to_degrees() < 89.0,
+    "the friction angle must be below 90 deg",
+    "clay has 18 deg to 35 deg",
+);
+const POISSON: Limit = (
+    |value| value < 0.5,
+    "Poisson's ratio of the skeleton must be below 0.5, but is {}",
+    "clay has 0.2 to 0.35; drainage = \"undrained\" keeps the volume",
+);
 
 /// The law of a table, with slopes of natural volumetric strain.
-pub(super) fn strength(own: &CamClay, problems: &mut Problems) -> Option<Strength> {
+pub(super) fn strength<const D: usize>(
+    own: &CamClay,
+    read: &mut Parameters<'_, '_, D>,
+) -> Option<Strength> {
     let volume = 1.0 + own.void_ratio.as_ref().map_or(0.0, |own| **own);
-    if *own.kappa >= *own.lambda {
-        problems
-            .error(own.kappa.place, "`kappa` has to be smaller than `lambda`")
+    let compression = read.read("lambda", &own.lambda, NUMBER, None);
+    let swelling = read.read("kappa", &own.kappa, NUMBER, None);
+    for key in ["lambda", "kappa"] {
+        read.scale(key, |value| value / volume);
+    }
+    if let (Some(lambda), Some(kappa)) = (compression, swelling)
+        && kappa.most >= lambda.most
+    {
+        read.problems
+            .error(kappa.place, "`kappa` has to be smaller than `lambda`")
             .help("clay swells by a fifth to a tenth of what it was compressed by");
         return None;
     }
-    if *own.ocr < 1.0 {
-        problems
-            .error(own.ocr.place, "`ocr` is 1 or more")
-            .help("normally consolidated clay has ocr = 1.0");
-        return None;
-    }
+    let ocr = read.read("ocr", &own.ocr, NUMBER, Some(OCR));
+    let help = "add friction = \"25 deg\", the angle at the critical state";
+    let critical = [
+        ("friction", &own.friction, ANGLE, Some(FRICTION)),
+        (
+            "critical_ratio",
+            &own.critical_ratio,
+            NUMBER,
+            Some(CRITICAL_RATIO),
+        ),
+    ];
+    let critical_ratio = match one_of(critical, (own.lambda.place, help), read)? {
+        ("friction", angle) => critical_ratio_of(angle),
+        (_, ratio) => ratio,
+    };
+    let help = "add poisson = 0.25: shear stiffness grows with pressure, as the bulk modulus does";
+    let shear = [
+        ("poisson", &own.poisson, NUMBER_OR_NONE, Some(POISSON)),
+        ("shear", &own.shear, STRESS, None),
+    ];
+    let shear = match one_of(shear, (own.kappa.place, help), read)? {
+        ("poisson", ratio) => ShearStiffness::Poisson(ratio),
+        (_, modulus) => ShearStiffness::Constant(modulus),
+    };
     Some(Strength::ModifiedCamClay(CamClayParameters {
-        compression: *own.lambda / volume,
-        swelling: *own.kappa / volume,
-        critical_ratio: critical_ratio(own, problems)?,
-        shear: shear(own, problems)?,
-        overconsolidation: *own.ocr,
+        compression: compression?.most / volume,
+        swelling: swelling?.most / volume,
+        critical_ratio,
+        shear,
+        overconsolidation: ocr?.most,
         reference_pressure: *own.reference_pressure,
     }))
 }
 
-/// Young's modulus and Poisson's ratio at the reference pressure.
-pub(super) fn stiffness(own: CamClayParameters) -> Option<[f64; 2]> {
-    let law = ModifiedCamClay::new(own).ok()?;
-    let bound = law.stiffness_bound();
-    Some([bound.young(), bound.poisson()])
-}
-
-/// M, as it is or from the friction angle at the critical state.
-fn critical_ratio(own: &CamClay, problems: &mut Problems) -> Option<f64> {
-    match (&own.friction, &own.critical_ratio) {
-        (None, Some(ratio)) if **ratio < STEEPEST => Some(**ratio),
-        (None, Some(ratio)) => {
-            let message = format!(
-                "`critical_ratio` is below 3, and here it is {}: no friction angle has more in triaxial compression",
-                number(**ratio)
-            );
-            problems
-                .error(ratio.place, message)
-                .help("M = 6 sin(friction)/(3 - sin(friction)): clay has 0.7 to 1.4");
-            None
-        }
-        (Some(friction), None) if friction.to_degrees() < 89.0 => {
-            Some(6.0 * friction.sin() / (3.0 - friction.sin()))
-        }
-        (Some(friction), None) => {
-            problems
-                .error(friction.place, "the friction angle must be below 90 deg")
-                .help("clay has 18 deg to 35 deg");
-            None
-        }
-        (Some(_), Some(second)) => {
-            both(second, "friction", "critical_ratio", problems);
-            None
-        }
-        (None, None) => {
-            problems
-                .error(
-                    own.lambda.place,
-                    "neither `friction` nor `critical_ratio` is given",
-                )
-                .help("add friction = \"25 deg\", the angle at the critical state");
-            None
+/// The one of two keys that is stated, and its value.
+fn one_of<const D: usize>(
+    keys: [(&'static str, &Option<Stated>, Terms, Option<Limit>); 2],
+    (place, help): (Place, &str),
+    read: &mut Parameters<'_, '_, D>,
+) -> Option<(&'static str, f64)> {
+    let [(one, first, ..), (other, second, ..)] = keys;
+    if let (Some(_), Some(second)) = (first, second) {
+        let message = format!("both `{one}` and `{other}` are given");
+        read.problems
+            .error(second.place, message)
+            .help("keep one of them");
+        return None;
+    }
+    for (key, own, terms, limit) in keys {
+        if let Some(own) = own {
+            return Some((key, read.read(key, own, terms, limit)?.most));
         }
     }
-}
-
-/// The shear modulus, a share of the pressure or a constant.
-fn shear(own: &CamClay, problems: &mut Problems) -> Option<ShearStiffness> {
-    match (&own.poisson, &own.shear) {
-        (Some(poisson), None) if **poisson < 0.5 => Some(ShearStiffness::Poisson(**poisson)),
-        (Some(poisson), None) => {
-            let message = format!(
-                "Poisson's ratio of the skeleton must be below 0.5, but is {}",
-                number(**poisson)
-            );
-            problems
-                .error(poisson.place, message)
-                .help("clay has 0.2 to 0.35; drainage = \"undrained\" keeps the volume");
-            None
-        }
-        (None, Some(shear)) => Some(ShearStiffness::Constant(**shear)),
-        (Some(_), Some(second)) => {
-            both(second, "poisson", "shear", problems);
-            None
-        }
-        (None, None) => {
-            problems
-                .error(own.kappa.place, "neither `poisson` nor `shear` is given")
-                .help("add poisson = 0.25: shear stiffness grows with pressure, as the bulk modulus does");
-            None
-        }
-    }
-}
-
-fn both<T>(second: &At<T>, one: &str, other: &str, problems: &mut Problems) {
-    problems
-        .error(
-            second.place,
-            format!("both `{one}` and `{other}` are given"),
-        )
-        .help("keep one of them");
+    let message = format!("neither `{one}` nor `{other}` is given");
+    read.problems.error(place, message).help(help);
+    None
 }

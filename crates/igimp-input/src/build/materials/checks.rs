@@ -1,57 +1,9 @@
 //! What materials ask of the grid, the stages and the solver.
 
 use igimp_linear::SolverKind;
-use igimp_model::{BodyPart, Case, Material, Profile, Softens, Stage, StageKind};
+use igimp_model::{Case, Material, Softens, Stage, StageKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number};
-
-use super::profiles::Extent;
-
-/// Parts between the least and the greatest friction at whose ends a law is looked at.
-const PARTS: u32 = 16;
-
-/// Why a material has no law on cells of a height \[m\], as the end of a sentence; where friction varies it has to have one from the
-/// least of it to the greatest: stress snaps back first where φ is near 20°.
-pub(crate) fn possible(material: &Material, cell: f64) -> Result<(), String> {
-    let law = (material.law_on(cell)).map_err(|error| format!(": {error}"))?;
-    let (Some(least), Some(greatest)) = (
-        material.profiles.friction.as_ref().and_then(Profile::least),
-        (material.strength.friction_angle()).filter(|own| *own > 0.0),
-    ) else {
-        return Ok(());
-    };
-    for part in 0..PARTS {
-        let share = f64::from(part) / f64::from(PARTS);
-        let friction = least + share * (greatest.tan() - least);
-        // A law that is made anew, as one that is reduced is, looks at its curves.
-        (law.at_friction(friction / greatest.tan()))
-            .and_then(|law| law.map(|law| law.reduced(1.0)).transpose())
-            .map_err(|error| {
-                let degrees = number(friction.atan().to_degrees());
-                format!(" where its friction is {degrees} deg: {error}")
-            })?;
-    }
-    Ok(())
-}
-
-/// The least of the stiffness of soil over its strength, beside that of its material \[-\]: there a curve over plastic strain is
-/// nearest to snap-back. 1 where neither varies, and of soil that is in no body.
-fn least_stiffness_over_strength<const D: usize>(case: &Case<D>, index: usize) -> f64 {
-    let material = &case.materials[index];
-    let ground = case.ground();
-    let bodies: Vec<Option<BodyPart<D>>> = case.bodies.iter().cloned().map(Some).collect();
-    let extent = Extent {
-        name: &material.name,
-        material: index,
-        bodies: &bodies,
-        ground: &ground,
-    };
-    let over = |place: &[f64; D]| {
-        let ratios = material.ratios_at(place, &ground);
-        ratios.stiffness / ratios.strength
-    };
-    (extent.places().iter().map(over)).fold(1.0, f64::min)
-}
 
 /// Refuses strength that varies and softens so fast that stress snaps back where soil is soft beside its strength.
 fn check_where_soft<const D: usize>(
@@ -64,7 +16,7 @@ fn check_where_soft<const D: usize>(
     let Some(mut curves) = material.softening.filter(|_| varies) else {
         return;
     };
-    let least = least_stiffness_over_strength(case, index);
+    let least = case.least_stiffness_over_strength(index);
     if least >= 1.0 {
         return;
     }
@@ -83,7 +35,7 @@ fn check_where_soft<const D: usize>(
         softening: Some(curves),
         ..material.clone()
     };
-    if possible(&asked, cell).is_err() {
+    if asked.possible(cell).is_err() {
         let message = format!(
             "the material `{}` is not possible: where its `young` over its strength is {} of what it is where both are greatest, strength falls faster than elastic stress does, and stress snaps back within the point",
             clip(&material.name, 40),
@@ -95,15 +47,22 @@ fn check_where_soft<const D: usize>(
     }
 }
 
-/// Refuses strength that softens so fast, on the cells of a case, that stress snaps back.
+/// Refuses parameters that make no law at a place, and strength that softens so fast, on the cells of a case, that stress snaps back.
 pub(crate) fn check_on_cells<const D: usize>(case: &Case<D>, problems: &mut Problems) {
     let cell = case.grid.smallest_cell()[D - 1];
+    if problems.errors() == 0
+        && let Err(error) = case.check_laws(cell)
+    {
+        problems
+            .error(None, format!("{error}: {}", error.source))
+            .help("other values there, or layers with a material each");
+    }
     for (index, material) in case.materials.iter().enumerate() {
         check_where_soft(case, (index, cell), problems);
         let Some(curves) = material.softening.filter(|own| own.band_width.is_some()) else {
             continue;
         };
-        if let Err(why) = possible(material, cell) {
+        if let Err(why) = material.possible(cell) {
             let message = format!(
                 "the material `{}` is not possible on cells of {} m, where its strains are times {}{why}",
                 clip(&material.name, 40),

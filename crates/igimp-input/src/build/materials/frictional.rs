@@ -9,6 +9,7 @@ use igimp_schema::schema::materials::{
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::read::{At, Either};
 
+use super::parameters::{ANGLE_OR_NONE, Parameters, STRESS_OR_NONE};
 use super::profiles::{Extent, Property, TABLES, Terms, property};
 use super::{STRENGTH, softening};
 
@@ -20,15 +21,6 @@ const FRICTION: Terms = Terms {
     printed: |value| format!("{} deg", number(value.atan().to_degrees())),
     forms: TABLES,
 };
-
-/// The keys of cohesion and friction, if the model has them.
-pub(super) fn keys_of(model: &Model) -> Option<&Frictional> {
-    match model {
-        Model::MohrCoulomb(Ok(own)) => Some(&own.strength),
-        Model::DruckerPrager(Ok(own)) => Some(&own.strength),
-        _ => None,
-    }
-}
 
 /// Cohesion, and tan φ.
 pub(super) fn properties<const D: usize>(
@@ -64,8 +56,8 @@ fn friction<const D: usize>(
     property(stated, "friction", extent, FRICTION, problems)
 }
 
-/// Refuses undrained soil that dilates as associated flow does; warns of one that dilates.
-pub(super) fn never_fails(model: &Model, problems: &mut Problems) -> Option<()> {
+/// Refuses undrained soil that dilates as associated flow does; warns of one that `dilates`.
+pub(super) fn never_fails(model: &Model, dilates: bool, problems: &mut Problems) -> Option<()> {
     if let Model::MohrCoulomb(Ok(own)) = model
         && let flow = own.flow.as_ref().ok()?
         && **flow == keys::Flow::Davis
@@ -78,11 +70,11 @@ pub(super) fn never_fails(model: &Model, problems: &mut Problems) -> Option<()> 
             .help("leave `flow` out, or model = \"tresca\" with the undrained strength");
         return None;
     }
-    let Some(own) = keys_of(model) else {
+    let Some(own) = model.frictional() else {
         return Some(());
     };
     let dilation = own.dilation.as_ref().ok()?;
-    if **dilation > 0.0 && !softening::ends_dilation(model) {
+    if dilates && !softening::ends_dilation(model) {
         problems
             .warning(
                 dilation.place,
@@ -94,11 +86,10 @@ pub(super) fn never_fails(model: &Model, problems: &mut Problems) -> Option<()> 
 }
 
 /// c, φ and ψ.
-fn angles(
-    name: &str,
+fn angles<const D: usize>(
     own: &Frictional,
     [cohesive, friction]: [Option<&Property>; 2],
-    problems: &mut Problems,
+    read: &mut Parameters<'_, '_, D>,
 ) -> Option<[f64; 3]> {
     let cohesion = cohesive.map(|own| own.constant);
     let friction_varies = friction.is_some_and(|own| own.profile.is_some());
@@ -109,11 +100,12 @@ fn angles(
         (None, _) => None,
         (Some(_), _) => Some(own.constant.atan()),
     });
-    let dilation = own.dilation.as_ref().ok();
+    let stated = own.dilation.as_ref().ok();
+    let dilation = stated.and_then(|own| read.read("dilation", own, ANGLE_OR_NONE, None));
     if let (Some(friction), Some(dilation)) = (friction, dilation)
-        && **dilation > friction * (1.0 + if friction_varies { 1e-12 } else { 0.0 })
+        && dilation.most > friction * (1.0 + if friction_varies { 1e-12 } else { 0.0 })
     {
-        problems
+        read.problems
             .error(
                 dilation.place,
                 "dilation angle is larger than the friction angle",
@@ -123,21 +115,23 @@ fn angles(
     if let (Some(cohesion), Some(friction)) = (cohesion, friction)
         && cohesion == 0.0
     {
-        no_cohesion(name, own, friction, problems)?;
+        no_cohesion(read.extent.name, own, friction, read.problems)?;
     }
-    Some([cohesion?, friction?, (**dilation?).min(friction?)])
+    Some([cohesion?, friction?, dilation?.most.min(friction?)])
 }
 
 /// Drucker–Prager.
-pub(super) fn drucker_prager(
-    name: &str,
+pub(super) fn drucker_prager<const D: usize>(
     own: &DruckerPrager,
     both: [Option<&Property>; 2],
-    problems: &mut Problems,
+    read: &mut Parameters<'_, '_, D>,
 ) -> Option<Strength> {
-    let parameters = angles(name, &own.strength, both, problems);
+    let parameters = angles(&own.strength, both, read);
     let rate = match own.rate.as_ref().ok()? {
-        Some(rate) => Some(inertial(rate, own, both, problems)?),
+        Some(rate) => {
+            let dilates = parameters.is_some_and(|own| own[2] > 0.0);
+            Some(inertial((rate, dilates), own, both, read.problems)?)
+        }
         None => None,
     };
     let [cohesion, friction_angle, dilation_angle] = parameters?;
@@ -156,7 +150,7 @@ pub(super) fn drucker_prager(
 
 /// Friction that grows with the speed of shear, of soil that keeps its volume and has one strength.
 fn inertial(
-    rate: &At<InertialRate>,
+    (rate, dilates): (&At<InertialRate>, bool),
     own: &DruckerPrager,
     both: [Option<&Property>; 2],
     problems: &mut Problems,
@@ -169,7 +163,7 @@ fn inertial(
     let fast = &rate.friction;
     let varies = both.iter().flatten().any(|own| own.profile.is_some());
     let refused = match slow {
-        _ if **dilation > 0.0 => Some((
+        _ if dilates => Some((
             dilation.place,
             "`rate` is of soil that keeps its volume as it flows, and this one dilates",
             "dilation = \"0 deg\", or remove `rate`",
@@ -204,29 +198,31 @@ fn inertial(
 }
 
 /// Mohr–Coulomb.
-pub(super) fn mohr_coulomb(
-    name: &str,
+pub(super) fn mohr_coulomb<const D: usize>(
     own: &MohrCoulomb,
     both: [Option<&Property>; 2],
-    problems: &mut Problems,
+    read: &mut Parameters<'_, '_, D>,
 ) -> Option<Strength> {
     let [cohesive, _] = both;
-    let parameters = angles(name, &own.strength, both, problems);
-    let cutoff = own.tension_cutoff.as_ref().ok()?.as_ref();
+    let parameters = angles(&own.strength, both, read);
+    let cutoff = match own.tension_cutoff.as_ref().ok()? {
+        Some(own) => Some(read.read("tension_cutoff", own, STRESS_OR_NONE, None)?),
+        None => None,
+    };
     let cohesion_varies = cohesive.is_some_and(|own| own.profile.is_some());
-    if let Some(cutoff) = cutoff.filter(|cutoff| cohesion_varies && ***cutoff > 0.0) {
-        problems
+    if let Some(cutoff) = cutoff.filter(|cutoff| cohesion_varies && cutoff.most > 0.0) {
+        read.problems
             .error(
                 cutoff.place,
-                "a constant tension cut-off does not go with a cohesion that varies",
+                "a tension cut-off above zero does not go with a cohesion that varies",
             )
             .help("tension_cutoff = \"0 kPa\", or leave it out: cohesion / tan(friction) limits tension");
         return None;
     }
     if let (Some([cohesion, friction, _]), Some(cutoff)) = (parameters, cutoff) {
         let apex = cohesion / friction.tan();
-        if friction > 0.0 && **cutoff > apex * (1.0 + 1e-12) {
-            problems
+        if friction > 0.0 && cutoff.least > apex * (1.0 + 1e-12) {
+            read.problems
                 .warning(
                     cutoff.place,
                     "this tension cut-off never acts: it lies above the apex of the cone",
@@ -235,6 +231,13 @@ pub(super) fn mohr_coulomb(
                     "apex: cohesion / tan(friction) = {} kPa",
                     number(apex / 1e3)
                 ));
+        } else if friction > 0.0 && cutoff.least > NEARLY_APEX * apex {
+            read.problems
+                .warning(
+                    cutoff.place,
+                    format!("this tension cut-off leaves nearly all of the tension of the cone, {} kPa", number(apex / 1e3)),
+                )
+                .help("soil carries next to no tension: tension_cutoff = \"0 kPa\"; rock carries a tenth of its compressive strength");
         }
     }
     let [cohesion, friction_angle, dilation_angle] = parameters?;
@@ -246,9 +249,12 @@ pub(super) fn mohr_coulomb(
             keys::Flow::Davis => Flow::Davis,
             keys::Flow::Dilation => Flow::Dilation,
         },
-        tension_cutoff: cutoff.map(|cutoff| **cutoff),
+        tension_cutoff: cutoff.map(|cutoff| cutoff.most),
     })
 }
+
+/// Share of the apex of a cone from which on a cut-off takes next to nothing away \[-\].
+const NEARLY_APEX: f64 = 0.8;
 
 /// Refuses soil without cohesion and friction, somewhere or everywhere; warns of soil without cohesion.
 fn no_cohesion(name: &str, own: &Frictional, friction: f64, problems: &mut Problems) -> Option<()> {

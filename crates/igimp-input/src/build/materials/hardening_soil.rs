@@ -1,36 +1,111 @@
 //! Hardening Soil: its parameters from what a file states.
 
 use igimp_material::{HardeningSoil, HardeningSoilParameters};
-use igimp_model::Strength;
-use igimp_schema::diagnostic::Problems;
+use igimp_model::{Strength, jaky};
 use igimp_schema::schema::materials::HardeningSoil as Keys;
 use igimp_schema::text::number;
-use igimp_schema::tree::read::At;
+
+use super::parameters::{
+    ANGLE, ANGLE_OR_NONE, Limit, NUMBER, NUMBER_OR_NONE, OCR, Parameters, STRESS, STRESS_OR_NONE,
+};
+
+const FRICTION: Limit = (
+    |angle| (1.0..80.0).contains(&angle.to_degrees()),
+    "the friction angle is 1 deg to 80 deg",
+    "sands have 28 deg to 45 deg",
+);
+const POISSON: Limit = (
+    |value| value < 0.5,
+    "Poisson's ratio of unloading must be below 0.5",
+    "0.2 is usual; drainage = \"undrained\" keeps the volume",
+);
+const POWER: Limit = (
+    |value| value <= 1.0,
+    "`power` is at most 1",
+    "sand has about 0.5, soft clay 1",
+);
+const FAILURE_RATIO: Limit = (
+    |value| value < 1.0,
+    "`failure_ratio` is below 1",
+    "0.9 is usual",
+);
+const K0_NORMAL: Limit = (
+    |value| value < 1.0,
+    "`k0_normal` is below 1",
+    "1 - sin(friction) is usual",
+);
 
 /// The law of a table.
-pub(super) fn strength(own: &Keys, problems: &mut Problems) -> Option<Strength> {
-    let parameters = HardeningSoilParameters {
-        cohesion: *own.cohesion,
-        friction_angle: *own.friction,
-        dilation_angle: *own.dilation,
-        secant: *own.e50,
-        unloading: own.eur.as_ref().map_or(3.0 * *own.e50, |own| **own),
-        oedometer: own.eoed.as_ref().map_or(*own.e50, |own| **own),
-        poisson: *own.poisson,
-        power: *own.power,
-        reference_pressure: *own.reference_pressure,
-        failure_ratio: *own.failure_ratio,
-        k0_normal: (own.k0_normal.as_ref()).map_or(1.0 - own.friction.sin(), |own| **own),
-        overconsolidation: *own.ocr,
+pub(super) fn strength<const D: usize>(
+    own: &Keys,
+    read: &mut Parameters<'_, '_, D>,
+) -> Option<Strength> {
+    let before = read.problems.errors();
+    let cohesion = read.read("cohesion", &own.cohesion, STRESS_OR_NONE, None);
+    let friction = read.read("friction", &own.friction, ANGLE, Some(FRICTION));
+    let dilation = read.read("dilation", &own.dilation, ANGLE_OR_NONE, None);
+    let secant = read.read("e50", &own.e50, STRESS, None);
+    let mut modulus = |key, stated: &Option<_>, times: f64| {
+        if let Some(stated) = stated {
+            return read.read(key, stated, STRESS, None);
+        }
+        read.follow(key, "e50", |value| times * value);
+        secant.map(|own| own.times(times))
     };
-    let wrong = out_of_range(own, &parameters);
-    for (value, message, help) in &wrong {
-        problems.error(value.place, message.clone()).help(*help);
+    let unloading = modulus("eur", &own.eur, 3.0);
+    let oedometer = modulus("eoed", &own.eoed, 1.0);
+    let poisson = read.read("poisson", &own.poisson, NUMBER_OR_NONE, Some(POISSON));
+    let power = read.read("power", &own.power, NUMBER_OR_NONE, Some(POWER));
+    let failure_ratio = &own.failure_ratio;
+    let failure_ratio = read.read("failure_ratio", failure_ratio, NUMBER, Some(FAILURE_RATIO));
+    let ocr = read.read("ocr", &own.ocr, NUMBER, Some(OCR));
+    let k0_normal = match &own.k0_normal {
+        Some(own) => read.read("k0_normal", own, NUMBER, Some(K0_NORMAL))?.most,
+        None => jaky(friction?.most),
+    };
+    let parameters = HardeningSoilParameters {
+        cohesion: cohesion?.most,
+        friction_angle: friction?.most,
+        dilation_angle: dilation?.most,
+        secant: secant?.most,
+        unloading: unloading?.most,
+        oedometer: oedometer?.most,
+        poisson: poisson?.most,
+        power: power?.most,
+        reference_pressure: *own.reference_pressure,
+        failure_ratio: failure_ratio?.most,
+        k0_normal,
+        overconsolidation: ocr?.most,
+    };
+    is_possible(own, &parameters, (before, read)).map(|()| Strength::HardeningSoil(parameters))
+}
+
+/// Refuses values that go with no others of this soil.
+fn is_possible<const D: usize>(
+    own: &Keys,
+    parameters: &HardeningSoilParameters,
+    (before, read): (usize, &mut Parameters<'_, '_, D>),
+) -> Option<()> {
+    if parameters.dilation_angle > parameters.friction_angle.min(30_f64.to_radians()) {
+        read.problems
+            .error(
+                own.dilation.place,
+                "the dilation angle is no larger than the friction angle and than 30 deg",
+            )
+            .help("dense sand has about friction - 30 deg, loose sand and clay 0 deg");
     }
-    if !wrong.is_empty() {
+    if parameters.unloading <= 2.0 * parameters.secant / (2.0 - parameters.failure_ratio) {
+        read.problems
+            .error(
+                own.eur.as_ref().unwrap_or(&own.e50).place,
+                "`eur` has to be larger than 2 e50/(2 - failure_ratio), the initial stiffness of the hyperbola",
+            )
+            .help("soils have three to five times e50");
+    }
+    if read.problems.errors() > before {
         return None;
     }
-    if HardeningSoil::new(parameters).is_err() {
+    if HardeningSoil::new(*parameters).is_err() {
         let stated = own.eoed.as_ref().or(own.k0_normal.as_ref());
         let message = format!(
             "no cap gives an oedometer modulus of {} MPa at a ratio of stresses of {} beside `e50` = {} MPa",
@@ -38,81 +113,10 @@ pub(super) fn strength(own: &Keys, problems: &mut Problems) -> Option<Strength> 
             number(parameters.k0_normal),
             number(1e-6 * parameters.secant)
         );
-        problems
+        read.problems
             .error(stated.unwrap_or(&own.e50).place, message)
             .help("eoed is about e50 in sand and half of it in clay; k0_normal about 1 - sin(friction)");
         return None;
     }
-    Some(Strength::HardeningSoil(parameters))
-}
-
-/// The values that no soil has, with what to say.
-fn out_of_range<'a>(
-    own: &'a Keys,
-    parameters: &HardeningSoilParameters,
-) -> Vec<(&'a At<f64>, String, &'static str)> {
-    let HardeningSoilParameters {
-        secant,
-        unloading,
-        failure_ratio,
-        ..
-    } = *parameters;
-    let mut wrong = Vec::new();
-    let mut check = |holds: bool, value: &'a At<f64>, message: &str, help: &'static str| {
-        if !holds {
-            wrong.push((value, message.to_owned(), help));
-        }
-    };
-    let degrees = own.friction.to_degrees();
-    check(
-        (1.0..80.0).contains(&degrees),
-        &own.friction,
-        "the friction angle is 1 deg to 80 deg",
-        "sands have 28 deg to 45 deg",
-    );
-    check(
-        *own.dilation <= own.friction.min(30_f64.to_radians()),
-        &own.dilation,
-        "the dilation angle is no larger than the friction angle and than 30 deg",
-        "dense sand has about friction - 30 deg, loose sand and clay 0 deg",
-    );
-    check(
-        *own.poisson < 0.5,
-        &own.poisson,
-        "Poisson's ratio of unloading must be below 0.5",
-        "0.2 is usual; drainage = \"undrained\" keeps the volume",
-    );
-    check(
-        *own.power <= 1.0,
-        &own.power,
-        "`power` is at most 1",
-        "sand has about 0.5, soft clay 1",
-    );
-    check(
-        *own.failure_ratio < 1.0,
-        &own.failure_ratio,
-        "`failure_ratio` is below 1",
-        "0.9 is usual",
-    );
-    check(
-        *own.ocr >= 1.0,
-        &own.ocr,
-        "`ocr` is 1 or more",
-        "normally consolidated soil has ocr = 1.0",
-    );
-    if let Some(ratio) = &own.k0_normal {
-        check(
-            **ratio < 1.0,
-            ratio,
-            "`k0_normal` is below 1",
-            "1 - sin(friction) is usual",
-        );
-    }
-    check(
-        *own.failure_ratio >= 1.0 || unloading > 2.0 * secant / (2.0 - failure_ratio),
-        own.eur.as_ref().unwrap_or(&own.e50),
-        "`eur` has to be larger than 2 e50/(2 - failure_ratio), the initial stiffness of the hyperbola",
-        "soils have three to five times e50",
-    );
-    wrong
+    Some(())
 }

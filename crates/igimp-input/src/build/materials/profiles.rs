@@ -11,10 +11,12 @@ use igimp_schema::text::{clip, number, point};
 use igimp_schema::tree::read::{At, Either};
 
 use tables::{FORMS, Form, stated};
-pub(crate) use tables::{TABLES, points, reach};
+pub(crate) use tables::{FORMS_OF_ALL, TABLES, points, reach};
 
 /// A property of a material as a case file states it.
 pub(crate) struct Property {
+    /// The least value in the soil.
+    pub(crate) least: f64,
     /// Its constant: the greatest value in the soil where it varies.
     pub(crate) constant: f64,
     /// How it varies, if it does.
@@ -68,29 +70,8 @@ impl<'a, const D: usize> Extent<'a, D> {
         let depths = depths.reduce(union)?;
         Some(depths.map(|depth| (depth * 1e6).round() / 1e6))
     }
-
-    /// Places all over its soil.
-    pub(super) fn places(&self) -> Vec<[f64; D]> {
-        let edges = (self.of_material()).map(|body| self.ground.places(&*body.region));
-        let mut places: Vec<[f64; D]> = edges.flatten().collect();
-        let ends = places.clone();
-        let is_upright = |pair: &&[[f64; D]]| {
-            (0..D - 1).all(|axis| pair[0][axis].total_cmp(&pair[1][axis]).is_eq())
-        };
-        for pair in ends.windows(2).filter(is_upright) {
-            places.extend((1..PARTS).map(|k| {
-                let share = f64::from(k) / f64::from(PARTS);
-                let mut place = pair[0];
-                place[D - 1] += share * (pair[1][D - 1] - pair[0][D - 1]);
-                place
-            }));
-        }
-        places
-    }
 }
 
-/// Parts of an upright line through soil at whose ends a stress is looked at.
-const PARTS: u32 = 32;
 /// A usual stress \[Pa\], for a strength that no soil has.
 const USUAL_STRESS: f64 = 1e5;
 
@@ -220,8 +201,10 @@ pub(crate) fn property<T: Varies, const D: usize>(
 ) -> Option<Property> {
     let value = match &**own {
         Either::First(constant) => {
+            let constant = (terms.kept)(*constant);
             return Some(Property {
-                constant: (terms.kept)(*constant),
+                least: constant,
+                constant,
                 profile: None,
             });
         }
@@ -279,6 +262,7 @@ pub(crate) fn property<T: Varies, const D: usize>(
         return None;
     }
     Some(Property {
+        least: least.value,
         constant: greatest.value,
         profile: Some(profile),
     })
@@ -326,7 +310,8 @@ fn extremes<const D: usize>(profile: &Profile, extent: Extent<'_, D>) -> [Extrem
             })
         }
         Profile::StressShare(share) => {
-            let places = extent.places();
+            let of_body = |body: &BodyPart<D>| extent.ground.places_within(&*body.region);
+            let places: Vec<[f64; D]> = extent.of_material().flat_map(of_body).collect();
             let values = places.iter().map(|place| Extreme {
                 value: profile.at(place, extent.ground),
                 place: format!("at {}", point(*place)),

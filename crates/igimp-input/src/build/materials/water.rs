@@ -9,8 +9,9 @@ use igimp_schema::tree::Wrong;
 use igimp_schema::tree::read::{At, Either};
 use igimp_seepage::{Curve, Soil};
 
+use super::parameters::Varied;
 use super::profiles::{Extent, Property, TABLES, Terms, property};
-use super::{YOUNG, frictional, linear_stiffness};
+use super::{YOUNG, frictional};
 
 /// What may be said of a permeability that varies.
 const PERMEABILITY: Terms = Terms {
@@ -25,26 +26,6 @@ pub(super) struct Permeability {
     pub(super) soil: Soil,
     pub(super) profile: Option<Profile>,
     pub(super) void_law: Option<VoidLaw>,
-}
-
-/// The permeability along the bedding as it is stated, if it is one number.
-pub(super) fn greatest(stated: &At<Either<f64, keys::Permeability>>) -> Option<At<f64>> {
-    let at = |value: f64, place, key_place, written| At {
-        value,
-        place,
-        key_place,
-        written,
-    };
-    match &**stated {
-        Either::First(own) => Some(at(*own, stated.place, stated.key_place, stated.written)),
-        Either::Second(own) => {
-            let along = &own.horizontal;
-            let Either::First(value) = along.value else {
-                return None;
-            };
-            Some(at(value, along.place, along.key_place, along.written))
-        }
-    }
 }
 
 /// The permeability, if the material states one.
@@ -88,7 +69,9 @@ pub(super) fn permeability<const D: usize>(
         PERMEABILITY,
         problems,
     );
-    let Property { constant, profile } = along.ok_or(Wrong)?;
+    let Property {
+        constant, profile, ..
+    } = along.ok_or(Wrong)?;
     let across = own.vertical.as_ref().map_or(constant, |own| **own);
     if own.angle.abs() > 0.0 && (across - constant).abs() <= 1e-12 * constant {
         problems
@@ -172,11 +155,14 @@ pub(super) fn saturated(
 /// Poisson's ratio of undrained soil where the file does not say.
 const UNDRAINED_POISSON: f64 = 0.495;
 
+/// Parameters that the stiffness of a skeleton follows from.
+const OF_STIFFNESS: [&str; 4] = ["poisson", "shear", "kappa", "eur"];
+
 /// What a material does with water.
 pub(super) fn drainage(
     (common, model): (&MaterialCommon, &Model),
-    stiffness: Option<[f64; 2]>,
-    strength: Option<Strength>,
+    (stiffness, strength): (Option<[f64; 2]>, Option<Strength>),
+    varied: &Varied,
     problems: &mut Problems,
 ) -> Option<Drainage> {
     let kind = **common.drainage.as_ref().ok()?.as_ref()?;
@@ -225,7 +211,8 @@ pub(super) fn drainage(
         return None;
     }
     if strength.is_some() {
-        frictional::never_fails(model, problems)?;
+        let dilates = strength.and_then(|own| own.dilation()) > Some(0.0);
+        frictional::never_fails(model, dilates, problems)?;
     }
     if let Some(water) = pore_water {
         softer_than_soil(water, stiffness, problems);
@@ -235,6 +222,16 @@ pub(super) fn drainage(
             stiffness: (**stiffness).into(),
             flows,
         });
+    }
+    let stiffens = |own: &&(&str, _, _)| OF_STIFFNESS.contains(&own.0);
+    if let Some((key, place, _)) = varied.iter().find(stiffens) {
+        let message = format!(
+            "`{key}` of undrained and coupled soil is one number: the stiffness of its pore water follows from it"
+        );
+        problems.error(*place, message).help(
+            "pore_water = \"5.5 GPa\", the water over the porosity, or layers with a material each",
+        );
+        return None;
     }
     let stiffness = stiffness_of_pores(undrained.as_ref(), model, stiffness?, problems)?;
     let stiffness = PoreStiffness {
@@ -272,7 +269,7 @@ fn stiffness_of_pores(
     [young, poisson]: [f64; 2],
     problems: &mut Problems,
 ) -> Option<f64> {
-    let stated = linear_stiffness(model).and_then(|own| own.poisson.as_ref().ok());
+    let stated = model.stiffness().and_then(|own| own.poisson.as_ref().ok());
     let with_water = undrained.map_or(UNDRAINED_POISSON, |own| **own);
     if with_water >= 0.5 || with_water <= poisson {
         let stated = stated.map(|own| own.place);

@@ -5,17 +5,19 @@ use std::sync::Arc;
 use igimp_geometry::polygon::area_and_centroid;
 use igimp_model::{Load, LoadKind, RigidPart, RigidShape};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
 use igimp_schema::schema::rigid::{RigidBody, RigidShape as Form};
 use igimp_schema::schema::stages::Stage;
 use igimp_schema::text::{clip, point};
+use igimp_schema::tree::Node;
 use igimp_schema::tree::read::At;
 
 use super::{Basis, Room, Sides, narrow};
-use crate::build::Thing;
 use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Site;
 use crate::build::grid::Frame;
-use crate::geometry::{distinct, overlap, self_crossing};
+use crate::build::{Thing, things};
+use igimp_geometry::outline::{distinct, overlap, self_crossing};
 
 /// Corners of a circle where it is looked at as a polygon.
 const POINTS_OF_CIRCLE: usize = 90;
@@ -34,7 +36,7 @@ impl Room<2> for Around<'_> {
     }
 
     fn basis(&self, own: &At<RigidBody<2>>, problems: &mut Problems) -> Option<Basis<2>> {
-        let shape = shape(own, &clip(&own.name, 40), self.site, problems);
+        let shape = shape(own, &clip(&own.name, 40), self.site.round_off, problems);
         let stated = own
             .common
             .as_ref()
@@ -85,10 +87,19 @@ fn sides(form: &Form<2>, shape: &RigidShape) -> Sides {
     Sides { count, names }
 }
 
+/// The shapes of the bodies that lines of the grid are fitted to; problems are those of the bodies as they are built.
+pub(crate) fn outlines(tree: &Node) -> Vec<RigidShape> {
+    let all = things(Root::<2>::rigid(tree));
+    let shapes = all.iter().flatten();
+    shapes
+        .filter_map(|own| shape(own, &own.name, 0.0, &mut Problems::default()))
+        .collect()
+}
+
 fn shape(
     own: &At<RigidBody<2>>,
     name: &str,
-    site: &Site,
+    round_off: f64,
     problems: &mut Problems,
 ) -> Option<RigidShape> {
     let mut flat = |place| {
@@ -101,7 +112,7 @@ fn shape(
             let (a, b) = (*own.from, *own.to);
             let [left, bottom] = [a[0].min(b[0]), a[1].min(b[1])];
             let [right, top] = [a[0].max(b[0]), a[1].max(b[1])];
-            if right - left <= site.round_off || top - bottom <= site.round_off {
+            if right - left <= round_off || top - bottom <= round_off {
                 return flat(own.to.place);
             }
             RigidShape::Polygon(vec![
@@ -123,7 +134,7 @@ fn shape(
             let (from, to) = (*own.from, *own.to);
             let along = [to[0] - from[0], to[1] - from[1]];
             let length = along[0].hypot(along[1]);
-            if length <= site.round_off {
+            if length <= round_off {
                 return flat(own.to.place);
             }
             let back = [-along[1], along[0]].map(|x| x / length * *own.thickness);
@@ -133,11 +144,11 @@ fn shape(
         Form::Polygon(own) => {
             let own = &own.as_ref().ok()?.corners;
             let corners: Vec<_> = own.iter().map(|own| **own).collect();
-            let corners = distinct(&corners, site.round_off);
+            let corners = distinct(&corners, round_off);
             if corners.len() < 3 {
                 return flat(own.place);
             }
-            if let Some(at) = self_crossing(&corners, site.round_off) {
+            if let Some(at) = self_crossing(&corners, round_off) {
                 problems.error(
                     own.place,
                     format!("the rigid body `{name}` crosses itself at {}", point(at)),

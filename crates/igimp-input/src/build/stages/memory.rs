@@ -1,7 +1,7 @@
 //! Bodies that come to another material: what the new law does not remember.
 
 use igimp_material::InternalVariable;
-use igimp_model::{Case, Material, StageKind, Strength};
+use igimp_model::{Case, Material, ParameterValue, Profile, StageKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::stages::Construction;
@@ -44,7 +44,7 @@ pub(crate) fn check<const D: usize>(tree: &Node, case: &Case<D>, problems: &mut 
                     .help("that is right of soil that is taken out or treated; a material of the same model keeps what soil remembers");
             }
             if let (Some(stayed), Some(stated)) = (ocr_of(before), ocr_of(after))
-                && (stayed / stated - 1.0).abs() > 1e-12
+                && stayed != stated
             {
                 let message = format!(
                     "`ocr` of `{to}` has no effect on `{shown}`, which keeps its preconsolidation pressure"
@@ -72,11 +72,8 @@ fn forgotten((before, after): (&Material, &Material), cell: f64) -> Vec<String> 
         .collect()
 }
 
-/// The ratio of overconsolidation of a law that has one \[-\].
-fn ocr_of(material: &Material) -> Option<f64> {
-    match &material.strength {
-        Strength::ModifiedCamClay(own) => Some(own.overconsolidation),
-        Strength::HardeningSoil(own) => Some(own.overconsolidation),
-        _ => None,
-    }
+/// The ratio of overconsolidation of a law that has one, and how it varies.
+fn ocr_of(material: &Material) -> Option<(ParameterValue, Option<&Profile>)> {
+    let own = (material.strength.parameters().into_iter()).find(|own| own.key == "ocr")?;
+    Some((own.value, material.profiles.of_parameter("ocr")))
 }

@@ -144,5 +144,5 @@ fn pieces_are_those_of_the_plane() {
         .iter()
         .map(|array| array["name"].as_str().unwrap())
         .collect();
-    assert_eq!(names, ["low", "high", "faces", "lie"]);
+    assert_eq!(names, ["low", "high", "faces", "lie", "moves"]);
 }

@@ -43,13 +43,13 @@ pub(super) fn of(path: &PathSummary) -> Vec<String> {
     if path.end == PathEnd::StillRising {
         let since = match limit::gone_back_from(path, &limit) {
             Some(largest) => format!(
-                "the factor has fallen since on the given geometry: that told is the largest, {}, and after four times the work it is {}",
+                "the factor has fallen since on the given geometry: the value reported is the largest, {}, and after four times the work it is {}",
                 told(&largest),
                 told(&limit)
             ),
             None => format!(
-                "the factor still rises on the given geometry: that told is the one after four times the work, {}, and the last \
-                 doubling of it brought {} %",
+                "the factor still rises on the given geometry: the value reported is that after four times the work, {}, and the last \
+                 doubling of the work brought {} %",
                 told(&limit),
                 short(100.0 * path.rise.unwrap_or(0.0))
             ),
@@ -94,7 +94,7 @@ mod tests {
         }
     }
 
-    /// GOAL: the remark says which equilibrium is told, and whether the factor rose or fell to the last one.
+    /// GOAL: the remark says which equilibrium is reported, and whether the factor rose or fell to the last one.
     /// ORACLE: the interval of the same path: the largest factor of the way is told, by hand 1.05 rising and 1.02 falling.
     #[test]
     fn a_factor_that_falls_is_not_said_to_rise() {
@@ -109,7 +109,7 @@ mod tests {
         assert_eq!(limit::interval(&falling).0, Some(1.02));
         assert!(!told[0].contains("rises"), "{told:?}");
         assert!(
-            told[0].contains("that told is the largest, 1.0200 at 0.01 m, and after four times the work it is 1.0070 at 0.08 m"),
+            told[0].contains("the value reported is the largest, 1.0200 at 0.01 m, and after four times the work it is 1.0070 at 0.08 m"),
             "{told:?}"
         );
     }

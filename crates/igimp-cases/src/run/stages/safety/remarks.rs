@@ -19,6 +19,9 @@ const MOVING: f64 = 0.1;
 /// Cells over the height of a slope below which its factor of safety is not to be trusted on one mesh.
 const ENOUGH: f64 = 10.0;
 
+/// The same of cells by their width, the least along an axis that is level.
+const ENOUGH_COLUMNS: f64 = 5.0;
+
 /// Strips of a cell in which the level of the surface is looked for.
 const STRIPS: f64 = 2.0;
 
@@ -33,7 +36,8 @@ pub(super) fn few_cells<const D: usize>(
     for (k, x) in particles.x.iter().enumerate() {
         let mut strip = [0; D];
         for axis in 0..D - 1 {
-            strip[axis] = (STRIPS * axes[axis].place(x[axis])).floor() as i64;
+            // Points in the middle of a cell lie on the line between its strips.
+            strip[axis] = (STRIPS * axes[axis].place(x[axis]) + 1e-6).floor() as i64;
         }
         let top = axes[D - 1].place(soil_ends(particles, k, D - 1)[1]);
         let highest = surface.entry(strip).or_insert(top);
@@ -41,14 +45,29 @@ pub(super) fn few_cells<const D: usize>(
     }
     let least = surface.values().copied().fold(f64::INFINITY, f64::min);
     let most = surface.values().copied().fold(f64::NEG_INFINITY, f64::max);
-    let cells = most - least;
-    (cells > 1.0 + 1e-6 && cells < ENOUGH * (1.0 - 1e-6)).then(|| {
-        let cells = short(cells);
-        format!(
-            "the slope is {cells} cells high: with fewer than {ENOUGH} cells over the height a factor of safety is several \
-             per cent too high; a study of meshes (--meshes 2) tells by how much"
-        )
-    })
+    let rows = most - least;
+    let level = |place: f64| {
+        let line = place.floor().max(0.0);
+        axes[D - 1].rise(line as usize) + (place - line) * axes[D - 1].last_cell()
+    };
+    let height = level(most) - level(least);
+    let widest = (0..D - 1).map(|axis| axes[axis].extremes()[0]);
+    let columns = height / widest.fold(0.0, f64::max);
+    if rows <= 1.0 + 1e-6 {
+        return None;
+    }
+    let (told, wanted) = if rows < ENOUGH * (1.0 - 1e-6) {
+        (format!("is {} cells high", short(rows)), ENOUGH)
+    } else if columns < ENOUGH_COLUMNS * (1.0 - 1e-6) {
+        let told = format!("is as high as {} cells are wide", short(columns));
+        (told, ENOUGH_COLUMNS)
+    } else {
+        return None;
+    };
+    Some(format!(
+        "the slope {told}: with fewer than {wanted} cells over the height a factor of safety is several per cent too high; a \
+         study of meshes (--meshes 2) tells by how much"
+    ))
 }
 
 /// What a reader has to know about an interval.

@@ -172,6 +172,8 @@ const OCR: Terms = Terms {
     printed: number,
     forms: TABLES,
 };
+/// All forms but those of a strength by stress.
+pub(crate) const FORMS_OF_ALL: &str = "{ at_top = ..., gradient = ... }, { at_surface = ..., gradient = ... }, { levels = [...], values = [...] }, or { raster = ... }";
 /// The forms of properties that have no gradient.
 pub(crate) const TABLES: &str =
     "{ levels = [...], values = [...] }, or { depths = [...], values = [...] }";

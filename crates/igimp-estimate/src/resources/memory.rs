@@ -2,21 +2,21 @@
 
 use igimp_results::summary::MemoryShare;
 
-use igimp_estimate::Estimate;
+use crate::Estimate;
 
 /// Resident memory at the beginning of a run \[MiB\].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Before(Option<f64>);
+pub struct Before(Option<f64>);
 
 impl Before {
     /// Reads it now.
-    pub(crate) fn now() -> Self {
+    pub fn now() -> Self {
         Self(resident_mib("VmRSS:"))
     }
 
     /// What came on top, shared among particles and unknowns as in the model of
-    /// [`estimate`](mod@crate::estimate): one number is measured, and its split is the model's.
-    pub(crate) fn share(self, peak_mib: Option<f64>, size: &Estimate) -> Option<MemoryShare> {
+    /// [`estimate`](fn@crate::estimate): one number is measured, and its split is the model's.
+    pub fn share(self, peak_mib: Option<f64>, size: &Estimate) -> Option<MemoryShare> {
         let used = (peak_mib? - self.0?) * 1_048_576.0;
         let [particle, unknown] = size.per_item;
         let model = particle * size.particles as f64 + unknown * size.unknowns as f64;
@@ -28,7 +28,7 @@ impl Before {
 }
 
 /// Largest resident memory of this process so far \[MiB\].
-pub(crate) fn peak_mib() -> Option<f64> {
+pub fn peak_mib() -> Option<f64> {
     resident_mib("VmHWM:")
 }
 
@@ -42,8 +42,8 @@ fn resident_mib(name: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixture::case;
-    use igimp_estimate::estimate;
+    use crate::estimate;
+    use crate::tests::case;
 
     #[test]
     fn shares_add_up_to_what_was_used() {

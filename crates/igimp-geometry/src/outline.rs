@@ -1,11 +1,11 @@
 //! Plane geometry for the checks of bodies: inside, crossing, overlap, edges that face up.
 
-use igimp_geometry::polygon::{area_and_centroid, bounding_box, edges};
+use crate::polygon::{area_and_centroid, bounding_box, edges};
 
 type Point = [f64; 2];
 
 /// Corners without those that repeat their neighbour.
-pub(super) fn distinct(polygon: &[Point], round_off: f64) -> Vec<Point> {
+pub fn distinct(polygon: &[Point], round_off: f64) -> Vec<Point> {
     let near = |a: Point, b: Point| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) <= round_off;
     let mut corners: Vec<Point> = Vec::with_capacity(polygon.len());
     for &corner in polygon {
@@ -20,7 +20,7 @@ pub(super) fn distinct(polygon: &[Point], round_off: f64) -> Vec<Point> {
 }
 
 /// Whether a point lies within a distance of an edge.
-pub(super) fn near_edge(polygon: &[Point], point: Point, distance: f64) -> bool {
+pub fn near_edge(polygon: &[Point], point: Point, distance: f64) -> bool {
     edge_distance(polygon, point) <= distance
 }
 
@@ -52,7 +52,7 @@ fn crossing(a: (Point, Point), b: (Point, Point), round_off: f64) -> Option<Poin
 }
 
 /// Where a polygon crosses itself.
-pub(super) fn self_crossing(polygon: &[Point], round_off: f64) -> Option<Point> {
+pub fn self_crossing(polygon: &[Point], round_off: f64) -> Option<Point> {
     let edges: Vec<_> = edges(polygon).collect();
     for (k, &a) in edges.iter().enumerate() {
         for &b in &edges[k + 1..] {
@@ -65,7 +65,7 @@ pub(super) fn self_crossing(polygon: &[Point], round_off: f64) -> Option<Point> 
 }
 
 /// How far a point lies from the nearest edge.
-pub(super) fn edge_distance(polygon: &[Point], point: Point) -> f64 {
+pub fn edge_distance(polygon: &[Point], point: Point) -> f64 {
     let distances = edges(polygon).map(|(p, q)| {
         let along = [q[0] - p[0], q[1] - p[1]];
         let to = [point[0] - p[0], point[1] - p[1]];
@@ -81,7 +81,7 @@ pub(super) fn edge_distance(polygon: &[Point], point: Point) -> f64 {
 }
 
 /// A point in the overlap of two polygons, if they share more than an edge.
-pub(super) fn overlap(a: &[Point], b: &[Point], round_off: f64) -> Option<Point> {
+pub fn overlap(a: &[Point], b: &[Point], round_off: f64) -> Option<Point> {
     let ((a_low, a_high), (b_low, b_high)) = (bounding_box(a), bounding_box(b));
     let apart = |axis: usize| {
         a_high[axis] <= b_low[axis] + round_off || b_high[axis] <= a_low[axis] + round_off
@@ -149,18 +149,18 @@ fn shared(a: &[[f64; 2]], b: &[[f64; 2]]) -> Vec<[f64; 2]> {
 
 /// A stretch where two polygons face each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Facing {
+pub struct Facing {
     /// Its ends on the edge of the first polygon.
-    pub(super) ends: [Point; 2],
+    pub ends: [Point; 2],
     /// Half-way between the two.
-    pub(super) middle: Point,
+    pub middle: Point,
     /// How far apart they are there; 0 for a shared edge.
-    pub(super) distance: f64,
+    pub distance: f64,
 }
 
 /// The stretches where edges of two polygons run side by side, their insides on opposite sides, not
 /// further apart than a distance.
-pub(super) fn facing(a: &[Point], b: &[Point], most: f64) -> Vec<Facing> {
+pub fn facing(a: &[Point], b: &[Point], most: f64) -> Vec<Facing> {
     let ((a_low, a_high), (b_low, b_high)) = (bounding_box(a), bounding_box(b));
     let apart =
         |axis: usize| a_high[axis] + most < b_low[axis] || b_high[axis] + most < a_low[axis];
@@ -219,7 +219,7 @@ pub(super) fn facing(a: &[Point], b: &[Point], most: f64) -> Vec<Facing> {
 }
 
 /// The longest stretch of a polygon along an axis.
-pub(super) fn largest_run(polygon: &[Point], axis: usize) -> [f64; 2] {
+pub fn largest_run(polygon: &[Point], axis: usize) -> [f64; 2] {
     let turned: Vec<Point> = if axis == 0 {
         polygon.to_vec()
     } else {
@@ -242,7 +242,7 @@ pub(super) fn largest_run(polygon: &[Point], axis: usize) -> [f64; 2] {
 }
 
 /// Edges of a polygon that have its inside below them: left end, right end.
-pub(super) fn top_edges(polygon: &[Point]) -> Vec<[Point; 2]> {
+pub fn top_edges(polygon: &[Point]) -> Vec<[Point; 2]> {
     let is_counter_clockwise = area_and_centroid(polygon).0 > 0.0;
     edges(polygon)
         .filter_map(|(p, q)| {
@@ -253,7 +253,7 @@ pub(super) fn top_edges(polygon: &[Point]) -> Vec<[Point; 2]> {
 }
 
 /// Whether intervals together cover a range.
-pub(super) fn cover(intervals: &mut [[f64; 2]], from: f64, to: f64, round_off: f64) -> bool {
+pub fn cover(intervals: &mut [[f64; 2]], from: f64, to: f64, round_off: f64) -> bool {
     intervals.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let mut reached = from;
     for interval in intervals.iter() {

@@ -1,46 +1,50 @@
-//! Grid lines where they are wanted: given places, layer boundaries, zones of finer cells.
+//! Grid lines where they are wanted: given places, layer boundaries, sides of rigid bodies, zones of finer cells.
 //!
 //! The wanted size of a cell is that of the grid, or what is finer nearby: a zone, or two lines
 //! closer together than a cell. Away from them it grows so that each cell is `growth` times its
 //! neighbour (theory, eq. 37c). Between two given lines the cells are as near to that as a whole number of them
 //! allows.
 
-use igimp_model::AxisSpec;
+use super::AxisSpec;
 
 /// Steps of the search for places, to the size of a cell.
 const STEPS_PER_CELL: f64 = 64.0;
 /// Layer boundaries closer to a line than this share of the cell stay within it \[-\].
 const TOO_CLOSE: f64 = 0.25;
+/// The lines beside a side of a rigid body are at least so far from others, or on them \[cells\].
+const BESIDE: f64 = 0.55;
 
 /// What is wanted of one direction of the grid.
 #[derive(Clone, Debug)]
-pub(crate) struct WantedLines {
+pub struct WantedLines {
     /// Where the axis begins and ends \[m\].
-    pub(crate) ends: [f64; 2],
+    pub ends: [f64; 2],
     /// Size of a cell where nothing finer is near \[m\].
     pub cell: f64,
     /// Places of lines \[m\].
-    pub(crate) lines: Vec<f64>,
+    pub lines: Vec<f64>,
     /// Layer boundaries, the most important first \[m\].
-    pub(crate) levels: Vec<f64>,
+    pub levels: Vec<f64>,
+    /// Places in the middle of cells, ascending, by rigid body \[m\].
+    pub mid_cell: Vec<Vec<f64>>,
     /// Finer cells.
-    pub(crate) zones: Vec<Zone>,
+    pub zones: Vec<Zone>,
     /// Ratio of neighbouring cells where sizes change \[-\].
-    pub(crate) growth: f64,
+    pub growth: f64,
 }
 
 /// A stretch of finer cells.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Zone {
+pub struct Zone {
     /// Its ends \[m\].
-    pub(crate) ends: [f64; 2],
+    pub ends: [f64; 2],
     /// Size of its cells \[m\].
     pub cell: f64,
 }
 
 impl WantedLines {
     /// The axis, or nothing if it had more than `most` cells.
-    pub(crate) fn axis(&self, most: f64) -> Option<AxisSpec> {
+    pub fn axis(&self, most: f64) -> Option<AxisSpec> {
         let [lower, upper] = self.ends;
         let fixed = self.fixed();
         let cells = (upper - lower) / self.cell;
@@ -77,26 +81,58 @@ impl WantedLines {
         Some(AxisSpec::Lines(lines))
     }
 
-    /// The places that lines go through, ascending: ends, given lines, layer boundaries that are
-    /// not too close to them, and ends of zones that are not too close to those.
+    /// The places that lines go through, ascending: ends, given lines, sides of rigid bodies and layer
+    /// boundaries that are not too close to them, and ends of zones that are not too close to those.
     fn fixed(&self) -> Vec<f64> {
         let [lower, upper] = self.ends;
         let mut fixed = vec![lower, upper];
-        let mut add = |places: &mut dyn Iterator<Item = (f64, f64)>| {
-            for (x, distance) in places {
-                if fixed.iter().all(|other| (x - other).abs() > distance) {
-                    fixed.push(x);
-                }
-            }
-        };
         let size = |x: f64| self.size(&self.zones, x);
-        add(&mut self.lines.iter().map(|&x| (x, 1e-6 * self.cell)));
-        add(&mut self.levels.iter().map(|&x| (x, TOO_CLOSE * size(x))));
+        add(
+            &mut fixed,
+            self.lines.iter().map(|&x| (x, 1e-6 * self.cell)),
+        );
+        for sides in &self.mid_cell {
+            self.add_beside(sides, &mut fixed);
+        }
+        add(
+            &mut fixed,
+            self.levels.iter().map(|&x| (x, TOO_CLOSE * size(x))),
+        );
         let ends = self.zones.iter().flat_map(|zone| zone.ends);
         let inside = ends.filter(|&x| lower < x && x < upper);
-        add(&mut inside.map(|x| (x, 0.5 * size(x))));
+        add(&mut fixed, inside.map(|x| (x, 0.5 * size(x))));
         fixed.sort_by(f64::total_cmp);
         fixed
+    }
+
+    /// Adds the two lines beside each side of a body, where both have room (theory, eq. 37c).
+    fn add_beside(&self, sides: &[f64], fixed: &mut Vec<f64>) {
+        let [lower, upper] = self.ends;
+        let is_within = |x: &&f64| lower < **x && **x < upper;
+        let sides: Vec<f64> = sides.iter().filter(is_within).copied().collect();
+        let (Some(first), Some(last)) = (sides.first(), sides.last()) else {
+            return;
+        };
+        let cells = ((last - first) / self.size(&self.zones, *first)).round();
+        for &side in &sides {
+            let cell = if cells < 1.0 {
+                self.size(&self.zones, side)
+            } else {
+                (last - first) / cells
+            };
+            let lines = [side - 0.5 * cell, side + 0.5 * cell];
+            let is_taken = |x: f64, other: f64| (x - other).abs() <= 1e-6 * cell;
+            let has_room = |x: f64| {
+                lower - 1e-6 * cell <= x
+                    && x <= upper + 1e-6 * cell
+                    && (fixed.iter())
+                        .all(|&other| is_taken(x, other) || (x - other).abs() > BESIDE * cell)
+            };
+            if lines.iter().all(|&x| has_room(x)) {
+                let new = lines.map(|x| (x, 1e-6 * cell));
+                add(fixed, new.into_iter());
+            }
+        }
     }
 
     /// The wanted size of a cell at a place \[m\].
@@ -108,6 +144,15 @@ impl WantedLines {
             zone.cell + slope * distance
         };
         zones.iter().map(of).fold(self.cell, f64::min)
+    }
+}
+
+/// Adds places that are further than their distance from all others.
+fn add(fixed: &mut Vec<f64>, places: impl Iterator<Item = (f64, f64)>) {
+    for (x, distance) in places {
+        if fixed.iter().all(|other| (x - other).abs() > distance) {
+            fixed.push(x);
+        }
     }
 }
 
@@ -165,7 +210,7 @@ fn divide(
 }
 
 /// The largest ratio of neighbouring cells, and the line between them \[-, m\].
-pub(crate) fn largest_jump(axis: &AxisSpec) -> (f64, f64) {
+pub fn largest_jump(axis: &AxisSpec) -> (f64, f64) {
     let lines: Vec<f64> = axis.lines().collect();
     let jumps = lines.windows(3).map(|three| {
         let (below, above) = (three[1] - three[0], three[2] - three[1]);
@@ -186,6 +231,7 @@ mod tests {
             cell: 1.0,
             lines: Vec::new(),
             levels: Vec::new(),
+            mid_cell: Vec::new(),
             zones: Vec::new(),
             growth: 1.3,
         }
@@ -220,6 +266,39 @@ mod tests {
         // 5.5 m in six cells of 0.917 m, or in five of 1.1 m.
         assert_eq!(found.len(), 5 + 6 + 1);
         assert!((found[5] - 4.5).abs() < 1e-15 && (found[1] - 0.9).abs() < 1e-15);
+    }
+
+    /// GOAL: both sides of a body stand in the middle of a cell, wherever the grid lies.
+    #[test]
+    fn sides_stand_in_the_middle_of_cells() {
+        for (place, width) in [(3.0, 2.0), (3.2, 3.0), (4.9, 2.4), (2.7, 4.6)] {
+            let sides = vec![place, place + width];
+            let found = WantedLines {
+                mid_cell: vec![sides.clone()],
+                ..wish()
+            };
+            let axis = found.axis(1e6).unwrap();
+            for side in sides {
+                let share = axis.place(side).fract();
+                assert!((share - 0.5).abs() < 1e-9, "{place} {width}: {share}");
+            }
+            let (jump, _) = largest_jump(&axis);
+            assert!(jump < 1.35, "{place} {width}: {jump}");
+        }
+    }
+
+    /// GOAL: lines that a file gives are kept, and a side that leaves no room has none.
+    #[test]
+    fn given_lines_go_before_sides() {
+        let given = WantedLines {
+            lines: vec![4.3],
+            mid_cell: vec![vec![4.3, 6.7]],
+            ..wish()
+        };
+        let found = lines(&given);
+        assert!(found.contains(&4.3), "{found:?}");
+        let share = given.axis(1e6).unwrap().place(6.7).fract();
+        assert!((share - 0.5).abs() < 1e-9, "{share}");
     }
 
     #[test]

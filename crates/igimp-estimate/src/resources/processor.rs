@@ -4,7 +4,7 @@
 const TICKS: f64 = 100.0;
 
 /// Time of all processors together since the process began \[s\].
-pub(crate) fn seconds() -> Option<f64> {
+pub fn seconds() -> Option<f64> {
     of_stat(&std::fs::read_to_string("/proc/self/stat").ok()?)
 }
 

@@ -1,4 +1,0 @@
-//! What a run takes of the machine.
-
-pub(crate) mod memory;
-pub(crate) mod processor;

@@ -1,0 +1,4 @@
+//! What a run takes of the machine.
+
+pub mod memory;
+pub mod processor;
