@@ -124,8 +124,8 @@ class Stage:
         Accepted steps, corrections in them, steps that were cut.
     seconds : float
         Wall-clock time [s].
-    largest_displacement : float
-        Largest displacement of a particle at the end [m].
+    largest_displacement : float or None
+        Largest displacement of a particle at the end [m]. None for a search, which leaves the body as it was found.
     interval : tuple of float or None
         Of a strength reduction: largest factor found stable, smallest found failed [-].
     details : dict
@@ -140,7 +140,7 @@ class Stage:
     iterations: int
     cuts: int
     seconds: float
-    largest_displacement: float
+    largest_displacement: float | None
     interval: tuple[float | None, float | None] | None
     details: dict[str, Any] = field(repr=False)
 

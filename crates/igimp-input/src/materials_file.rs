@@ -125,7 +125,10 @@ mod tests {
             "materials.clay.kappa=0.3",
             "`kappa` has to be smaller than `lambda`",
         );
-        refused("materials.clay.ocr=0.5", "`ocr` is 1 or more");
+        refused(
+            "materials.clay.ocr=0.5",
+            "`ocr` must be 1 or more, but is 0.5",
+        );
         refused(
             "materials.clay.critical_ratio=1.0",
             "both `friction` and `critical_ratio` are given",
@@ -211,7 +214,10 @@ mod tests {
         clay_of("2.9").unwrap();
         for ratio in ["3.0", "4.0"] {
             let error = clay_of(ratio).unwrap_err().to_string();
-            assert!(error.contains("`critical_ratio` is below 3"), "{error}");
+            assert!(
+                error.contains("`critical_ratio` must be below 3, but is "),
+                "{error}"
+            );
         }
         refused("0.0", "0.1", "soil by total stress has no strength left");
         // c_u falls by 50 kPa × 0.9 over 0.003: 15 MPa, and 3/2 G is 11.5 MPa.

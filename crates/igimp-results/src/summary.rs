@@ -165,7 +165,7 @@ pub struct StageSummary {
     pub seconds: f64,
     /// Time by phase \[s\]: set-up, assembly, factorisation, solution, commit.
     pub phases: [f64; 5],
-    /// Largest particle displacement at the end \[m\].
+    /// Largest particle displacement at the end \[m\]; not a number for a search, which leaves the body as it was found.
     #[serde(deserialize_with = "or_not_a_number")]
     pub largest_displacement: f64,
     /// Share of particles that yielded in the last step \[-\].

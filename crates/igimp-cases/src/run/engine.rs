@@ -263,7 +263,10 @@ impl<const D: usize> Stages<D> {
         }
         summary.seconds = seconds_before + clock.elapsed().as_secs_f64();
         summary.reinforcement = reinforcement::told(session.model.case, state);
-        summary.largest_displacement = largest_displacement(&state.body.particles);
+        // A search leaves the body as it was found.
+        let leaves_body = summary.safety.is_some();
+        let largest = (!leaves_body).then(|| largest_displacement(&state.body.particles));
+        summary.largest_displacement = largest.unwrap_or(f64::NAN);
         if let StageKind::Displacement { .. } = stage.kind {
             summary.settlement = Some(state.controls.settlement);
         }

@@ -222,6 +222,7 @@ fn ranges_hold_for_all_forms_of_a_value() {
         ("materials.clay.unit_weight={ levels = [\"20 m\", \"2 m\"], values = [\"20 N/m3\", \"20 kN/m3\"] }".to_owned(), "unit_weight down to 0.02 kN/m3"),
         ("materials.clay.friction={ levels = [\"20 m\", \"2 m\"], values = [\"0.35 deg\", \"30 deg\"] }".to_owned(), "friction down to 0.35 deg"),
         ("materials.clay.unit_weight=196 kN/m3".to_owned(), "`clay` has unit_weight = 196 kN/m3"),
+        ("materials.clay.young={ levels = [\"20 m\", \"2 m\"], values = [\"40 kPa\", \"60 kPa\"] }".to_owned(), "`clay` has young up to 60 kPa, "),
         ("case.gravity=9.81 mm/s2".to_owned(), "gravity = 0.00981 m/s2"),
         ("case.gravity=9810 m/s2".to_owned(), "gravity = 9810 m/s2"),
         ("case.water_unit_weight=9.81 N/m3".to_owned(), "water_unit_weight = 0.00981 kN/m3 is not that of water"),

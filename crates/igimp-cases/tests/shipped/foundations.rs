@@ -276,7 +276,7 @@ fn dense_sand_footing_resumes_and_refuses() {
         (
             "friction",
             "\"0.5 deg\"",
-            "the friction angle is 1 deg to 80 deg",
+            "the friction angle must be 1 deg to 80 deg, but is ",
         ),
         (
             "dilation",
@@ -284,10 +284,14 @@ fn dense_sand_footing_resumes_and_refuses() {
             "no larger than the friction angle",
         ),
         ("poisson", "0.5", "must be below 0.5"),
-        ("power", "1.2", "`power` is at most 1"),
-        ("failure_ratio", "1.0", "`failure_ratio` is below 1"),
-        ("ocr", "0.9", "`ocr` is 1 or more"),
-        ("k0_normal", "1.0", "`k0_normal` is below 1"),
+        ("power", "1.2", "`power` must be at most 1, but is 1.2"),
+        (
+            "failure_ratio",
+            "1.0",
+            "`failure_ratio` must be below 1, but is 1",
+        ),
+        ("ocr", "0.9", "`ocr` must be 1 or more, but is 0.9"),
+        ("k0_normal", "1.0", "`k0_normal` must be below 1, but is 1"),
         ("eoed", "\"300 MPa\"", "no cap gives an oedometer modulus"),
     ];
     for (key, value, words) in refused {

@@ -19,7 +19,7 @@ use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::materials::{self as keys, MaterialCommon, Model};
 use igimp_schema::text::{clip, number};
-use igimp_schema::tree::read::{At, Either, Found, Named};
+use igimp_schema::tree::read::{At, Either, Named};
 use igimp_schema::tree::{Node, Wrong};
 
 use parameters::{Limit, NUMBER_OR_NONE, Parameters, Varied};
@@ -127,7 +127,11 @@ fn material<const D: usize>(
         || (varied.iter()).any(|own| ["friction", "critical_ratio"].contains(&own.0));
     let k0 = k0(common, strength, friction_varies, problems);
     if problems.errors() == before {
-        plausible::check_stiffness(name, &constants(own), problems);
+        if let (Some(stated), Some(young), Some(strength)) = (linear, &young, &cohesive) {
+            let key = own.form.undrained().map_or("cohesion", |_| "cu");
+            let place = stated.young.as_ref().ok().map(|own| own.place);
+            plausible::check_stiffness(name, (young, place), (key, strength), problems);
+        }
         let varies = cohesive.as_ref().is_some_and(|own| own.profile.is_some()) || friction_varies;
         if let (Some(strength), Some(weight), false) = (strength, unit_weight, varies) {
             check_at_rest(common, strength, weight, extent, problems);
@@ -237,27 +241,6 @@ fn resistance<const D: usize>(
         cohesive,
         friction,
     }
-}
-
-/// The constants of stiffness and strength that a material states, with their keys.
-fn constants(own: &keys::Material) -> Vec<(&'static str, At<f64>)> {
-    fn constant<T>(own: &Found<Either<f64, T>>) -> Option<At<f64>> {
-        own.as_ref().ok()?.first()
-    }
-    let frictional = own.form.frictional();
-    let all = [
-        (
-            "young",
-            own.form.stiffness().and_then(|own| constant(&own.young)),
-        ),
-        ("cu", own.form.undrained().and_then(|own| constant(&own.cu))),
-        (
-            "cohesion",
-            frictional.and_then(|own| constant(&own.cohesion)),
-        ),
-    ];
-    let stated = all.into_iter().filter_map(|(key, own)| Some((key, own?)));
-    stated.collect()
 }
 
 /// Warns of a K₀ that the strength of the bodies of a material does not allow.

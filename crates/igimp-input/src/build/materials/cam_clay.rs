@@ -11,8 +11,8 @@ use super::profiles::Terms;
 /// M of a friction angle of 90° is 3, in triaxial compression: along q = M p the stress at the sides is zero.
 const CRITICAL_RATIO: Limit = (
     |value| value < 3.0,
-    "`critical_ratio` is below 3, and here it is {}: no friction angle has more in triaxial compression",
-    "M = 6 sin(friction)/(3 - sin(friction)): clay has 0.7 to 1.4",
+    "`critical_ratio` must be below 3",
+    "M = 6 sin(friction)/(3 - sin(friction)), which no angle makes 3: clay has 0.7 to 1.4",
 );
 const FRICTION: Limit = (
     |angle| angle.to_degrees() < 89.0,
@@ -21,7 +21,7 @@ const FRICTION: Limit = (
 );
 const POISSON: Limit = (
     |value| value < 0.5,
-    "Poisson's ratio of the skeleton must be below 0.5, but is {}",
+    "Poisson's ratio of the skeleton must be below 0.5",
     "clay has 0.2 to 0.35; drainage = \"undrained\" keeps the volume",
 );
 

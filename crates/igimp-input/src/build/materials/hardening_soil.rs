@@ -11,7 +11,7 @@ use super::parameters::{
 
 const FRICTION: Limit = (
     |angle| (1.0..80.0).contains(&angle.to_degrees()),
-    "the friction angle is 1 deg to 80 deg",
+    "the friction angle must be 1 deg to 80 deg",
     "sands have 28 deg to 45 deg",
 );
 const POISSON: Limit = (
@@ -21,17 +21,17 @@ const POISSON: Limit = (
 );
 const POWER: Limit = (
     |value| value <= 1.0,
-    "`power` is at most 1",
+    "`power` must be at most 1",
     "sand has about 0.5, soft clay 1",
 );
 const FAILURE_RATIO: Limit = (
     |value| value < 1.0,
-    "`failure_ratio` is below 1",
+    "`failure_ratio` must be below 1",
     "0.9 is usual",
 );
 const K0_NORMAL: Limit = (
     |value| value < 1.0,
-    "`k0_normal` is below 1",
+    "`k0_normal` must be below 1",
     "1 - sin(friction) is usual",
 );
 

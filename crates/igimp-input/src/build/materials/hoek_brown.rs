@@ -8,12 +8,12 @@ use super::parameters::{ANGLE_OR_NONE, Limit, NUMBER, NUMBER_OR_NONE, Parameters
 
 const GSI: Limit = (
     |value| value <= 100.0,
-    "`gsi` is at most 100",
+    "`gsi` must be at most 100",
     "intact rock has 100, blocky rock 50 to 70, sheared rock 10 to 30",
 );
 const DISTURBANCE: Limit = (
     |value| value <= 1.0,
-    "`disturbance` is at most 1",
+    "`disturbance` must be at most 1",
     "0 for rock left whole, 0.7 for careful blasting, 1 for blasted slopes",
 );
 const DILATION: Limit = (

@@ -37,13 +37,13 @@ pub(super) const ANGLE_OR_NONE: Terms = Terms {
 /// A parameter as a file states it.
 pub(super) type Stated = At<Either<f64, Keys>>;
 
-/// Values that a parameter may have: which, and what is said of others, with `{}` for the value.
+/// Values that a parameter may have: which, the sentence that the value ends, and help.
 pub(super) type Limit = (fn(f64) -> bool, &'static str, &'static str);
 
 /// A ratio of overconsolidation.
 pub(super) const OCR: Limit = (
     |value| value >= 1.0,
-    "`ocr` is 1 or more",
+    "`ocr` must be 1 or more",
     "normally consolidated soil has ocr = 1.0",
 );
 
@@ -91,7 +91,12 @@ impl<const D: usize> Parameters<'_, '_, D> {
         if let Some((holds, message, help)) = limit
             && let Some(value) = [most, least].into_iter().find(|value| !holds(*value))
         {
-            let message = message.replace("{}", &(terms.printed)(value));
+            let subject = if read.profile.is_some() {
+                "its profile has"
+            } else {
+                "is"
+            };
+            let message = format!("{message}, but {subject} {}", (terms.printed)(value));
             self.problems.error(place, message).help(help);
         }
         let profile = read.profile.map(|profile| (key, place, profile));

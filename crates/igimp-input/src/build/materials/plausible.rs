@@ -1,33 +1,41 @@
-//! Warnings about constant values of a material that do not go together: a strength that no strain reaches, a K₀ beyond it.
+//! Warnings about values of a material that do not go together: a strength that no strain reaches, a K₀ beyond it.
 //! Ranges of single values are a table of `igimp-schema`.
 
 use igimp_model::Strength;
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::read::At;
+
+use super::profiles::Property;
 
 /// Young's modulus of soil over its undrained strength or its cohesion, at least \[-\].
 const LEAST_STIFFNESS: f64 = 10.0;
 
-/// Warns of soil that would have to be strained by tenths before it yields.
-pub(super) fn check_stiffness(name: &str, constants: &[(&str, At<f64>)], problems: &mut Problems) {
-    let of = |key: &str| constants.iter().find(|(own, _)| *own == key);
-    let strength = of("cu").or_else(|| of("cohesion"));
-    let (Some((_, young)), Some((key, strength))) = (of("young"), strength) else {
+/// Warns of soil that would have to be strained by tenths before it yields: by the greatest values where they vary.
+pub(super) fn check_stiffness(
+    name: &str,
+    (young, place): (&Property, Option<Place>),
+    (key, strength): (&str, &Property),
+    problems: &mut Problems,
+) {
+    let (stiff, strong) = (young.constant, strength.constant);
+    let Some(place) = place.filter(|_| stiff < LEAST_STIFFNESS * strong) else {
         return;
     };
-    if **young >= LEAST_STIFFNESS * **strength {
-        return;
-    }
+    let stated = |own: &Property| {
+        let to = if own.profile.is_some() { "up to" } else { "=" };
+        format!("{to} {} kPa", number(own.constant / 1e3))
+    };
     let message = format!(
-        "`{}` has young = {} kPa, {} times its {key} = {} kPa: it hardly yields",
+        "`{}` has young {}, {} times its {key} {}: it hardly yields",
         clip(name, 40),
-        number(**young / 1e3),
-        number(**young / **strength),
-        number(**strength / 1e3)
+        stated(young),
+        number(stiff / strong),
+        stated(strength)
     );
     problems
-        .warning(young.place, message)
+        .warning(place, message)
         .help("soil has 50 to 1000 times its strength; the unit of young may be meant to be MPa");
 }
 
