@@ -117,7 +117,7 @@ pub fn is_of_the_system(error: &(dyn Error + 'static)) -> bool {
         let is_file = error.is::<std::io::Error>() || error.is::<csv::Error>();
         let refused = error
             .downcast_ref::<CaseError>()
-            .is_some_and(|own| own.lacks_memory() || own.is_in_use());
+            .is_some_and(|cause| cause.lacks_memory() || cause.is_in_use());
         if is_file || refused {
             return true;
         }

@@ -29,8 +29,8 @@ fn leads_back<const D: usize>(case: &Case<D>, of: usize, number: usize) -> bool 
         StageKind::Load { .. } | StageKind::Gravity { .. } | StageKind::StrengthReduction(_) => {
             true
         }
-        StageKind::Construction(own) => {
-            own.place.is_empty() && own.remove.is_empty() && own.materials.is_empty()
+        StageKind::Construction(works) => {
+            works.place.is_empty() && works.remove.is_empty() && works.materials.is_empty()
         }
         _ => false,
     };
@@ -66,6 +66,6 @@ pub(crate) fn has_fallen<const D: usize>(
         cause: String::new(),
     };
     let is_stopped =
-        |own: &StageSummary| own.outcome == StageOutcome::Stopped && own.code == fell.code();
+        |stage: &StageSummary| stage.outcome == StageOutcome::Stopped && stage.code == fell.code();
     stages.get(number).is_some_and(is_stopped) && is_answered(case, number)
 }

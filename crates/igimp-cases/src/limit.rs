@@ -268,7 +268,7 @@ fn above_peak(points: &[PathPoint], course: Course) -> f64 {
         return 0.0;
     };
     let peak = points[at];
-    let [rise, fall] = [before, *after].map(|own| course.beyond(peak.factor, own.factor));
+    let [rise, fall] = [before, *after].map(|point| course.beyond(peak.factor, point.factor));
     let (to, from) = (peak.work - before.work, after.work - peak.work);
     let above = if to > 0.0 && from > 0.0 {
         (rise * from / to).max(fall * to / from)

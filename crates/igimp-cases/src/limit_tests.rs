@@ -131,9 +131,9 @@ fn a_factor_that_falls_is_the_mirror_image_of_one_that_rises() {
     let down = Course::between(0.0, -2.0);
     for path in [risen, fallen_back] {
         let mirrored: Vec<PathPoint> = (path.iter())
-            .map(|&own| PathPoint {
-                factor: -own.factor,
-                ..own
+            .map(|&point| PathPoint {
+                factor: -point.factor,
+                ..point
             })
             .collect();
         for n in 1..=path.len() {
@@ -151,10 +151,10 @@ fn a_factor_that_falls_is_the_mirror_image_of_one_that_rises() {
             points: points.to_vec(),
             ..PathSummary::default()
         };
-        let (own, other) = (of(&path, Course::RISING), of(&mirrored, down));
-        assert_eq!(own.rise, other.rise);
+        let (summary, other) = (of(&path, Course::RISING), of(&mirrored, down));
+        assert_eq!(summary.rise, other.rise);
         let negative = |(a, b): (Option<f64>, Option<f64>)| (a.map(|a| -a), b.map(|b| -b));
-        assert_eq!(interval(&own), negative(interval(&other)));
+        assert_eq!(interval(&summary), negative(interval(&other)));
         let knees = [knee(&path, Course::RISING), knee(&mirrored, down)];
         assert_eq!(knees[0].map(|at| -at.factor), knees[1].map(|at| at.factor));
     }
@@ -190,7 +190,7 @@ fn a_peak_between_equilibria_lies_in_the_interval() {
         let points: Vec<_> = works
             .map(|work| point(2.0 - (work - 3.0).powi(2), work, work, 1.0))
             .collect();
-        let largest = points.iter().map(|own| own.factor).fold(0.0, f64::max);
+        let largest = points.iter().map(|point| point.factor).fold(0.0, f64::max);
         let above = (1.0 + above_peak(&points, Course::RISING)) * largest;
         assert!((2.0..2.5).contains(&above), "{offset} {largest} {above}");
     }

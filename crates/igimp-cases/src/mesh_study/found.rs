@@ -94,8 +94,8 @@ pub(crate) fn check_rows<const D: usize>(
         .collect();
     let row = |(number, row): (usize, &CheckRow)| {
         let name = &row.check.quantity;
-        let mut own = checks.iter().filter(|result| result.name == *name);
-        let result = own.nth(occurrence(of, number));
+        let mut named = checks.iter().filter(|result| result.name == *name);
+        let result = named.nth(occurrence(of, number));
         let asked = case.checks.iter().find(|check| check.name == *name);
         let mut check = row.check.clone();
         // Values of runs that ended early are held against nothing.
@@ -117,7 +117,7 @@ pub(crate) fn check_rows<const D: usize>(
         .unwrap_or(f64::NAN);
         let standing = match row.standing {
             Standing::NotReached if !check.measured.is_nan() => Standing::Held,
-            own => own,
+            standing => standing,
         };
         CheckRow {
             pass: check.passes(),
@@ -135,15 +135,15 @@ pub(crate) fn remarks<const D: usize>(case: &Case<D>, results: &[StudyResult]) -
         .collect();
     let mut remarks = Vec::new();
     // A check of a result that is told by itself says nothing more.
-    let is_twice = |own: &&StudyResult| {
-        own.kind == ResultKind::Check
+    let is_twice = |result: &&StudyResult| {
+        result.kind == ResultKind::Check
             && results.iter().any(|other| {
                 other.kind != ResultKind::Check
-                    && other.values == own.values
-                    && other.estimate == own.estimate
+                    && other.values == result.values
+                    && other.estimate == result.estimate
             })
     };
-    let once = results.iter().filter(|own| !is_twice(own));
+    let once = results.iter().filter(|result| !is_twice(result));
     for result in once.map(StudyResult::as_told) {
         for (mesh, label) in labels.iter().enumerate() {
             if let (Some(value), true) = (result.values[mesh], result.ended_early(mesh)) {
@@ -202,7 +202,7 @@ fn at_stage<const D: usize>(case: &Case<D>, run: &Summary, number: usize) -> Opt
         StageKind::Displacement { .. } => summary.peak_resistance.map(Found::computed),
         kind => {
             let reached = shares_of(run);
-            let driven = Driven::of(kind, |own| own.before(case, number, &reached))?;
+            let driven = Driven::of(kind, |driven| driven.before(case, number, &reached))?;
             limit(case, run, number, driven)
         }
     }?;
@@ -214,8 +214,8 @@ fn at_stage<const D: usize>(case: &Case<D>, run: &Summary, number: usize) -> Opt
 
 /// Whether a stage ended before what its case asks of it, or stands on one that did.
 fn has_ended_early<const D: usize>(case: &Case<D>, run: &Summary, number: usize) -> bool {
-    let own = run.stages.get(number);
-    own.is_none_or(|stage| !stage.came_to_its_end()) || stands_on_less(case, run, number)
+    let summary = run.stages.get(number);
+    summary.is_none_or(|stage| !stage.came_to_its_end()) || stands_on_less(case, run, number)
 }
 
 /// Whether a stage began with a body that an earlier one did not bring to its end. A search of a factor of safety leaves
@@ -263,9 +263,9 @@ fn limit<const D: usize>(
     if summary.outcome != StageOutcome::Stopped || summary.lost {
         return Some(Found::on_the_way(reached));
     }
-    let driven = Driven::of(&stage.kind, |own| own.before(case, number, &shares));
-    let told = summary.path.as_ref().filter(|_| driven == Some(of));
-    if let Some(path) = told {
+    let driven = Driven::of(&stage.kind, |driven| driven.before(case, number, &shares));
+    let path = summary.path.as_ref().filter(|_| driven == Some(of));
+    if let Some(path) = path {
         return Some(match crate::limit::interval(path) {
             (Some(near), Some(far)) => Found::within(0.5 * (near + far), 0.5 * (far - near).abs()),
             _ => Found::on_the_way(reached),
@@ -309,7 +309,7 @@ fn at_check<const D: usize>(case: &Case<D>, run: &Summary, row: &CheckRow) -> Fo
     let stage = run.stages.get(number);
     let found = match check.of {
         Quantity::FactorOfSafety => stage.and_then(interval),
-        of => Driven::recorded_by(of).and_then(|own| limit(case, run, number, own)),
+        of => Driven::recorded_by(of).and_then(|driven| limit(case, run, number, driven)),
     };
     Found {
         value: measured,
@@ -330,6 +330,6 @@ fn occurrence(run: &Summary, number: usize) -> usize {
 }
 
 fn nth<'a>(rows: &'a [CheckRow], name: &str, place: usize) -> Option<&'a CheckRow> {
-    let mut own = rows.iter().filter(|row| row.check.quantity == name);
-    own.nth(place)
+    let mut named = rows.iter().filter(|row| row.check.quantity == name);
+    named.nth(place)
 }

@@ -76,9 +76,9 @@ fn what_ended_early_is_not_extrapolated() {
             results[0].finest(),
             results[0].values[0].map(|value| (0, value))
         );
-        let told = remarks(&case, &results);
-        assert_eq!(told.len(), 1);
-        assert!(told[0].contains("on the mesh h/2"), "{}", told[0]);
+        let warnings = remarks(&case, &results);
+        assert_eq!(warnings.len(), 1);
+        assert!(warnings[0].contains("on the mesh h/2"), "{}", warnings[0]);
     }
 }
 
@@ -171,7 +171,7 @@ fn a_push_that_stopped_on_its_way_is_held_in_no_check() {
     let held = |runs: [&Summary; 2]| {
         let results = study(&case, &runs.map(Some));
         let rows = check_rows(&case, runs[0], &results);
-        let estimates = results.iter().filter(|own| own.estimate.is_some()).count();
+        let estimates = results.iter().filter(|r| r.estimate.is_some()).count();
         (estimates, rows[0].clone(), remarks(&case, &results).len())
     };
     let (estimates, held_on_fine, remarks) = held([&whole(7.4), &whole(7.2)]);

@@ -29,14 +29,14 @@ pub(super) fn of_stage<const D: usize>(
         )),
         _ if stage.stop_when.no_equilibrium => {
             let driven = Driven::planned(case, number)?;
-            let what = match driven {
+            let control = match driven {
                 Driven::Load(_) => "load factor",
                 Driven::Acceleration(0) => "horizontal acceleration",
                 Driven::Acceleration(1) => "acceleration across",
                 Driven::Acceleration(_) => "vertical acceleration",
                 Driven::Gravity => "gravity",
             };
-            let name = format!("{what} at the end of \"{name}\" [-]");
+            let name = format!("{control} at the end of \"{name}\" [-]");
             Some((name, ResultKind::LimitLoad, of_limit(case, number, driven)))
         }
         _ => None,
@@ -84,10 +84,10 @@ pub(super) fn of_check<const D: usize>(case: &Case<D>, name: &str) -> Convergenc
 fn of_loads<const D: usize>(case: &Case<D>) -> Convergence {
     let holds_nodes =
         |load: &igimp_model::Load<D>| matches!(load.kind, LoadKind::RigidFooting { .. });
-    let varies = |own: &Material| {
-        own.profiles.strength.is_some()
-            || own.profiles.friction.is_some()
-            || own.has_laws_by_place()
+    let varies = |material: &Material| {
+        material.profiles.strength.is_some()
+            || material.profiles.friction.is_some()
+            || material.has_laws_by_place()
     };
     if has_contact(case) {
         Convergence::CONTACT

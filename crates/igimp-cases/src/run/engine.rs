@@ -262,7 +262,7 @@ impl<const D: usize> Stages<D> {
             export.end_of_stage(number)?;
         }
         summary.seconds = seconds_before + clock.elapsed().as_secs_f64();
-        summary.reinforcement = reinforcement::told(session.model.case, state);
+        summary.reinforcement = reinforcement::summaries(session.model.case, state);
         // A search leaves the body as it was found.
         let leaves_body = summary.safety.is_some();
         let largest = (!leaves_body).then(|| largest_displacement(&state.body.particles));
@@ -306,7 +306,7 @@ impl<const D: usize> Stages<D> {
         };
         summary.outcome = outcome;
         summary.reason = reason.to_string();
-        if let Some(strength) = run_out::told(session, number) {
+        if let Some(strength) = run_out::remark(session, number) {
             summary.reason = format!("{}; {strength}", summary.reason);
         }
         reason.code().clone_into(&mut summary.code);
@@ -328,7 +328,7 @@ impl<const D: usize> Stages<D> {
         if summary.safety.is_none() && summary.outcome != StageOutcome::Interrupted {
             summary.pore_water = pores::summary(case, &state.body.particles);
             let remark = summary.pore_water.as_ref();
-            if let Some(text) = remark.and_then(|own| pores::remark(&stage.name, own)) {
+            if let Some(text) = remark.and_then(|water| pores::remark(&stage.name, water)) {
                 session.warn(text);
             }
         }
@@ -354,15 +354,15 @@ impl<const D: usize> Stages<D> {
             session.warn_of_stage(number, &text);
         }
         // What a jack held is locked off.
-        for own in &mut state.controls.reinforcement {
-            own.jack = None;
+        for member in &mut state.controls.reinforcement {
+            member.jack = None;
         }
         session.tell(&Event::StageEnded { summary: &summary });
         session.summary.stages.push(summary);
         if goes_on && stage.reset_displacements {
             state.body.particles.reset_displacements();
-            for own in &mut state.controls.rigid {
-                own.track.displacement = [0.0; COMPONENTS];
+            for body in &mut state.controls.rigid {
+                body.track.displacement = [0.0; COMPONENTS];
             }
         }
         if goes_on {
@@ -453,8 +453,8 @@ impl<const D: usize> Stages<D> {
         }
         let passed_over = || {
             let mut stages = session.summary.stages.iter();
-            let own = stages.find(|own| own.outcome == StageOutcome::NotConverged)?;
-            Some(format!("stage \"{}\": {}", own.name, own.reason))
+            let stage = stages.find(|stage| stage.outcome == StageOutcome::NotConverged)?;
+            Some(format!("stage \"{}\": {}", stage.name, stage.reason))
         };
         let failure = self.failure.as_ref().map(ToString::to_string);
         session.summary.failure = failure.or_else(passed_over);

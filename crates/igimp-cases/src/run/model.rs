@@ -89,7 +89,7 @@ impl<'c, const D: usize> Model<'c, D> {
         } else {
             let flows = Flows::of(case)?;
             model.water = std::iter::zip(0.., &flows.by_condition)
-                .map(|(index, own)| GroundWater::of(case, index, own.as_ref(), &seeded))
+                .map(|(index, flow)| GroundWater::of(case, index, flow.as_ref(), &seeded))
                 .map(Arc::new)
                 .collect();
             model.courses = flows.courses;
@@ -179,10 +179,10 @@ impl<'c, const D: usize> Model<'c, D> {
         let kept = all.keeping(|particle| place[all.number[particle]].is_some())?;
         let mut fields = (*kept).clone();
         for particle in 0..fields.x.len() {
-            if let Some(own) = place[fields.number[particle]] {
-                fields.law[particle] = there.law[own];
-                fields.ratios[particle] = there.ratios[own];
-                fields.mass[particle] = there.mass[own];
+            if let Some(at) = place[fields.number[particle]] {
+                fields.law[particle] = there.law[at];
+                fields.ratios[particle] = there.ratios[at];
+                fields.mass[particle] = there.mass[at];
             }
         }
         base.body.particles = Particles::from_fields(fields)?;
@@ -194,8 +194,8 @@ impl<'c, const D: usize> Model<'c, D> {
         let particles = &body.particles;
         let there = |stage: usize| {
             let bodies = self.case.bodies_after(stage);
-            let own = self.seeded.body.iter();
-            own.filter(|&&body| bodies[body]).count()
+            let indices = self.seeded.body.iter();
+            indices.filter(|&&body| bodies[body]).count()
         };
         let most = (0..self.case.stages.len()).map(there).max();
         ModelSize {
@@ -284,9 +284,9 @@ impl<'c, const D: usize> Model<'c, D> {
             Drainage::Undrained { stiffness, .. } if !to.drained => stiffness,
             _ => PoreStiffness::default(),
         };
-        let own = to.water.and_then(|condition| self.ground_water(condition));
+        let water = to.water.and_then(|condition| self.ground_water(condition));
         Water {
-            given: own.map(|own| Arc::clone(own) as Arc<dyn PoreWater<D>>),
+            given: water.map(|water| Arc::clone(water) as Arc<dyn PoreWater<D>>),
             factor: to.gravity,
             stiffness: (0..self.laws.len())
                 .map(|law| stiffness(self.case.material_of(law)))
@@ -414,7 +414,7 @@ fn load_points<const D: usize>(case: &Case<D>) -> Vec<LoadPoint<D>> {
             LoadKind::RigidFooting { .. } => {}
             &LoadKind::Pressure { from, to, traction } => {
                 let cells = case.grid.axes.iter().enumerate();
-                let cells = cells.map(|(axis, own)| own.smallest_between(from[axis], to[axis]));
+                let cells = cells.map(|(k, axis)| axis.smallest_between(from[k], to[k]));
                 let cell = cells.fold(f64::INFINITY, f64::min);
                 let count =
                     |length: f64| (POINTS_PER_CELL * length / cell).ceil().max(1.0) as usize;
@@ -437,7 +437,7 @@ fn load_points<const D: usize>(case: &Case<D>) -> Vec<LoadPoint<D>> {
             } => {
                 let (lower, upper) = plan.bounds((&case.grid.lower(), &case.grid.upper()));
                 let cells = case.grid.axes.iter().take(2).enumerate();
-                let cells = cells.map(|(axis, own)| own.smallest_between(lower[axis], upper[axis]));
+                let cells = cells.map(|(k, axis)| axis.smallest_between(lower[k], upper[k]));
                 let cell = cells.fold(f64::INFINITY, f64::min);
                 let counts = [0, 1].map(|axis| {
                     let side = upper[axis] - lower[axis];
@@ -451,7 +451,7 @@ fn load_points<const D: usize>(case: &Case<D>) -> Vec<LoadPoint<D>> {
                                 2 => *level,
                                 _ => at[axis],
                             }),
-                            force: traction.map(|own| own * area),
+                            force: traction.map(|value| value * area),
                             load,
                         }),
                 );

@@ -143,9 +143,9 @@ impl<const D: usize> Output<D> {
         let mut readings = readings::of_case(case, records);
         if let Some(notes) = notes {
             readings.checks.clone_from(&notes.readings.checks);
-            for (name, own) in &mut readings.tables {
+            for (name, reading) in &mut readings.tables {
                 let before = notes.readings.tables.get(name);
-                own.since = before.map_or(0, |before| before.since);
+                reading.since = before.map_or(0, |before| before.since);
             }
         }
         Ok(Self {
@@ -370,8 +370,8 @@ impl<const D: usize> Output<D> {
                 let table = body.table(named(&body.part.name), case.is_whole());
                 table.write_csv(&self.folder.rigid())?;
             }
-            for own in &structures.reinforcement {
-                let table = own.table(named(&own.part.name));
+            for member in &structures.reinforcement {
+                let table = member.table(named(&member.part.name));
                 table.write_csv(&self.folder.reinforcement())?;
             }
         }
@@ -519,13 +519,13 @@ fn growing<'r>(
     let none = Vec::new();
     let of = |of: fn(&Notes) -> &Vec<usize>| notes.map_or(&none, of);
     [
-        (&records.curves, folder.curves(), of(|own| &own.curve_rows)),
+        (&records.curves, folder.curves(), of(|old| &old.curve_rows)),
         (
             &records.monitors,
             folder.monitors(),
-            of(|own| &own.monitor_rows),
+            of(|old| &old.monitor_rows),
         ),
-        (&records.rigid, folder.rigid(), of(|own| &own.rigid_rows)),
+        (&records.rigid, folder.rigid(), of(|old| &old.rigid_rows)),
     ]
     .map(|(tables, folder, rows)| {
         let tables = tables.iter().enumerate();

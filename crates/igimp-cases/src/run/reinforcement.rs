@@ -67,7 +67,7 @@ fn between<const D: usize>(a: [f64; D], b: [f64; D], t: f64) -> [f64; D] {
 fn stations_between<const D: usize>(case: &Case<D>, a: [f64; D], b: [f64; D]) -> f64 {
     let axes = case.grid.axes.iter().enumerate();
     let cell = axes
-        .map(|(k, own)| own.smallest_between(a[k].min(b[k]), a[k].max(b[k])))
+        .map(|(k, axis)| axis.smallest_between(a[k].min(b[k]), a[k].max(b[k])))
         .fold(f64::INFINITY, f64::min);
     (STATIONS_PER_CELL * distance(&a, &b) / cell - ROUND_OFF).ceil()
 }
@@ -124,8 +124,8 @@ pub(crate) fn begin<const D: usize>(case: &Case<D>, state: &mut State<D>, stage:
 pub(crate) fn locked_early<const D: usize>(case: &Case<D>, state: &State<D>) -> Option<String> {
     let unit = format!("kN{}", case.per_metre());
     let parts = std::iter::zip(&case.reinforcement, &state.controls.reinforcement);
-    let early = parts.filter_map(|(part, own)| {
-        let (held, wanted) = (own.jack?, part.prestress?);
+    let early = parts.filter_map(|(part, control)| {
+        let (held, wanted) = (control.jack?, part.prestress?);
         (held < (1.0 - 1e-9) * wanted).then(|| {
             format!(
                 "\"{}\" at {} of {} {unit}",
@@ -193,21 +193,21 @@ pub(crate) fn quantity<const D: usize>(
     match of {
         ReinforcementQuantity::Force => member.largest_force(),
         ReinforcementQuantity::HeadForce => {
-            member.segments.first().map_or(0.0, |own| own.state.force)
+            member.segments.first().map_or(0.0, |bar| bar.state.force)
         }
         ReinforcementQuantity::AtLimit => {
             let sum = |of: &dyn Fn(&Segment) -> bool| -> f64 {
-                let own = member.segments.iter().filter(|own| of(own));
-                own.map(|own| own.length)
+                let bars = member.segments.iter().filter(|bar| of(bar));
+                bars.map(|bar| bar.length)
                     .fold(0.0, |sum, length| sum + length)
             };
-            sum(&|own| own.state.is_at_limit) / sum(&|_| true)
+            sum(&|bar| bar.state.is_at_limit) / sum(&|_| true)
         }
     }
 }
 
 /// The tension of the members that are there, for the summary.
-pub(crate) fn told<const D: usize>(case: &Case<D>, state: &State<D>) -> Vec<MemberSummary> {
+pub(crate) fn summaries<const D: usize>(case: &Case<D>, state: &State<D>) -> Vec<MemberSummary> {
     let of = |index: usize, of| quantity(&state.controls, &state.body.reinforcement, index, of);
     state
         .controls

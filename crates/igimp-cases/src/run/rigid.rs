@@ -15,7 +15,7 @@ use crate::error::CaseError;
 pub(crate) fn cell_near<const D: usize>(case: &Case<D>, part: &RigidPart<D>) -> f64 {
     let (lower, upper) = part.bounds();
     let cells = (case.grid.axes.iter().enumerate())
-        .map(|(axis, own)| own.smallest_between(lower[axis], upper[axis]));
+        .map(|(k, axis)| axis.smallest_between(lower[k], upper[k]));
     cells.fold(f64::INFINITY, f64::min)
 }
 
@@ -33,7 +33,7 @@ pub(crate) fn made<const D: usize>(
             source,
         })?;
     let interfaces = part.interfaces.iter();
-    let interfaces = interfaces.map(|own| interface(case, own, laws)).collect();
+    let interfaces = interfaces.map(|side| interface(case, side, laws)).collect();
     let mut body = RigidBody::new(surface, interfaces, part.reference);
     body.name.clone_from(&part.name);
     body.penalty.stiffness = part.stiffness;
@@ -78,10 +78,10 @@ pub(crate) fn motions<const D: usize>(
 ) -> Vec<RigidMotion<D>> {
     to.placed()
         .map(|index| {
-            let (part, own, before) = (&case.rigid[index], &to.rigid[index], &from.rigid[index]);
-            let drive = |k: usize| match own.loaded[k] {
+            let (part, after, before) = (&case.rigid[index], &to.rigid[index], &from.rigid[index]);
+            let drive = |k: usize| match after.loaded[k] {
                 Some(force) => Drive::Loaded(force / part.force_factor),
-                None => Drive::Moved(own.moved[k] - before.moved[k]),
+                None => Drive::Moved(after.moved[k] - before.moved[k]),
             };
             RigidMotion {
                 displacement: std::array::from_fn(drive),
@@ -92,7 +92,7 @@ pub(crate) fn motions<const D: usize>(
                         Drive::Moved(0.0)
                     }
                 }),
-                weight: weight(part, to).map(|own| own / part.force_factor),
+                weight: weight(part, to).map(|force| force / part.force_factor),
             }
         })
         .collect()
@@ -111,7 +111,7 @@ pub(crate) fn tracks<const D: usize>(
     let mut tracks = controls.tracks();
     for ((slot, index), body) in std::iter::zip(controls.placed().enumerate(), &accepted.body.rigid)
     {
-        let (part, own) = (&case.rigid[index], &controls.rigid[index]);
+        let (part, control) = (&case.rigid[index], &controls.rigid[index]);
         let (motion, resultant) = (body.motion_of(slot, u), body.resultant_of(slot, reactions));
         let track = &mut tracks[index];
         for k in 0..components::<D>() {
@@ -121,7 +121,7 @@ pub(crate) fn tracks<const D: usize>(
             if k != D - 1 && case.method.section.is_axisymmetric() {
                 continue;
             }
-            track.force[k] = own.loaded[k].unwrap_or(part.force_factor * reaction);
+            track.force[k] = control.loaded[k].unwrap_or(part.force_factor * reaction);
         }
         track.lowered = part.reference[D - 1] - body.pose.origin[D - 1];
     }
@@ -256,7 +256,7 @@ pub(crate) fn too_deep<const D: usize>(
         let part = &case.rigid[index];
         let share = quantity(case, controls, bodies, index, RigidQuantity::Penetration);
         let places = body.surface.knots();
-        let closed = std::iter::zip(&body.contact.knots, places).filter(|(own, _)| own.is_closed);
+        let closed = std::iter::zip(&body.contact.knots, places).filter(|(knot, _)| knot.is_closed);
         let (_, (deepest, _)) = closed.min_by(|(a, _), (b, _)| a.gap.total_cmp(&b.gap))?;
         let deepest = body.pose.into_space(&deepest);
         (share > part.most_penetration).then(|| StepFailure::TooDeep {
@@ -307,8 +307,8 @@ pub fn outlines<'a>(
     there.map(move |(index, body)| {
         let part = &case.rigid[index];
         let outline = part.outline(points_of_circle).into_iter().map(|at| {
-            let own = [at[0] - part.reference[0], at[1] - part.reference[1]];
-            body.pose.into_space(&own)
+            let local = [at[0] - part.reference[0], at[1] - part.reference[1]];
+            body.pose.into_space(&local)
         });
         (part, outline.collect())
     })

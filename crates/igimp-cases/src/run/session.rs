@@ -71,10 +71,10 @@ impl<const D: usize> Session<'_, D> {
     }
 
     /// The same of something that goes on: with how it was when it began.
-    pub(crate) fn warn_once(&mut self, what: &str, how: &str) {
-        let mut told = self.summary.warnings.iter();
-        if !told.any(|text| text.starts_with(what)) {
-            self.warn(format!("{what}{how}"));
+    pub(crate) fn warn_once(&mut self, subject: &str, how: &str) {
+        let mut warnings = self.summary.warnings.iter();
+        if !warnings.any(|text| text.starts_with(subject)) {
+            self.warn(format!("{subject}{how}"));
         }
     }
 
@@ -172,17 +172,17 @@ impl<const D: usize> Session<'_, D> {
                 short(100.0 * stage.false_support)
             ));
         }
-        let own = &report.linear;
-        let is_told = D == 3 || self.model.case.given_solver.is_some();
-        if is_told && own.solutions > 0 {
-            self.warn_of_memory(&stage.name, own);
+        let effort = &report.linear;
+        let is_shown = D == 3 || self.model.case.given_solver.is_some();
+        if is_shown && effort.solutions > 0 {
+            self.warn_of_memory(&stage.name, effort);
             let linear = stage.linear.get_or_insert_default();
-            own.method.clone_into(&mut linear.method);
-            linear.reason = self.model.factors.explain(&own.reason);
-            linear.solutions += own.solutions;
-            linear.iterations += own.iterations;
-            linear.most_iterations = linear.most_iterations.max(own.most_iterations);
-            linear.lost_iterations += own.lost_iterations;
+            effort.method.clone_into(&mut linear.method);
+            linear.reason = self.model.factors.explain(&effort.reason);
+            linear.solutions += effort.solutions;
+            linear.iterations += effort.iterations;
+            linear.most_iterations = linear.most_iterations.max(effort.most_iterations);
+            linear.lost_iterations += effort.lost_iterations;
         }
         let times = &report.times;
         let phases = [
@@ -214,16 +214,16 @@ impl<const D: usize> Session<'_, D> {
     }
 
     /// Says once that the memory of this machine decided how systems are solved: another one comes to other last digits.
-    fn warn_of_memory(&mut self, stage: &str, own: &LinearEffort) {
+    fn warn_of_memory(&mut self, stage: &str, effort: &LinearEffort) {
         let factors = &self.model.factors;
-        if !(factors.is_of_machine && decides(&own.reason)) || self.warned_of_memory {
+        if !(factors.is_of_machine && decides(&effort.reason)) || self.warned_of_memory {
             return;
         }
         let text = format!(
             "stage \"{stage}\": the memory for factors, {}, decides that systems are solved by {}; a machine with more comes to \
              other last digits, and memory = \"...\" in [solver] makes all alike",
             factors.words(),
-            own.method
+            effort.method
         );
         self.warned_of_memory = true;
         self.warn(text);
@@ -257,24 +257,24 @@ impl<const D: usize> Session<'_, D> {
 
 /// Adds the energy of an accepted step to that of its stage.
 fn add_energy(stage: &mut StageSummary, step: &StepEnergy, duration: f64) {
-    let own = stage.energy.get_or_insert_default();
-    own.time += duration;
-    own.kinetic = step.kinetic;
+    let energy = stage.energy.get_or_insert_default();
+    energy.time += duration;
+    energy.kinetic = step.kinetic;
     let before = step.kinetic - step.kinetic_gain;
-    own.most_kinetic = own.most_kinetic.max(before).max(step.kinetic);
-    own.kinetic_gain += step.kinetic_gain;
-    own.elastic += step.elastic_gain;
-    own.plastic += step.plastic;
-    own.contact += step.contact;
-    own.reinforcement += step.reinforcement;
-    own.water += step.water;
-    own.damping += step.damping;
-    own.boundaries += step.boundaries;
-    own.loads += step.loads;
-    own.supports += step.supports;
-    own.scheme += step.scheme;
-    own.map += step.map;
-    own.integration += step.integration + step.unbalanced;
+    energy.most_kinetic = energy.most_kinetic.max(before).max(step.kinetic);
+    energy.kinetic_gain += step.kinetic_gain;
+    energy.elastic += step.elastic_gain;
+    energy.plastic += step.plastic;
+    energy.contact += step.contact;
+    energy.reinforcement += step.reinforcement;
+    energy.water += step.water;
+    energy.damping += step.damping;
+    energy.boundaries += step.boundaries;
+    energy.loads += step.loads;
+    energy.supports += step.supports;
+    energy.scheme += step.scheme;
+    energy.map += step.map;
+    energy.integration += step.integration + step.unbalanced;
 }
 
 /// A march of the body between two controls.
@@ -332,11 +332,11 @@ impl<'a, const D: usize> StagePath<'a, D> {
         }));
         let conditions = model.conditions_on(grid, (before, after), (self.drag)(from, to))?;
         let conditions = match self.time {
-            Some(own) => (own.on_ground)(before, after, conditions)?,
+            Some(integration) => (integration.on_ground)(before, after, conditions)?,
             None => conditions,
         };
         let durations = [after.time - before.time, after.last_step];
-        let flow = |own| flow::of_step((model.case, model.laws.len()), own, durations);
+        let flow = |stage| flow::of_step((model.case, model.laws.len()), stage, durations);
         conditions
             .with_flow(self.flow.map(flow))?
             .with_unbalanced(self.held.as_ref().map(|forces| UnbalancedForces {
@@ -383,7 +383,7 @@ where
     }
 
     fn longest_step(&self, at: f64) -> f64 {
-        self.longest.map_or(f64::INFINITY, |own| own(at))
+        self.longest.map_or(f64::INFINITY, |longest| longest(at))
     }
 }
 
@@ -425,7 +425,7 @@ pub(crate) fn march_path<const D: usize>(
     };
     let load_path = Steps {
         conditions: |from: f64, to: f64| path.conditions(model, (from, to), (&at(from), &at(to))),
-        longest: path.time.map(|own| own.longest_step),
+        longest: path.time.map(|integration| integration.longest_step),
     };
     let mut march = MarchState::start(&path.settings);
     if let Some(left) = path.left {
@@ -504,8 +504,8 @@ impl<const D: usize> Watch<'_, '_, D> {
         self.session.keep_system(accepted.conditions, self.stage);
         let model = self.session.model;
         if self.path.flow.is_some() && report.water.is_some() {
-            let own = self.stage.consolidation.get_or_insert_default();
-            flow::tally(own, model.case, report, &accepted.body.particles);
+            let summary = self.stage.consolidation.get_or_insert_default();
+            flow::tally(summary, model.case, report, &accepted.body.particles);
         }
         self.last_step.set(report.duration);
         let mut controls = self.path.from.towards(self.path.to, report.to);
@@ -570,8 +570,8 @@ impl<const D: usize> Observer<D> for Watch<'_, '_, D> {
 
     fn on_cut(&mut self, error: &StepError) {
         self.session.drop_system();
-        let told = self.session.tally_cut(self.stage, error);
-        if let (Ok(_), Err(error)) = (&self.stopped, told) {
+        let tally = self.session.tally_cut(self.stage, error);
+        if let (Ok(_), Err(error)) = (&self.stopped, tally) {
             self.stopped = Err(error);
         }
     }

@@ -54,8 +54,8 @@ impl WallTrack {
     /// The same after a step by nodal displacements \[m\].
     fn moved<const D: usize>(&self, u: &[[f64; D]]) -> Self {
         let mut moved = self.clone();
-        for (own, by) in moved.displacement.iter_mut().zip(&u[self.node]) {
-            *own += by;
+        for (value, by) in moved.displacement.iter_mut().zip(&u[self.node]) {
+            *value += by;
         }
         moved
     }
@@ -151,10 +151,10 @@ impl Controls {
             settlement: between(self.settlement, end.settlement, t),
             srf: all(&self.srf, &end.srf),
             rigid: std::iter::zip(&self.rigid, &end.rigid)
-                .map(|(own, end)| own.towards(end, t))
+                .map(|(from, end)| from.towards(end, t))
                 .collect(),
             reinforcement: std::iter::zip(&self.reinforcement, &end.reinforcement)
-                .map(|(own, end)| own.towards(end, t))
+                .map(|(from, end)| from.towards(end, t))
                 .collect(),
             water: end.water,
             drained: end.drained,
@@ -167,7 +167,7 @@ impl Controls {
     /// The members of reinforcement that are there, in the order in which the state has them.
     pub fn installed(&self) -> impl Iterator<Item = usize> + '_ {
         let members = self.reinforcement.iter().enumerate();
-        members.filter(|(_, own)| own.installed).map(|(k, _)| k)
+        members.filter(|(_, part)| part.installed).map(|(k, _)| k)
     }
 
     /// The force on a body of unit weight by gravity and pseudo-static acceleration, along the axes \[-\] (theory,
@@ -183,19 +183,19 @@ impl Controls {
     /// The rigid bodies that are there, in the order in which the state has them.
     pub fn placed(&self) -> impl Iterator<Item = usize> + '_ {
         let bodies = self.rigid.iter().enumerate();
-        bodies.filter(|(_, own)| own.placed).map(|(body, _)| body)
+        bodies.filter(|(_, part)| part.placed).map(|(body, _)| body)
     }
 
     /// What the rigid bodies did so far.
     pub(crate) fn tracks(&self) -> Vec<RigidTrack> {
-        self.rigid.iter().map(|own| own.track).collect()
+        self.rigid.iter().map(|body| body.track).collect()
     }
 
     /// The same with other tracks.
     #[must_use]
     pub(crate) fn with_tracks(mut self, tracks: &[RigidTrack]) -> Self {
-        for (own, track) in self.rigid.iter_mut().zip(tracks) {
-            own.track = *track;
+        for (body, track) in self.rigid.iter_mut().zip(tracks) {
+            body.track = *track;
         }
         self
     }
@@ -209,7 +209,7 @@ impl Controls {
 
     /// What stands at walls after a step by nodal displacements \[m\].
     pub(crate) fn walls_after<const D: usize>(&self, u: &[[f64; D]]) -> Vec<WallTrack> {
-        self.walls.iter().map(|own| own.moved(u)).collect()
+        self.walls.iter().map(|wall| wall.moved(u)).collect()
     }
 
     /// The largest strength reduction factor of any material \[-\].

@@ -79,17 +79,17 @@ pub(super) fn run<const D: usize>(
         expectation.told(taken)
     });
     let is_whole = !summaries.iter().flatten().any(|run| run.interrupted);
-    let told = if is_whole {
+    let warnings = if is_whole {
         remarks(case, &found.results)
     } else {
         Vec::new()
     };
     let mut run = together(case, runs, found)?;
     let summary = &mut run.summary;
-    for text in &told {
+    for text in &warnings {
         listener.on_event(&Event::Warning { text });
     }
-    summary.warnings.extend(told);
+    summary.warnings.extend(warnings);
     summary.estimate = expected;
     summary.peak_memory_mib = memory::peak_mib();
     summary.memory = None;
@@ -146,12 +146,12 @@ fn all<const D: usize>(
         .collect();
     let listener = Mutex::new(listener);
     let run = |number: usize| {
-        let mut own = OfMesh {
+        let mut relay = OfMesh {
             parts: parts[number],
             listener: &listener,
         };
         let target = targets[number].as_ref();
-        one_mesh(&meshes[number], target, start, &mut own, interrupt)
+        one_mesh(&meshes[number], target, start, &mut relay, interrupt)
     };
     let jobs = side_by_side(&bytes).min(meshes.len());
     if jobs < 2 {
@@ -250,14 +250,14 @@ fn together<const D: usize>(
     }
     let mut warnings = Vec::new();
     let mut failure = None;
-    let mut told = None;
+    let mut message = None;
     for (run, mesh) in &mut ran {
         let label = mesh.label();
-        let own = run.summary.warnings.iter();
-        warnings.extend(own.map(|warning| format!("{label}: {warning}")));
-        if told.is_none() {
+        let lines = run.summary.warnings.iter();
+        warnings.extend(lines.map(|warning| format!("{label}: {warning}")));
+        if message.is_none() {
             let text = run.summary.failure.as_ref();
-            told = text.map(|text| format!("on the mesh {label}: {text}"));
+            message = text.map(|text| format!("on the mesh {label}: {text}"));
             failure = run.failure.take();
         }
     }
@@ -276,7 +276,7 @@ fn together<const D: usize>(
         summary.checks = check_rows(case, summary, &found.results);
     }
     summary.warnings = warnings;
-    summary.failure = told;
+    summary.failure = message;
     summary.interrupted = interrupted;
     for note in &mut summary.figures {
         note.file = format!("{folder}/{}", note.file);

@@ -68,7 +68,7 @@ fn columns<const D: usize>(
 pub(crate) struct GroundWater<const D: usize> {
     reference: Source<D>,
     /// By body: a pressure of its own.
-    own: Vec<Option<Source<D>>>,
+    by_body: Vec<Option<Source<D>>>,
     /// By material: density below the table, where it is stated \[kg/m³\].
     saturated: Vec<Option<f64>>,
     /// By material: whether its law speaks of total stress.
@@ -248,16 +248,16 @@ impl<const D: usize> GroundWater<D> {
         seeded: &Arc<Seeded<D>>,
     ) -> Self {
         let condition = &case.water[index];
-        let mut own: Vec<Option<Source<D>>> = case.bodies.iter().map(|_| None).collect();
+        let mut by_body: Vec<Option<Source<D>>> = case.bodies.iter().map(|_| None).collect();
         for (body, source) in &condition.bodies {
-            own[*body] = Some(Source::of(case, None, source));
+            by_body[*body] = Some(Source::of(case, None, source));
         }
         let gravity = gravity_of_weights(case.gravity);
-        let saturated = |own: &Material| own.saturated.map(|weight| weight / gravity);
+        let saturated = |material: &Material| material.saturated.map(|weight| weight / gravity);
         let is_total = |material: &Material| material.drainage == Drainage::Total;
         Self {
             reference: Source::of(case, flow, &condition.source),
-            own,
+            by_body,
             saturated: case.materials.iter().map(saturated).collect(),
             is_total: case.materials.iter().map(is_total).collect(),
             density: case.water_unit_weight / gravity,
@@ -283,8 +283,8 @@ impl<const D: usize> GroundWater<D> {
         material: &Material,
         x: &[f64; D],
     ) -> [f64; 2] {
-        let own = self.own[self.seeded.body[number]].as_ref();
-        let table = match own.unwrap_or(&self.reference) {
+        let given = self.by_body[self.seeded.body[number]].as_ref();
+        let table = match given.unwrap_or(&self.reference) {
             source @ Source::Table { .. } => source.top(x),
             Source::Seepage { flow, .. } => flow.free_surface(x).unwrap_or(f64::NEG_INFINITY),
             _ => f64::NEG_INFINITY,
@@ -294,7 +294,10 @@ impl<const D: usize> GroundWater<D> {
         let weight = ground.weight_above(x) + ground.added_above(x, table);
         match material.drainage {
             Drainage::Total => [-weight, -pond],
-            _ => [own.unwrap_or(&self.reference).at(x) - (weight + pond), 0.0],
+            _ => [
+                given.unwrap_or(&self.reference).at(x) - (weight + pond),
+                0.0,
+            ],
         }
     }
 }
@@ -309,22 +312,22 @@ impl<const D: usize> PoreWater<D> for GroundWater<D> {
         };
         let material = site.law % self.is_total.len();
         let reference = self.reference.over(x, half, site.filled);
-        let own = match &self.own[self.seeded.body[site.number]] {
-            Some(own) => own.over(x, half, site.filled),
+        let water = match &self.by_body[self.seeded.body[site.number]] {
+            Some(source) => source.over(x, half, site.filled),
             None => reference,
         };
-        let source = self.own[self.seeded.body[site.number]].as_ref();
+        let source = self.by_body[self.seeded.body[site.number]].as_ref();
         // Shares of soil that a table saturates, and of soil whose pores are known to be full.
         let [saturated, full] = match source.unwrap_or(&self.reference) {
-            Source::Table { .. } | Source::Seepage { .. } => [own.wet, own.wet],
-            Source::Points(_) => [0.0, own.wet],
+            Source::Table { .. } | Source::Seepage { .. } => [water.wet, water.wet],
+            Source::Points(_) => [0.0, water.wet],
             Source::Dry | Source::Ratio { .. } => [0.0, 0.0],
         };
         PoreState {
             pressure: if self.is_total[material] {
                 0.0
             } else {
-                own.pressure
+                water.pressure
             },
             reference: reference.pressure,
             gradient: reference.gradient,

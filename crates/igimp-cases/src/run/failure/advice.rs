@@ -309,15 +309,15 @@ fn unformed<const D: usize>(case: &Case<D>, stage: &Stage, error: &AssemblyError
 fn unsolved<const D: usize>(case: &Case<D>, stage: &Stage) -> Vec<String> {
     let sides = &case.boundaries;
     let mut out = Vec::new();
-    if let StageKind::Dynamic(own) = &stage.kind
-        && own.lumped_share <= 0.0
+    if let StageKind::Dynamic(dynamic) = &stage.kind
+        && dynamic.lumped_share <= 0.0
     {
         // A particle alone in a cell gives its nodes a mass that moves as one.
         out.push(format!(
             "lumped_share = 0.01 in stage \"{}\", as nodes without a mass of their own move freely",
             stage.name
         ));
-        if let Some(body) = case.bodies.iter().find(|own| own.per_direction < 2) {
+        if let Some(body) = case.bodies.iter().find(|body| body.per_direction < 2) {
             out.push(format!("points_per_cell = {} in \"{}\"", 1 << D, body.name));
         }
     }
@@ -411,7 +411,7 @@ fn less_than_collapses<const D: usize>(
                 .to_owned(),
         ],
         StageKind::Load { .. } => driven
-            .map(|own| less_load(case, number, own))
+            .map(|driven| less_load(case, number, driven))
             .into_iter()
             .collect(),
         StageKind::K0 => {
@@ -544,7 +544,7 @@ fn finer_cell<const D: usize>(case: &Case<D>) -> String {
     let cell = case.grid.largest_cell().map(|cell| 0.5 * cell);
     if cell
         .iter()
-        .all(|own| (own - cell[0]).abs() < 1e-9 * cell[0])
+        .all(|side| (side - cell[0]).abs() < 1e-9 * cell[0])
     {
         return format!("cell = \"{}\"", metres(cell[0]));
     }
@@ -558,7 +558,7 @@ fn finer_cell<const D: usize>(case: &Case<D>) -> String {
 /// A length as it can be written in a case file: in few digits where that is exact, else as a fraction, so that cells divide what they
 /// divided.
 fn metres(length: f64) -> String {
-    let is_length = |own: f64| (own - length).abs() <= 1e-12 * length.abs();
+    let is_length = |value: f64| (value - length).abs() <= 1e-12 * length.abs();
     let text = short(length);
     if text.parse().is_ok_and(is_length) {
         return format!("{text} m");

@@ -400,7 +400,7 @@ fn half_a_cell_is_a_length_that_divides_the_domain() {
         let text = metres(0.5 * cell);
         let read = Quantity::parse(&text).unwrap().value;
         assert!((read / (0.5 * cell) - 1.0).abs() < 1e-12, "{text}");
-        assert!(said.is_none_or(|own| own == text), "{text}");
+        assert!(said.is_none_or(|said| said == text), "{text}");
     }
 }
 

@@ -25,13 +25,13 @@ pub(super) fn seeded<const D: usize>(
     laws_at_points(case, (grid, cell_height), parts, laws)?;
     let mut domain = Vec::new();
     if case.water.iter().any(|condition| condition.carried) {
-        let own = seeds.iter().map(|seed| [seed.x, seed.half_length]);
-        domain = own.collect();
+        let boxes = seeds.iter().map(|seed| [seed.x, seed.half_length]);
+        domain = boxes.collect();
     }
     let mut particles = Particles::new(&seeds)?
         .with_ratios(ratios)?
         .with_initial_histories(laws)?;
-    if (case.materials.iter()).any(|own| own.profiles.permeability.is_some()) {
+    if (case.materials.iter()).any(|material| material.profiles.permeability.is_some()) {
         let soil = |seed: &ParticleSeed<D>| case.material_of(seed.law);
         let ratio = |seed: &ParticleSeed<D>| soil(seed).permeability_ratio_at(&seed.x, &ground);
         let ratios: Vec<f64> = seeds.iter().map(ratio).collect();
@@ -53,19 +53,19 @@ fn bodies_filled<const D: usize>(
         let density = material.unit_weight / gravity;
         let parts = part.per_direction;
         let filled = fill(grid, &*part.region, parts, density, part.material);
-        let mut own = filled.map_err(|error| error.of_body(&part.name))?;
+        let mut body_seeds = filled.map_err(|error| error.of_body(&part.name))?;
         let section = case.method.section;
-        for seed in &mut own {
+        for seed in &mut body_seeds {
             // A ring has the volume of its section times the way of its centroid.
             seed.volume *= section.thickness(seed.x[0] + seed.centroid[0] * seed.half_length[0]);
         }
         if material.profiles.unit_weight.is_some() {
-            for seed in &mut own {
+            for seed in &mut body_seeds {
                 seed.density = material.unit_weight_at(&seed.x, &ground) / gravity;
             }
         }
-        body_of.extend(own.iter().map(|_| body));
-        seeds.extend(own);
+        body_of.extend(body_seeds.iter().map(|_| body));
+        seeds.extend(body_seeds);
     }
     Ok((seeds, body_of))
 }

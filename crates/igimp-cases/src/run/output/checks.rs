@@ -86,7 +86,7 @@ fn of_stage<const D: usize>(
         .map(|(k, check)| {
             let value = found(k, check);
             let is_factor = check.of == Quantity::FactorOfSafety;
-            let own = Check {
+            let check = Check {
                 case: case.title.clone(),
                 variant: case.method.label(),
                 quantity: check.name.clone(),
@@ -98,9 +98,9 @@ fn of_stage<const D: usize>(
             };
             let is_known = is_factor && value.is_finite();
             if !(is_reached || is_known) {
-                return CheckRow::not_reached(own);
+                return CheckRow::not_reached(check);
             }
-            let mut row = CheckRow::held(own);
+            let mut row = CheckRow::held(check);
             if is_factor && value > NEEDLESS {
                 row.standing = Standing::NothingFails;
             }
@@ -124,7 +124,7 @@ pub(crate) fn of_curves<const D: usize>(
         };
         // A run that is taken up reads its rows from files.
         let points = table.as_written().points(0, 1);
-        let own = against(case, &curve.name, &points, reference);
+        let found = against(case, &curve.name, &points, reference);
         let ran = |stage: usize| stages.get(stage).is_some_and(is_reached);
         let came_to_end = match curve.stage {
             Some(stage) => ran(stage),
@@ -134,9 +134,13 @@ pub(crate) fn of_curves<const D: usize>(
         let since = since.get(k).copied().unwrap_or(0);
         let is_whole = since <= curve.stage.unwrap_or(0) || (is_of_end && curve.stage.is_none());
         if (is_of_end && !came_to_end) || !is_whole {
-            rows.extend(own.into_iter().map(|row| CheckRow::not_reached(row.check)));
+            rows.extend(
+                found
+                    .into_iter()
+                    .map(|row| CheckRow::not_reached(row.check)),
+            );
         } else {
-            rows.extend(own);
+            rows.extend(found);
         }
     }
     rows
@@ -162,7 +166,7 @@ pub(crate) fn of_sections<const D: usize>(
             };
             let name = format!("{}, {}", section.name, held.of.name());
             let points = table.points(0, before_fields::<D>() + recorded);
-            let own = against(case, &name, &points, &held.reference).into_iter();
+            let checks = against(case, &name, &points, &held.reference).into_iter();
             let row = |row: CheckRow| {
                 if is_reached {
                     row
@@ -170,7 +174,7 @@ pub(crate) fn of_sections<const D: usize>(
                     CheckRow::not_reached(row.check)
                 }
             };
-            rows.extend(own.map(|own| (k, row(own))));
+            rows.extend(checks.map(|check| (k, row(check))));
         }
     }
     rows

@@ -30,11 +30,11 @@ fn failing<const D: usize>(
     kept: &[Named<D>],
     stage: usize,
 ) -> impl Iterator<Item = (Failing<'_, D>, &State<D>)> {
-    kept.iter().rev().filter_map(move |(what, end)| {
+    kept.iter().rev().filter_map(move |(label, end)| {
         let failing = Failing {
             stage,
             srf: end.srf,
-            what,
+            what: label,
             before: &end.before.as_ref()?.particles,
             last: &end.state.body.particles,
         };
@@ -52,13 +52,13 @@ impl<const D: usize> Output<D> {
     ) -> Result<(), CaseError> {
         let kept = std::mem::take(&mut self.kept);
         let stage = format!("stage-{:02}", number + 1);
-        for (what, End { srf, state, .. }) in &kept {
-            let name = format!("{stage}-{what}");
+        for (label, End { srf, state, .. }) in &kept {
+            let name = format!("{stage}-{label}");
             if self.every != Every::Never {
                 let laws = model.laws_reduced_by(&state.controls.srf)?;
                 let structures = outlines::structures(model.case, &state.controls, &state.body);
-                for own in &structures.reinforcement {
-                    let table = own.table(format!("{}__{name}", own.part.name));
+                for member in &structures.reinforcement {
+                    let table = member.table(format!("{}__{name}", member.part.name));
                     table.write_csv(&self.folder.reinforcement())?;
                 }
                 let scene = Scene {
@@ -70,10 +70,10 @@ impl<const D: usize> Output<D> {
             }
             let shown = Shown {
                 title: format!("{}, SRF {srf:.4}", summary.name),
-                when: format!("in the {} state, SRF {srf:.4}", what.replace('-', " ")),
+                when: format!("in the {} state, SRF {srf:.4}", label.replace('-', " ")),
                 name,
             };
-            let others = kept.iter().filter(|(other, _)| other != what);
+            let others = kept.iter().filter(|(other, _)| other != label);
             let others: Vec<&State<D>> = others.map(|(_, end)| &end.state).collect();
             self.field_pictures(model, &shown, state, &others)?;
         }
@@ -91,7 +91,7 @@ impl<const D: usize> Output<D> {
         else {
             return Ok(());
         };
-        let surface = failing(kept, number).find_map(|(own, _)| pictures::slip_surface(&own, case));
+        let surface = failing(kept, number).find_map(|(way, _)| pictures::slip_surface(&way, case));
         match surface {
             Some(table) => Ok(table.write_csv(&self.folder.slip_lines())?),
             None => Ok(()),
@@ -171,7 +171,7 @@ impl<const D: usize> Output<D> {
         if let Some(state) = in_plane::<_, State<3>>(state) {
             let compared = compared
                 .iter()
-                .filter_map(|own| in_plane::<_, State<3>>(*own));
+                .filter_map(|state| in_plane::<_, State<3>>(*state));
             let compared: Vec<Seen<'_, 3>> = std::iter::zip(compared, &reduced)
                 .map(|(state, laws)| Seen {
                     particles: &state.body.particles,
@@ -190,7 +190,7 @@ impl<const D: usize> Output<D> {
             case,
             pieces: &pieces,
         };
-        let own = Seen {
+        let seen = Seen {
             particles: &state.body.particles,
             laws: &laws,
         };
@@ -203,7 +203,7 @@ impl<const D: usize> Output<D> {
         let over = outlines::of_state(case, model, state);
         let drawn = wanted
             .par_iter()
-            .map(|&field| pictures::field_picture(&canvas, shown, field, own, &compared, &over))
+            .map(|&field| pictures::field_picture(&canvas, shown, field, seen, &compared, &over))
             .collect::<Result<Vec<_>, _>>()?;
         self.figures.extend(drawn);
         Ok(())
@@ -245,7 +245,7 @@ impl<const D: usize> Output<D> {
         let condition = state.controls.water.and_then(|k| case.water.get(k));
         let drawn = drawn.with_water(
             condition
-                .map(|own| own.source.clone())
+                .map(|water| water.source.clone())
                 .into_iter()
                 .collect(),
         );

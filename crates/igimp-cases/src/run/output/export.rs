@@ -95,8 +95,8 @@ fn name(stage: usize) -> String {
 
 /// The stage whose folder this is.
 fn stage_of(path: &Path) -> Option<usize> {
-    let own = path.file_name()?.to_str()?;
-    let stage = own.strip_prefix("stage-")?.parse().ok();
+    let folder = path.file_name()?.to_str()?;
+    let stage = folder.strip_prefix("stage-")?.parse().ok();
     let stage = stage.and_then(|number: usize| number.checked_sub(1))?;
-    (own == name(stage)).then_some(stage)
+    (folder == name(stage)).then_some(stage)
 }

@@ -24,7 +24,7 @@ impl<const D: usize> Output<D> {
         let mut rows: Vec<[f64; 3]> = Vec::new();
         for (number, stage) in summary.stages.iter().enumerate() {
             let safety = stage.safety.as_ref();
-            let Some((stable, failed)) = safety.and_then(|own| own.stable.zip(own.failed)) else {
+            let Some((stable, failed)) = safety.and_then(|fos| fos.stable.zip(fos.failed)) else {
                 continue;
             };
             if let Some(time) = case.time_of_water_after(number) {

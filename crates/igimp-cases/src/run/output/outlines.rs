@@ -26,7 +26,7 @@ pub(crate) fn of_state<const D: usize>(
 ) -> Over {
     let water = water_tables(case, &model.seeded.body, state);
     let computed = (state.controls.water.and_then(|k| model.ground_water(k)))
-        .and_then(|own| in_plane::<_, Seepage<2>>(&**own.flow()?));
+        .and_then(|ground| in_plane::<_, Seepage<2>>(&**ground.flow()?));
     let surface = computed.map_or_else(Vec::new, Seepage::free_surface_lines);
     let surface = surface.into_iter().map(|points| Outline {
         points,
@@ -57,7 +57,7 @@ fn water_tables(case: &Case<2>, body_of: &[usize], state: &State<2>) -> Vec<Outl
     let Some(condition) = state.controls.water.and_then(|k| case.water.get(k)) else {
         return Vec::new();
     };
-    let bodies: HashSet<usize> = particles.number.iter().map(|&own| body_of[own]).collect();
+    let bodies: HashSet<usize> = particles.number.iter().map(|&k| body_of[k]).collect();
     let ends = std::iter::zip(&particles.x, &particles.half_length);
     let ends = ends.fold(
         [f64::INFINITY, f64::NEG_INFINITY],

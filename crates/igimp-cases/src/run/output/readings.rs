@@ -40,7 +40,7 @@ pub(super) fn of_case<const D: usize>(case: &Case<D>, records: &Records) -> Read
         format!("{read:?} {:?}", curve.stage)
     });
     let monitors = std::iter::zip(&case.monitors, &records.watched);
-    let monitors = monitors.map(|(own, place)| format!("{:?} {place:?}", own.record));
+    let monitors = monitors.map(|(monitor, place)| format!("{:?} {place:?}", monitor.record));
     let rigid = case.rigid.iter().map(|_| String::new());
     let by_folder: [Vec<String>; 3] = [curves.collect(), monitors.collect(), rigid.collect()];
     let tables = [&records.curves, &records.monitors, &records.rigid];
@@ -55,10 +55,10 @@ pub(super) fn of_case<const D: usize>(case: &Case<D>, records: &Records) -> Read
             readings.tables.insert(key(folder, &table.name), reading);
         }
     }
-    for own in &case.sections {
-        let read = (own.from, own.to, own.points, &own.record, own.average);
+    for line in &case.sections {
+        let read = (line.from, line.to, line.points, &line.record, line.average);
         let definition = sha256(format!("{read:?}").as_bytes());
-        readings.sections.insert(own.name.clone(), definition);
+        readings.sections.insert(line.name.clone(), definition);
     }
     readings
 }
@@ -73,7 +73,7 @@ pub(super) fn curves_since<const D: usize>(case: &Case<D>, readings: &Readings) 
     let since = |name: &str| readings.tables.get(&key("curves", name));
     let curves = case.curves.iter();
     curves
-        .map(|own| since(&own.name).map_or(0, |table| table.since))
+        .map(|curve| since(&curve.name).map_or(0, |table| table.since))
         .collect()
 }
 
@@ -91,8 +91,8 @@ pub(super) fn of_rows<const D: usize>(
     });
     let sections = of_sections.iter().map(|(section, row)| {
         let quantity = &row.check.quantity;
-        let own = &case.sections[*section];
-        let read = (own.from, own.to, own.points, own.average);
+        let line = &case.sections[*section];
+        let read = (line.from, line.to, line.points, line.average);
         sha256(format!("{stage} {quantity} {read:?}").as_bytes())
     });
     quantities.chain(sections).collect()
@@ -149,22 +149,22 @@ impl<const D: usize> Beginning<'_, D> {
             &self.records.monitors,
             &self.records.rigid,
         ][folder];
-        let (name, what) = GROWING[folder];
+        let (name, kind) = GROWING[folder];
         let mut kept = Vec::new();
         for (k, table) in tables.iter().enumerate() {
             let key = key(name, &table.name);
-            let own = now.tables.entry(key.clone()).or_default();
+            let reading = now.tables.entry(key.clone()).or_default();
             let old = before.readings.tables.get(&key);
             let path = self.folder.root().join(format!("{key}.csv"));
-            if let Some(old) = old.filter(|old| old.definition == own.definition)
+            if let Some(old) = old.filter(|old| old.definition == reading.definition)
                 && (old.rows == 0 || rows::digest(&path, old.rows)?.as_ref() == Some(&old.digest))
             {
                 kept.push(old.rows);
-                own.since = old.since;
+                reading.since = old.since;
                 continue;
             }
             kept.push(0);
-            own.since = self.stage;
+            reading.since = self.stage;
             let is_of_earlier = match folder {
                 0 => self.case.curves[k].stage.is_none_or(|of| of < self.stage),
                 1 => true,
@@ -173,7 +173,7 @@ impl<const D: usize> Beginning<'_, D> {
             if is_of_earlier {
                 let begins = &self.case.stages[self.stage].name;
                 warnings.push(format!(
-                    "{what} \"{}\" is not what the stages before \"{begins}\" recorded, and {key}.csv has no rows of them; \
+                    "{kind} \"{}\" is not what the stages before \"{begins}\" recorded, and {key}.csv has no rows of them; \
                      {REMEDY}",
                     table.name
                 ));
@@ -190,7 +190,7 @@ impl<const D: usize> Beginning<'_, D> {
                 .case
                 .sections
                 .iter()
-                .map(|own| &own.name)
+                .map(|section| &section.name)
                 .filter(|name| {
                     let path = self.table_of_section(name, stage);
                     old.get(*name) == kept.notes.readings.sections.get(*name) && path.is_file()
@@ -198,17 +198,17 @@ impl<const D: usize> Beginning<'_, D> {
             stays.extend(same.cloned());
             let name = &self.case.stages[stage].name;
             kept.notes.figures.retain(|figure| {
-                let gone = old.keys().filter(|own| !stays.contains(own));
+                let gone = old.keys().filter(|section| !stays.contains(section));
                 !gone
                     .clone()
-                    .any(|own| pictures::is_of_section(figure, own, name))
+                    .any(|section| pictures::is_of_section(figure, section, name))
             });
             let is_read = before.stages[stage].safety.is_none();
-            for own in self.case.sections.iter().filter(|_| is_read) {
-                if !stays.contains(&own.name) {
+            for section in self.case.sections.iter().filter(|_| is_read) {
+                if !stays.contains(&section.name) {
                     kept.warnings.push(format!(
                         "section \"{}\" is not what stage \"{name}\" recorded, and has no table of that stage; {REMEDY}",
-                        own.name
+                        section.name
                     ));
                 }
             }
@@ -237,7 +237,7 @@ impl<const D: usize> Beginning<'_, D> {
             });
             let rows = quantities.map(|row| (true, row)).chain(sections);
             for (reading, (stays, row)) in std::iter::zip(&names, rows) {
-                let old = found.iter().find(|(own, _)| stays && *own == reading);
+                let old = found.iter().find(|(name, _)| stays && *name == reading);
                 if old.is_none() {
                     kept.warnings.push(format!(
                         "check \"{}\" is not reached: what it reads was not recorded in stage \"{}\", which is kept; {REMEDY}",
@@ -266,7 +266,7 @@ impl<const D: usize> Beginning<'_, D> {
             }
         };
         let sections = self.case.sections.iter();
-        let tables: Result<Vec<Table>, _> = sections.map(|own| read(&own.name)).collect();
+        let tables: Result<Vec<Table>, _> = sections.map(|section| read(&section.name)).collect();
         Ok(checks::of_sections(self.case, stage, &tables?, false))
     }
 
@@ -285,8 +285,8 @@ impl<const D: usize> Beginning<'_, D> {
             let mut of_kept = std::iter::zip(&stages, &kept.sections);
             !of_kept.any(|(stage, stays)| {
                 let section = name.strip_suffix(stage.as_str());
-                section.is_some_and(|own| {
-                    !old.contains_key(own) || stays.iter().any(|stays| stays == own)
+                section.is_some_and(|section| {
+                    !old.contains_key(section) || stays.iter().any(|stays| stays == section)
                 })
             })
         })?;

@@ -49,8 +49,8 @@ fn watched<const D: usize>(
 ) -> Option<Place> {
     let mut changes = vec![false; case.bodies.len()];
     for stage in &case.stages {
-        if let StageKind::Construction(own) = &stage.kind {
-            for &body in own.place.iter().chain(&own.remove) {
+        if let StageKind::Construction(works) = &stage.kind {
+            for &body in works.place.iter().chain(&works.remove) {
                 changes[body] = true;
             }
         }
@@ -76,14 +76,14 @@ fn watched<const D: usize>(
         let pairs = std::iter::zip(&particles.x[particle], point);
         pairs.map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
     };
-    let own = if goes.is_empty() || stays.is_empty() {
+    let found = if goes.is_empty() || stays.is_empty() {
         nearest(particles, point, f64::INFINITY)
     } else {
         (0..particles.len())
             .filter(of_those_that_stay)
             .min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
     };
-    own.map(|own| Place::near(particles, own, point, case.materials.len()))
+    found.map(|particle| Place::near(particles, particle, point, case.materials.len()))
 }
 
 impl Records {
@@ -192,9 +192,9 @@ impl Records {
             Quantity::PlasticShare => moment.plastic_share,
             Quantity::FactorOfSafety => self.factor_of_safety,
             Quantity::Discharge(water, section) => {
-                let own = self.discharges.get(water);
+                let flow = self.discharges.get(water);
                 let number = section.map_or(0, |section| section + 1);
-                own.and_then(|own| own.get(number))
+                flow.and_then(|flow| flow.get(number))
                     .copied()
                     .unwrap_or(f64::NAN)
             }
@@ -212,13 +212,13 @@ impl Records {
         for (k, check) in case.checks.iter().enumerate() {
             if check.at == CheckTime::Peak && check.stage.unwrap_or(last) == moment.stage {
                 // The larger of two as they are told, and the number where only one is one.
-                let own = self.quantity(case, check.of, moment);
+                let value = self.quantity(case, check.of, moment);
                 let is_turned = check.divide_by < 0.0;
                 let peak = &mut self.peaks[k];
                 *peak = if is_turned {
-                    peak.min(own)
+                    peak.min(value)
                 } else {
-                    peak.max(own)
+                    peak.max(value)
                 };
             }
         }
@@ -237,7 +237,7 @@ impl Records {
             curves: vec![None; case.curves.len()],
             monitors: Vec::new(),
             rigid: vec![None; case.rigid.len()],
-            energy: moment.energy.map(|own| energy_row(moment, own)),
+            energy: moment.energy.map(|energy| energy_row(moment, energy)),
             peaks: self.peaks.clone(),
         };
         for (k, curve) in case.curves.iter().enumerate() {
@@ -302,13 +302,13 @@ fn energy_table(per_metre: &str) -> Table {
 }
 
 /// The row of a moment in the table of energy.
-fn energy_row<const D: usize>(moment: &Moment<'_, D>, own: &EnergySummary) -> Vec<f64> {
+fn energy_row<const D: usize>(moment: &Moment<'_, D>, energy: &EnergySummary) -> Vec<f64> {
     let place = [
         moment.stage as f64 + 1.0,
         moment.number as f64,
         moment.controls.time,
     ];
-    let parts = own.parts();
+    let parts = energy.parts();
     let parts = parts.iter().map(|(_, value)| *value);
     place.into_iter().chain(parts).collect()
 }

@@ -248,9 +248,9 @@ impl<const D: usize> SavedStates<'_, D> {
 
     /// A state with the structures that its controls have, without what moves beside its walls.
     fn body(&self, name: &str, controls: &Controls) -> Result<Body<D>, CaseError> {
-        let own = self.found.states.iter().find(|(state, _)| state == name);
+        let found = self.found.states.iter().find(|(state, _)| state == name);
         let missing = || self.damaged(name, "the state is missing".to_owned());
-        let mut body = own.map(|(_, body)| body.clone()).ok_or_else(missing)?;
+        let mut body = found.map(|(_, body)| body.clone()).ok_or_else(missing)?;
         let in_notes = |why| self.damaged(META, why);
         let saved = self.notes.rigid.get(name).map_or(&[][..], Vec::as_slice);
         body.rigid = rigid::taken_up(self.case, self.laws, controls, saved)?.map_err(in_notes)?;

@@ -68,8 +68,8 @@ impl<const D: usize> Output<D> {
             .iter()
             .filter(|(_, body)| !body.reinforcement.is_empty());
         let members = with_members.map(|(name, body)| {
-            let own = reinforcement::all(body);
-            ((*name).to_owned(), own)
+            let kept = reinforcement::all(body);
+            ((*name).to_owned(), kept)
         });
         let notes = Notes {
             rigid: saved.collect(),
@@ -119,11 +119,11 @@ impl<const D: usize> Output<D> {
         );
         synced.and(frames)?;
         let mut notes = notes.clone();
-        for (name, own) in &mut notes.readings.tables {
+        for (name, reading) in &mut notes.readings.tables {
             let path = self.folder.root().join(csv(name));
             let table = tables.iter().find(|table| table.path() == path);
-            own.rows = table.map_or(0, |table| table.len());
-            own.digest = rows::digest(&path, own.rows)?.unwrap_or_default();
+            reading.rows = table.map_or(0, |table| table.len());
+            reading.digest = rows::digest(&path, reading.rows)?.unwrap_or_default();
         }
         let states = [("current", body)];
         let (folder, meta) = (self.folder.checkpoint(), self.meta(&notes, &states)?);

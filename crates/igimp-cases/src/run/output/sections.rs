@@ -168,8 +168,8 @@ impl<const D: usize> Cells<D> {
         let cells = (0..section.points).filter_map(|k| grid.cell_at(&place(section, k)));
         let mut cells: Vec<[usize; D]> = cells.collect();
         cells.dedup();
-        let own = |cell: &[usize; D]| self.0.get(cell).cloned();
-        cells.iter().filter_map(own).collect()
+        let inside = |cell: &[usize; D]| self.0.get(cell).cloned();
+        cells.iter().filter_map(inside).collect()
     }
 }
 

@@ -33,17 +33,17 @@ impl<const D: usize> Output<D> {
                 self.figures.extend(pictures);
             }
         }
-        for own in &model.courses {
-            self.balance_of(case, own)?;
+        for course in &model.courses {
+            self.balance_of(case, course)?;
         }
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
 
     /// The balance of a flow in time as a table, under the name of its last moment.
-    fn balance_of(&mut self, case: &Case<D>, own: &Followed) -> Result<(), CaseError> {
+    fn balance_of(&mut self, case: &Case<D>, course: &Followed) -> Result<(), CaseError> {
         let unit = if case.is_whole() { "m3" } else { "m3/m" };
-        let header = ["entered", "left", "stored"].map(|own| format!("{own} [{unit}]"));
+        let header = ["entered", "left", "stored"].map(|column| format!("{column} [{unit}]"));
         let [entered, left, stored] = &header;
         let columns = [
             "time [s]",
@@ -52,9 +52,9 @@ impl<const D: usize> Output<D> {
             stored,
             "error over all that moved [-]",
         ];
-        let name = format!("seepage-balance-{}", name_of_course(case, own));
+        let name = format!("seepage-balance-{}", name_of_course(case, course));
         let mut table = Table::new(pictures::file_name(&name), &columns);
-        for row in &own.balance {
+        for row in &course.balance {
             table.push(vec![row.time, row.entered, row.left, row.stored, row.error]);
         }
         Ok(table.write_csv(&self.folder.sections())?)
@@ -82,8 +82,8 @@ fn free_surface<const D: usize>(name: &str, flow: &Seepage<D>) -> Table {
 }
 
 /// A flow in time is called by its last moment.
-fn name_of_course<'c, const D: usize>(case: &'c Case<D>, own: &Followed) -> &'c str {
-    (own.conditions.last()).map_or("", |&last| case.water[last].name.as_str())
+fn name_of_course<'c, const D: usize>(case: &'c Case<D>, course: &Followed) -> &'c str {
+    (course.conditions.last()).map_or("", |&last| case.water[last].name.as_str())
 }
 
 /// The flows of a model, with the names of their conditions.
@@ -91,9 +91,9 @@ fn flows<'m, const D: usize>(
     model: &'m Model<'_, D>,
 ) -> impl Iterator<Item = (&'m str, &'m Seepage<D>)> {
     let conditions = model.case.water.iter().enumerate();
-    conditions.filter_map(|(index, own)| {
+    conditions.filter_map(|(index, condition)| {
         let flow = model.ground_water(index)?.flow()?;
-        Some((own.name.as_str(), &**flow))
+        Some((condition.name.as_str(), &**flow))
     })
 }
 
@@ -101,7 +101,7 @@ fn flows<'m, const D: usize>(
 pub(crate) fn by_condition<const D: usize>(model: &Model<'_, D>) -> Vec<Vec<f64>> {
     let of = |condition: usize| {
         let flow = model.ground_water(condition)?.flow()?;
-        let sections = flow.sections.iter().map(|own| own.inflow);
+        let sections = flow.sections.iter().map(|section| section.inflow);
         Some(std::iter::once(flow.outflow).chain(sections).collect())
     };
     (0..model.case.water.len())
@@ -135,7 +135,7 @@ pub(crate) fn tables<const D: usize>(model: &Model<'_, D>) -> Vec<SetupTable> {
     if found.is_empty() {
         return Vec::new();
     }
-    let header = |own: &[&str]| own.iter().map(|&own| own.to_owned()).collect();
+    let header = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
     let in_time = SetupTable {
         title: "Seepage: balance in time".to_owned(),
         header: header(&[
@@ -151,7 +151,7 @@ pub(crate) fn tables<const D: usize>(model: &Model<'_, D>) -> Vec<SetupTable> {
         rows: model
             .courses
             .iter()
-            .filter_map(|own| balance(model.case, own))
+            .filter_map(|course| balance(model.case, course))
             .collect(),
     };
     let mut tables = vec![
@@ -185,14 +185,14 @@ pub(crate) fn tables<const D: usize>(model: &Model<'_, D>) -> Vec<SetupTable> {
 }
 
 /// The balance of a flow in time at its end.
-fn balance<const D: usize>(case: &Case<D>, own: &Followed) -> Option<Vec<String>> {
-    let end = own.balance.last()?;
+fn balance<const D: usize>(case: &Case<D>, course: &Followed) -> Option<Vec<String>> {
+    let end = course.balance.last()?;
     let number = |value: f64| format!("{value:.4e}");
     Some(vec![
-        name_of_course(case, own).to_owned(),
+        name_of_course(case, course).to_owned(),
         short(end.time),
-        (own.balance.len() - 1).to_string(),
-        own.cuts.to_string(),
+        (course.balance.len() - 1).to_string(),
+        course.cuts.to_string(),
         number(end.entered),
         number(end.left),
         number(end.stored),
@@ -206,18 +206,18 @@ fn discharges<const D: usize>(name: &str, flow: &Seepage<D>) -> Vec<Vec<String>>
         let [enters, leaves] = ends;
         vec![name.to_owned(), place.to_owned(), enters, leaves]
     };
-    let flows = |own: &&Discharge| own.inflow > 0.0 || own.outflow > 0.0;
+    let flows = |flux: &&Discharge| flux.inflow > 0.0 || flux.outflow > 0.0;
     let mut rows: Vec<Vec<String>> = (flow.discharges.iter().filter(flows))
-        .map(|own| row(&own.name, [own.inflow, own.outflow].map(number)))
+        .map(|flux| row(&flux.name, [flux.inflow, flux.outflow].map(number)))
         .collect();
     rows.push(row("all", [flow.inflow, flow.outflow].map(number)));
     if let Some(outflow) = flow.outflow_at_lower_floor {
         let place = format!("all, with a floor of {}", short(0.1 * flow.floor));
         rows.push(row(&place, [outflow, outflow].map(number)));
     }
-    rows.extend(flow.sections.iter().map(|own| {
-        let place = format!("section {}, towards the positive axis", own.name);
-        row(&place, [number(own.inflow), String::new()])
+    rows.extend(flow.sections.iter().map(|section| {
+        let place = format!("section {}, towards the positive axis", section.name);
+        row(&place, [number(section.inflow), String::new()])
     }));
     rows
 }

@@ -15,7 +15,7 @@ pub(crate) fn of_history<const D: usize>(case: &Case<D>, stages: usize) -> Strin
     history.title.clear();
     let named = history.stages.iter().flat_map(|stage| {
         let search = match &stage.kind {
-            StageKind::StrengthReduction(own) => own.monitor,
+            StageKind::StrengthReduction(search) => search.monitor,
             _ => None,
         };
         [stage.stop_when.monitor, search]

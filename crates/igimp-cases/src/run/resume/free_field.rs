@@ -19,10 +19,10 @@ pub(crate) struct SavedFreeField {
 
 /// The columns of a body.
 pub(crate) fn all<const D: usize>(body: &Body<D>) -> Vec<SavedFreeField> {
-    let saved = |own: &FreeField<D>| SavedFreeField {
-        normal: own.normal,
-        upper: own.upper,
-        nodes: (own.nodes.iter())
+    let saved = |column: &FreeField<D>| SavedFreeField {
+        normal: column.normal,
+        upper: column.upper,
+        nodes: (column.nodes.iter())
             .map(|node| [node.force.to_vec(), node.displacement.to_vec()])
             .collect(),
     };
@@ -32,7 +32,7 @@ pub(crate) fn all<const D: usize>(body: &Body<D>) -> Vec<SavedFreeField> {
 /// The particles of the columns of a body, by the names of their states.
 pub(crate) fn states<const D: usize>(body: &Body<D>) -> Vec<(String, Body<D>)> {
     (body.free_fields.iter().enumerate())
-        .map(|(index, own)| (name(index), Body::new(own.particles.clone())))
+        .map(|(index, column)| (name(index), Body::new(column.particles.clone())))
         .collect()
 }
 
@@ -45,7 +45,7 @@ pub(crate) fn taken_up<const D: usize>(
     saved: &[SavedFreeField],
     states: &[(String, Body<D>)],
 ) -> Result<Vec<FreeField<D>>, String> {
-    let column = |(index, own): (usize, &SavedFreeField)| {
+    let column = |(index, field): (usize, &SavedFreeField)| {
         let name = name(index);
         let state = states.iter().find(|(state, _)| *state == name);
         let (_, body) = state.ok_or_else(|| format!("the state {name} is missing"))?;
@@ -57,11 +57,11 @@ pub(crate) fn taken_up<const D: usize>(
                 displacement: vector(displacement)?,
             })
         };
-        let nodes: Option<Vec<_>> = own.nodes.iter().enumerate().map(node).collect();
-        let nodes = nodes.filter(|_| own.normal < D);
+        let nodes: Option<Vec<_>> = field.nodes.iter().enumerate().map(node).collect();
+        let nodes = nodes.filter(|_| field.normal < D);
         Ok(FreeField {
-            normal: own.normal,
-            upper: own.upper,
+            normal: field.normal,
+            upper: field.upper,
             particles: body.particles.clone(),
             nodes: Arc::new(nodes.ok_or_else(|| format!("{name} is of another dimension"))?),
         })

@@ -26,18 +26,18 @@ pub(crate) fn all<const D: usize>(body: &Body<D>) -> Vec<SavedMember> {
 impl SavedMember {
     fn of<const D: usize>(member: &Reinforcement<D>) -> Self {
         let stations = member.stations.iter();
-        let bars = member.segments.iter().map(|own| {
+        let bars = member.segments.iter().map(|bar| {
             let SegmentState {
                 strain,
                 slack,
                 force,
                 is_at_limit,
-            } = own.state;
+            } = bar.state;
             (strain, slack, force, is_at_limit)
         });
         Self {
             points: stations
-                .map(|own| own.points.iter().map(|point| point.to_vec()).collect())
+                .map(|station| station.points.iter().map(|point| point.to_vec()).collect())
                 .collect(),
             bars: bars.collect(),
         }
@@ -58,19 +58,19 @@ pub(crate) fn taken_up<const D: usize>(
         ));
     }
     let mut taken = Vec::with_capacity(saved.len());
-    for (index, own) in std::iter::zip(controls.installed(), saved) {
+    for (index, entry) in std::iter::zip(controls.installed(), saved) {
         let mut member = reinforcement::made(case, &case.reinforcement[index]);
-        let saved: Option<Vec<Vec<[f64; D]>>> = (own.points.iter())
+        let saved: Option<Vec<Vec<[f64; D]>>> = (entry.points.iter())
             .map(|points| {
                 let points = points.iter().map(|point| point.as_slice().try_into().ok());
                 points.collect()
             })
             .collect();
         let counts = |of: &mut dyn Iterator<Item = usize>| of.collect::<Vec<_>>();
-        let has = counts(&mut member.stations.iter().map(|own| own.points.len()));
+        let has = counts(&mut member.stations.iter().map(|station| station.points.len()));
         let fits = |saved: &Vec<Vec<[f64; D]>>| {
             counts(&mut saved.iter().map(Vec::len)) == has
-                && own.bars.len() == member.segments.len()
+                && entry.bars.len() == member.segments.len()
         };
         let Some(saved) = saved.filter(fits) else {
             return Err(format!(
@@ -82,7 +82,7 @@ pub(crate) fn taken_up<const D: usize>(
             station.points = points;
         }
         for (segment, &(strain, slack, force, is_at_limit)) in
-            member.segments.iter_mut().zip(&own.bars)
+            member.segments.iter_mut().zip(&entry.bars)
         {
             segment.state = SegmentState {
                 strain,

@@ -95,39 +95,39 @@ pub(crate) fn taken_up<const D: usize>(
         )));
     }
     let mut bodies = Vec::with_capacity(saved.len());
-    for (index, own) in std::iter::zip(controls.placed(), saved) {
+    for (index, entry) in std::iter::zip(controls.placed(), saved) {
         let mut body = rigid::made(case, index, laws)?;
-        if own.knots.len() != body.contact.knots.len() {
-            let (found, knots) = (own.knots.len(), body.contact.knots.len());
+        if entry.knots.len() != body.contact.knots.len() {
+            let (found, knots) = (entry.knots.len(), body.contact.knots.len());
             return Ok(Err(format!(
                 "rigid body {index} was saved with {found} knots, and has {knots}"
             )));
         }
-        let rows: Option<Vec<[f64; D]>> = (own.turn.iter())
+        let rows: Option<Vec<[f64; D]>> = (entry.turn.iter())
             .map(|row| row.as_slice().try_into().ok())
             .collect();
         let turn = rows.and_then(|rows| rows.try_into().ok());
-        let (Some(turn), Ok(origin)) = (turn, own.origin.as_slice().try_into()) else {
+        let (Some(turn), Ok(origin)) = (turn, entry.origin.as_slice().try_into()) else {
             return Ok(Err(format!(
                 "rigid body {index} was not saved in {D} dimensions"
             )));
         };
         (body.pose.origin, body.pose.turn) = (origin, turn);
-        body.pose.angle = own.angle;
-        let [velocity, spin, acceleration, spin_rate] = own.motion;
+        body.pose.angle = entry.angle;
+        let [velocity, spin, acceleration, spin_rate] = entry.motion;
         body.motion.velocity.copy_from_slice(&velocity[..D]);
         body.motion.acceleration.copy_from_slice(&acceleration[..D]);
         (body.motion.spin, body.motion.spin_rate) = (spin, spin_rate);
-        for (knot, own) in body.contact.knots.iter_mut().zip(&own.knots) {
+        for (knot, node) in body.contact.knots.iter_mut().zip(&entry.knots) {
             *knot = ContactNode {
-                pressure: own.pressure,
-                shear: own.shear,
-                area: own.area,
-                gap: own.gap,
-                way: own.way,
-                is_closed: own.is_closed,
-                slips: own.slips,
-                is_broken: own.is_broken,
+                pressure: node.pressure,
+                shear: node.shear,
+                area: node.area,
+                gap: node.gap,
+                way: node.way,
+                is_closed: node.is_closed,
+                slips: node.slips,
+                is_broken: node.is_broken,
             };
         }
         bodies.push(body);

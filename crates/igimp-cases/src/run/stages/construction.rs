@@ -35,13 +35,13 @@ pub(crate) fn build<const D: usize>(
 ) -> Result<StageEnd, CaseError> {
     let model = session.model;
     let stage = &model.case.stages[number];
-    let StageKind::Construction(own) = &stage.kind else {
+    let StageKind::Construction(works) = &stage.kind else {
         return Ok(StageEnd::Completed(EndReason::ReachedItsEnd));
     };
-    let (changed, pushed) = changed(model, start.unwrap_or(state), number, own)?;
+    let (changed, pushed) = changed(model, start.unwrap_or(state), number, works)?;
     let held = holding(model, &changed, number)?;
     if resumption.is_none() {
-        for &body in &own.place {
+        for &body in &works.place {
             if let Some(text) = moved_below(model, state, body) {
                 session.warn(text);
             }
@@ -65,43 +65,43 @@ fn changed<const D: usize>(
     model: &Model<'_, D>,
     start: &State<D>,
     number: usize,
-    own: &Construction,
+    works: &Construction,
 ) -> Result<(State<D>, Option<String>), CaseError> {
     let case = model.case;
     let mut state = start.clone();
     let mut pushed = None;
     let body_of =
         |particles: &Particles<D>, particle: usize| model.seeded.body[particles.number[particle]];
-    if !own.place.is_empty()
+    if !works.place.is_empty()
         && let Some(later) = &model.later
     {
-        let placed = later.keeping(|particle| own.place.contains(&body_of(later, particle)))?;
+        let placed = later.keeping(|particle| works.place.contains(&body_of(later, particle)))?;
         state.body.particles = state.body.particles.joined_by(&placed);
         pushed = pushed_aside(case, &mut state);
     }
-    if !own.remove.is_empty() {
+    if !works.remove.is_empty() {
         let particles = &state.body.particles;
-        let stays = |particle| !own.remove.contains(&body_of(particles, particle));
+        let stays = |particle| !works.remove.contains(&body_of(particles, particle));
         state.body.particles = particles.keeping(stays)?;
     }
     let mut fields = (*state.body.particles).clone();
     let ground = case.ground();
     for particle in 0..fields.x.len() {
         let body = model.seeded.body[fields.number[particle]];
-        if own.dissipate {
+        if works.dissipate {
             let_water_out(&mut fields, particle);
         }
-        let stated = own.materials.iter().find(|(of, _)| *of == body);
+        let stated = works.materials.iter().find(|(of, _)| *of == body);
         // A body that comes back consists of what it consisted of last.
         let kept = || {
             let last = case.material_after(case.stages[number].start_from, body);
-            (own.place.contains(&body) && last != case.bodies[body].material).then_some(last)
+            (works.place.contains(&body) && last != case.bodies[body].material).then_some(last)
         };
         if let Some(material) = stated.map(|(_, material)| *material).or_else(kept) {
             let law = fields.law[particle];
             fields.law[particle] = case.law_beside(law, material);
             // What is placed is free of stress, whatever its law speaks of, and remembers nothing.
-            let is_placed = own.place.contains(&body);
+            let is_placed = works.place.contains(&body);
             if !is_placed
                 && case
                     .material_of(law)
@@ -122,7 +122,7 @@ fn changed<const D: usize>(
         }
     }
     state.body.particles = Particles::from_fields(fields)?;
-    state.controls.water = own.water.or(state.controls.water);
+    state.controls.water = works.water.or(state.controls.water);
     Ok((state, pushed))
 }
 
@@ -227,10 +227,10 @@ fn become_soil_of<const D: usize>(
     let tau = fields.sigma[particle].map(|row| row.map(|stress| stress * stretch));
     let law = ScaledLaw::new(&*model.laws[fields.law[particle]], ratios)?;
     let mut history = law.initial_history(&principal_values::<D>(&tau));
-    if let Some((law_before, own)) = remembers {
+    if let Some((law_before, old)) = remembers {
         let before = Remembered {
             variables: model.laws[law_before].internal_variables(),
-            history: &own,
+            history: &old,
         };
         history = law.remembering(history, &before);
     }

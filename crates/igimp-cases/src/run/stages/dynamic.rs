@@ -63,8 +63,8 @@ pub(crate) fn dynamic<const D: usize>(
     let mut to = target(model.case, stage, &from);
     to.time += dynamic.duration;
     // Forces on rigid bodies act from the first moment on, and what holds them no longer lets go at once.
-    for (own, end) in from.rigid.iter_mut().zip(&to.rigid) {
-        own.loaded = end.loaded;
+    for (first, end) in from.rigid.iter_mut().zip(&to.rigid) {
+        first.loaded = end.loaded;
     }
     if resumption.is_none() {
         begin(session, state, number)?;
@@ -96,7 +96,7 @@ pub(crate) fn dynamic<const D: usize>(
                 ..taken.moment(number, summary.steps)
             })?;
             let time = taken.controls.time - from.time;
-            let share = energy.map_or(1.0, |own| own.kinetic / own.most_kinetic);
+            let share = energy.map_or(1.0, |energy| energy.kinetic / energy.most_kinetic);
             let at_rest = at_rest(dynamic, &mut calm, (time, share));
             let resumption = Resumption {
                 resistance: taken.resistance,
@@ -142,7 +142,7 @@ fn place<const D: usize>(
 fn at_rest(dynamic: &Dynamic, calm: &mut Calm, (time, share): (f64, f64)) -> Option<EndReason> {
     let is_calm = calm.take(time, share / dynamic.at_rest?);
     let record = dynamic.ground_motion.as_ref();
-    let shakes_until = record.and_then(|own| own.times.last());
+    let shakes_until = record.and_then(|motion| motion.times.last());
     let rests = is_calm && shakes_until.is_none_or(|end| time >= *end);
     rests.then_some(EndReason::CameToRest { time, share })
 }
@@ -170,9 +170,9 @@ fn first_controls<const D: usize>(
 
 /// Whether gravity has not acted in any stage that a stage goes on from.
 fn begins_to_weigh(stages: &[Stage], number: usize) -> bool {
-    let before = |&own: &usize| stages[own].start_from;
+    let before = |&stage: &usize| stages[stage].start_from;
     let earlier = std::iter::successors(before(&number), before);
-    let mut kinds = earlier.map(|own| &stages[own].kind);
+    let mut kinds = earlier.map(|stage| &stages[stage].kind);
     !kinds.any(|kind| {
         matches!(
             kind,
@@ -204,23 +204,23 @@ fn sliding_block<const D: usize>(
 ) -> Option<NewmarkSummary> {
     let (from, motion) = (dynamic.newmark_from?, dynamic.ground_motion.as_ref()?);
     let case = session.model.case;
-    let told = session.summary.stages.get(from)?;
+    let summary = session.summary.stages.get(from)?;
     let reached = |number: usize| {
         let stage = session.summary.stages.get(number);
         stage.map_or(0.0, |stage| stage.reached)
     };
     let push = Driven::Acceleration(0);
-    let driven = Driven::of(&case.stages[from].kind, |own| {
-        own.before(case, from, &reached)
+    let driven = Driven::of(&case.stages[from].kind, |driven| {
+        driven.before(case, from, &reached)
     });
-    let limit = told.path.as_ref().and_then(|path| path.limit);
+    let limit = summary.path.as_ref().and_then(|path| path.limit);
     let limit = limit.filter(|_| driven == Some(push));
-    let coefficient = limit.map_or_else(|| push.after(case, from, &reached), |own| own.factor);
+    let coefficient = limit.map_or_else(|| push.after(case, from, &reached), |limit| limit.factor);
     let displacement = motion.sliding(coefficient * case.gravity, dynamic.duration);
     displacement.is_finite().then(|| NewmarkSummary {
         yield_coefficient: coefficient,
         is_limit: limit.is_some(),
-        from: told.name.clone(),
+        from: summary.name.clone(),
         peak_acceleration: motion.peak(dynamic.duration),
         displacement,
     })
@@ -231,7 +231,7 @@ fn longest_step(dynamic: &Dynamic) -> impl Fn(f64) -> f64 {
     let record = dynamic.ground_motion.as_ref();
     let usual = record.map_or(f64::INFINITY, GroundMotion::interval);
     move |at| {
-        let longest = record.map_or(usual, |own| own.longest_step(at * dynamic.duration, usual));
+        let longest = record.map_or(usual, |rec| rec.longest_step(at * dynamic.duration, usual));
         longest / dynamic.duration
     }
 }
@@ -251,7 +251,7 @@ fn pace<const D: usize>(
     let longest = dynamic
         .longest_step
         .map_or(1.0, share)
-        .min(record.map_or(1.0, |own| share(own.interval())))
+        .min(record.map_or(1.0, |motion| share(motion.interval())))
         .min(1.0 / parts as f64);
     Ok(MarchSettings {
         cuts: model.case.solver.cuts.max(CUTS),

@@ -55,7 +55,7 @@ fn factor(driven: Option<Driven>, controls: &Controls, reached: f64) -> f64 {
 
 /// The control that a stage drives from controls to controls, and its way.
 fn way(stage: &Stage, from: &Controls, to: &Controls) -> (Option<Driven>, Course) {
-    let driven = Driven::of(&stage.kind, |own| factor(Some(own), from, 0.0));
+    let driven = Driven::of(&stage.kind, |driven| factor(Some(driven), from, 0.0));
     let course = Course::between(factor(driven, from, 0.0), factor(driven, to, 1.0));
     (driven, course)
 }
@@ -169,12 +169,12 @@ fn lost(error: &StepError) -> String {
 /// What a reader has to know of the path.
 fn remark(path: &PathSummary, stage: &str) -> Option<String> {
     let last = path.limit?;
-    let told =
+    let text =
         |point: &PathPoint| format!("{} at {} m", short(point.factor), short(point.displacement));
     if path.end == PathEnd::Fallen {
         return Some(format!(
             "stage \"{stage}\": the limit of the load factor is the furthest, {}, from which it has gone back; checks take it with at = \"peak\"",
-            told(&last)
+            text(&last)
         ));
     }
     if path.end != PathEnd::StillRising {
@@ -184,8 +184,8 @@ fn remark(path: &PathSummary, stage: &str) -> Option<String> {
     let since = match limit::gone_back_from(path, &last) {
         Some(furthest) => format!(
             "has gone back since from {}, which is its limit, to {}",
-            told(&furthest),
-            told(&last)
+            text(&furthest),
+            text(&last)
         ),
         None => format!(
             "still {}, by {} % in the last doubling of the work, to {}",
@@ -195,12 +195,12 @@ fn remark(path: &PathSummary, stage: &str) -> Option<String> {
                 "rises"
             },
             short(100.0 * path.rise.unwrap_or(0.0)),
-            told(&last)
+            text(&last)
         ),
     };
     Some(format!(
         "stage \"{stage}\": the body moves as a mechanism from load factor {} on, and on the given geometry the load {since}",
-        told(&mechanism)
+        text(&mechanism)
     ))
 }
 
@@ -286,8 +286,8 @@ impl<const D: usize> Observer<D> for Watch<'_, '_, D> {
 
     fn on_cut(&mut self, error: &StepError) {
         self.session.drop_system();
-        let told = self.session.tally_cut(self.summary, error);
-        if let (Ok(_), Err(error)) = (&self.stopped, told) {
+        let tally = self.session.tally_cut(self.summary, error);
+        if let (Ok(_), Err(error)) = (&self.stopped, tally) {
             self.stopped = Err(error);
         }
     }

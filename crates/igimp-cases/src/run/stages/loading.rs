@@ -33,8 +33,8 @@ pub(crate) fn target<const D: usize>(case: &Case<D>, stage: &Stage, start: &Cont
         } => {
             end.gravity = *factor;
             let stated = [horizontal, across, vertical];
-            for (own, stated) in end.acceleration.iter_mut().zip(stated) {
-                *own = stated.unwrap_or(*own);
+            for (value, stated) in end.acceleration.iter_mut().zip(stated) {
+                *value = stated.unwrap_or(*value);
             }
         }
         StageKind::Load { loads, factor } => {
@@ -44,9 +44,9 @@ pub(crate) fn target<const D: usize>(case: &Case<D>, stage: &Stage, start: &Cont
         }
         StageKind::Displacement { settlement, .. } => end.settlement += settlement,
         StageKind::Rigid(moves) | StageKind::Dynamic(Dynamic { bodies: moves, .. }) => {
-            for own in moves {
-                let body = &mut end.rigid[own.body];
-                for (k, drive) in own.drives.iter().enumerate() {
+            for motion in moves {
+                let body = &mut end.rigid[motion.body];
+                for (k, drive) in motion.drives.iter().enumerate() {
                     match drive {
                         Some(RigidDrive::By(by)) => body.moved[k] += by,
                         Some(RigidDrive::Force(force)) => body.loaded[k] = Some(*force),
@@ -55,12 +55,12 @@ pub(crate) fn target<const D: usize>(case: &Case<D>, stage: &Stage, start: &Cont
                 }
             }
         }
-        StageKind::Construction(own) => end.water = own.water.or(end.water),
+        StageKind::Construction(works) => end.water = works.water.or(end.water),
         _ => {}
     }
-    end.time += stage.consolidation.as_ref().map_or(0.0, |own| own.duration);
+    end.time += stage.consolidation.as_ref().map_or(0.0, |c| c.duration);
     end.drained =
-        stage.drained || matches!(&stage.kind, StageKind::Construction(own) if own.dissipate);
+        stage.drained || matches!(&stage.kind, StageKind::Construction(works) if works.dissipate);
     end
 }
 
@@ -103,8 +103,8 @@ pub(crate) fn release<const D: usize>(
         begin(session, state, number)?;
     }
     let mut settings = model.march_settings(stage.steps);
-    if let Some(own) = consolidation {
-        settings = flow::steps(model.case, own, settings, model.smallest_side()?);
+    if let Some(consolidation) = consolidation {
+        settings = flow::steps(model.case, consolidation, settings, model.smallest_side()?);
     }
     let seeks_limit = limit_load::is_sought(stage);
     // With water in its pores the work of loads is not that of effective stress.

@@ -16,14 +16,14 @@ pub(crate) fn begin<const D: usize>(
     stage: &Stage,
     moves: &[RigidMove],
 ) -> Result<Vec<String>, CaseError> {
-    let mut told = Vec::new();
-    for own in moves {
-        if !state.controls.rigid[own.body].placed {
-            told.extend(place(model, state, own.body)?);
-            told.extend(heavy_at_once(model, stage, own));
+    let mut remarks = Vec::new();
+    for motion in moves {
+        if !state.controls.rigid[motion.body].placed {
+            remarks.extend(place(model, state, motion.body)?);
+            remarks.extend(heavy_at_once(model, stage, motion));
         }
-        let body = &mut state.controls.rigid[own.body];
-        for (k, drive) in own.drives.iter().enumerate() {
+        let body = &mut state.controls.rigid[motion.body];
+        for (k, drive) in motion.drives.iter().enumerate() {
             match drive {
                 Some(RigidDrive::By(_)) => body.loaded[k] = None,
                 Some(RigidDrive::Force(_)) => {
@@ -34,24 +34,24 @@ pub(crate) fn begin<const D: usize>(
         }
     }
     if stage.geometry == Geometry::Given {
-        told.extend(
+        remarks.extend(
             moves
                 .iter()
-                .filter_map(|own| out_of_reach(model, state, own.body)),
+                .filter_map(|motion| out_of_reach(model, state, motion.body)),
         );
     }
-    Ok(told)
+    Ok(remarks)
 }
 
 /// What is said of a body whose weight nothing holds as it is placed, where forces come on in steps.
 fn heavy_at_once<const D: usize>(
     model: &Model<'_, D>,
     stage: &Stage,
-    own: &RigidMove,
+    motion: &RigidMove,
 ) -> Option<String> {
-    let part = &model.case.rigid[own.body];
+    let part = &model.case.rigid[motion.body];
     let comes_on = matches!(stage.kind, StageKind::Rigid(_)) && stage.steps > 1;
-    let is_free = matches!(own.drives[D - 1], Some(RigidDrive::Force(_)));
+    let is_free = matches!(motion.drives[D - 1], Some(RigidDrive::Force(_)));
     (part.weight > 0.0 && is_free && comes_on).then(|| {
         let (name, up) = (&part.name, ["x", "y", "z"][D - 1]);
         format!(
@@ -69,7 +69,7 @@ fn out_of_reach<const D: usize>(
     index: usize,
 ) -> Option<String> {
     let part = &model.case.rigid[index];
-    let slot = state.controls.placed().position(|own| own == index)?;
+    let slot = state.controls.placed().position(|body| body == index)?;
     let (body, particles) = (&state.body.rigid[slot], &state.body.particles);
     // From the nearest place of the body to the domain.
     let gap = |(x, half): (&[f64; D], &[f64; D])| {

@@ -270,11 +270,11 @@ fn factor_found<const D: usize>(session: &Session<'_, D>, number: usize) -> Opti
 }
 
 /// By how much strength is divided in a stage, of what search it is a multiple, for the verdict; none where the case states it.
-pub(crate) fn told<const D: usize>(session: &Session<'_, D>, number: usize) -> Option<String> {
+pub(crate) fn remark<const D: usize>(session: &Session<'_, D>, number: usize) -> Option<String> {
     let stages = &session.model.case.stages;
     let times = match &stages[number].kind {
-        StageKind::RunOut(own) => own.reduction,
-        StageKind::Dynamic(own) => own.reduction.as_ref()?.1,
+        StageKind::RunOut(run_out) => run_out.reduction,
+        StageKind::Dynamic(dynamic) => dynamic.reduction.as_ref()?.1,
         _ => return None,
     };
     let (search, factor) = factor_found(session, number)?;

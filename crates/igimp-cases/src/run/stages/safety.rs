@@ -458,9 +458,9 @@ fn undeformed_or_found<const D: usize>(
 /// Whether all soil drained while its weight came on, of the stages that lead to a search: under gravity, or as K₀ gave its stress.
 fn weight_drains<const D: usize>(case: &Case<D>, number: usize) -> bool {
     let stages = &case.stages;
-    let mut before = std::iter::successors(Some(number), |&own| stages[own].start_from).skip(1);
-    let drains = before.find_map(|own| match stages[own].kind {
-        StageKind::Gravity { .. } => Some(stages[own].drained),
+    let mut before = std::iter::successors(Some(number), |&k| stages[k].start_from).skip(1);
+    let drains = before.find_map(|k| match stages[k].kind {
+        StageKind::Gravity { .. } => Some(stages[k].drained),
         StageKind::K0 => Some(true),
         _ => None,
     });

@@ -46,7 +46,7 @@ pub(crate) fn still<const D: usize>(
 fn lost<const D: usize>(session: &Session<'_, D>, state: &State<D>) -> Option<String> {
     let energies = session.summary.stages.iter();
     let energies = energies.filter_map(|stage| stage.energy.as_ref());
-    let most = energies.fold(0.0, |most: f64, own| most.max(own.most_kinetic));
+    let most = energies.fold(0.0, |most: f64, energy| most.max(energy.most_kinetic));
     let (particles, rigid) = (&state.body.particles, &state.body.rigid);
     let share = kinetic_energy(particles, rigid) / most;
     let case = session.model.case;
@@ -56,7 +56,7 @@ fn lost<const D: usize>(session: &Session<'_, D>, state: &State<D>) -> Option<St
         .into_iter()
         .fold(f64::INFINITY, f64::min);
     let mass =
-        particles.mass.iter().sum::<f64>() + rigid.iter().map(|own| own.motion.mass).sum::<f64>();
+        particles.mass.iter().sum::<f64>() + rigid.iter().map(|body| body.motion.mass).sum::<f64>();
     let round_off = ROUND_OFF * mass * case.gravity * cell;
     (most > round_off && share > TOLD).then(|| {
         format!(

@@ -55,8 +55,8 @@ fn held_by_walls<const D: usize>(
     Ok((0..grid.node_count())
         .filter(|&node| is_at(&grid.node_place(node)))
         .map(|node| {
-            let own = |axis| of(&all, node, axis) && !of(&others, node, axis);
-            (node, std::array::from_fn(own))
+            let is_held = |axis| of(&all, node, axis) && !of(&others, node, axis);
+            (node, std::array::from_fn(is_held))
         })
         .collect())
 }
@@ -83,7 +83,7 @@ pub(super) fn begin<const D: usize>(
     let trial = system.evaluate(&still, TangentKind::Elastic)?;
     let reactions = system.reactions(&trial);
     let before: BTreeMap<usize, &WallTrack> =
-        controls.walls.iter().map(|own| (own.node, own)).collect();
+        controls.walls.iter().map(|old| (old.node, old)).collect();
     Ok(nodes
         .into_iter()
         .map(|(node, is_held)| {
@@ -95,10 +95,10 @@ pub(super) fn begin<const D: usize>(
             };
             for axis in (0..D).filter(|&axis| is_held[axis]) {
                 track.is_released[axis] = true;
-                match before.get(&node).filter(|own| own.is_released[axis]) {
-                    Some(own) => {
-                        track.force[axis] = own.force[axis];
-                        track.displacement[axis] = own.displacement[axis];
+                match before.get(&node).filter(|old| old.is_released[axis]) {
+                    Some(old) => {
+                        track.force[axis] = old.force[axis];
+                        track.displacement[axis] = old.displacement[axis];
                     }
                     None => track.force[axis] = reactions[node][axis],
                 }
@@ -139,8 +139,8 @@ pub(super) fn free_fields<const D: usize>(
     let body = &state.body;
     let beside = |&side: &(usize, bool)| {
         let mut before = body.free_fields.iter();
-        match before.find(|own| (own.normal, own.upper) == side) {
-            Some(own) => Ok(own.clone()),
+        match before.find(|column| (column.normal, column.upper) == side) {
+            Some(column) => Ok(column.clone()),
             None => Ok(FreeField::beside(
                 &body.particles,
                 method,
@@ -202,10 +202,10 @@ fn walls_of<const D: usize>(
             if moves { 0.0 } else { spring }
         }),
     };
-    let node = |own: &WallTrack| WallNode {
-        node: own.node,
-        force: std::array::from_fn(|axis| own.force[axis]),
-        displacement: std::array::from_fn(|axis| own.displacement[axis]),
+    let node = |track: &WallTrack| WallNode {
+        node: track.node,
+        force: std::array::from_fn(|axis| track.force[axis]),
+        displacement: std::array::from_fn(|axis| track.displacement[axis]),
     };
     Walls {
         absorbing: with_dashpots(dynamic).iter().map(wall).collect(),

@@ -18,7 +18,7 @@ pub(crate) fn of_step<const D: usize>(
     [duration, before]: [f64; 2],
 ) -> Consolidating<D> {
     let of_law = |law: usize| pore_flow(case, case.material_of(law));
-    let corner = |own: &[f64; 3]| std::array::from_fn(|axis| own[axis]);
+    let corner = |point: &[f64; 3]| std::array::from_fn(|axis| point[axis]);
     Consolidating {
         duration,
         before,
@@ -55,9 +55,9 @@ pub(crate) fn steps<const D: usize>(
 
 /// The largest coefficient of consolidation c_v = k/(m_v γ_w) of the coupled soils \[m²/s\].
 fn fastest_consolidation<const D: usize>(case: &Case<D>) -> f64 {
-    let of = |own: &Material| match (own.drainage, own.permeability) {
+    let of = |material: &Material| match (material.drainage, material.permeability) {
         (Drainage::Undrained { flows: true, .. }, Some(soil)) => {
-            soil.along.max(soil.across) / case.water_unit_weight * own.constrained_modulus()
+            soil.along.max(soil.across) / case.water_unit_weight * material.constrained_modulus()
         }
         _ => 0.0,
     };
@@ -90,7 +90,7 @@ fn pore_flow<const D: usize>(case: &Case<D>, material: &Material) -> PoreFlow<D>
 
 /// Adds an accepted step to what a stage tells of its consolidation.
 pub(crate) fn tally<const D: usize>(
-    own: &mut ConsolidationSummary,
+    summary: &mut ConsolidationSummary,
     case: &Case<D>,
     report: &StepReport,
     particles: &Particles<D>,
@@ -98,9 +98,9 @@ pub(crate) fn tally<const D: usize>(
     let Some(water) = &report.water else {
         return;
     };
-    own.time += report.duration;
-    own.outflow += water.outflow;
-    own.missing += water.missing().abs();
+    summary.time += report.duration;
+    summary.outflow += water.outflow;
+    summary.missing += water.missing().abs();
     let flows = |law: usize| {
         let drainage = case.material_of(law).drainage;
         matches!(drainage, Drainage::Undrained { flows: true, .. })
@@ -110,6 +110,6 @@ pub(crate) fn tally<const D: usize>(
         volume += particles.volume(particle);
         excess += particles.volume(particle) * particles.excess[particle].abs();
     }
-    own.excess = if volume > 0.0 { excess / volume } else { 0.0 };
-    own.most_excess = own.most_excess.max(own.excess);
+    summary.excess = if volume > 0.0 { excess / volume } else { 0.0 };
+    summary.most_excess = summary.most_excess.max(summary.excess);
 }

@@ -23,8 +23,8 @@ pub(crate) fn summary<const D: usize>(
     let all = || 0..particles.len();
     let largest = all().map(pressure).fold(0.0, f64::max);
     let excess = particles.excess.iter();
-    let [least, most] = excess.fold([0.0, 0.0], |[least, most]: [f64; 2], &own| {
-        [least.min(own), most.max(own)]
+    let [least, most] = excess.fold([0.0, 0.0], |[least, most]: [f64; 2], &value| {
+        [least.min(value), most.max(value)]
     });
     if largest <= 0.0 && least >= 0.0 {
         return None;
@@ -67,8 +67,8 @@ pub(crate) fn dilatant<const D: usize>(case: &Case<D>) -> Vec<String> {
             return None;
         };
         let undrained = matches!(material.drainage, Drainage::Undrained { .. });
-        let ends = material.softening.and_then(|own| own.dilation);
-        if ends.is_some_and(|own| own.residual == 0.0) {
+        let ends = material.softening.and_then(|softening| softening.dilation);
+        if ends.is_some_and(|ends| ends.residual == 0.0) {
             return None;
         }
         (undrained && dilation_angle > 0.0).then(|| {

@@ -55,16 +55,16 @@ impl<const D: usize> Flows<D> {
         let ground = case.ground();
         let varied = varied(case, &ground);
         let stated = |index: usize| match &case.water[index].source {
-            PoreSource::Seepage(own) => Some(&**own),
+            PoreSource::Seepage(flow) => Some(&**flow),
             _ => None,
         };
         let mut left: Vec<(usize, &SeepageCase, &InTime)> = Vec::new();
         for index in 0..case.water.len() {
-            let Some(own) = stated(index) else { continue };
-            match &own.in_time {
-                Some(in_time) => left.push((index, own, in_time)),
+            let Some(flow) = stated(index) else { continue };
+            match &flow.in_time {
+                Some(in_time) => left.push((index, flow, in_time)),
                 None => {
-                    found.by_condition[index] = Some(Arc::new(solved(case, index, own, &varied)?));
+                    found.by_condition[index] = Some(Arc::new(solved(case, index, flow, &varied)?));
                 }
             }
         }
@@ -74,9 +74,9 @@ impl<const D: usize> Flows<D> {
                 (&other.1.conditions, &other.1.free_water) == (&first.conditions, &first.free_water)
                     && (other.2.start, &other.2.histories) == (at.start, &at.histories)
             };
-            let (own, others): (Vec<_>, Vec<_>) = left.into_iter().partition(is_of_it);
+            let (moments, others): (Vec<_>, Vec<_>) = left.into_iter().partition(is_of_it);
             left = others;
-            found.follow(case, &own, &varied)?;
+            found.follow(case, &moments, &varied)?;
         }
         Ok(found)
     }
@@ -88,10 +88,10 @@ impl<const D: usize> Flows<D> {
         moments: &[(usize, &SeepageCase, &InTime)],
         varied: &[Varied<'_, D>],
     ) -> Result<(), CaseError> {
-        let [.., (last, own, in_time)] = moments else {
+        let [.., (last, flow, in_time)] = moments else {
             return Ok(());
         };
-        let mut times: Vec<f64> = moments.iter().map(|(.., own)| own.time).collect();
+        let mut times: Vec<f64> = moments.iter().map(|(.., at)| at.time).collect();
         times.dedup();
         let course = Course {
             histories: in_time.histories.clone(),
@@ -102,13 +102,13 @@ impl<const D: usize> Flows<D> {
         };
         // The ground is that of the start.
         let bodies = bodies(case, (*last, in_time.start), varied)?;
-        let (conditions, free) = given(case, own);
+        let (conditions, free) = given(case, flow);
         let grid = case.grid.grid()?;
         let found = march(&grid, &bodies, (&start, &conditions), &free, &course);
         let found = found.map_err(|source| {
             // The moment that it was on its way to.
             let next = match source {
-                SeepageError::Stuck { time } => moments.iter().find(|(.., own)| own.time > time),
+                SeepageError::Stuck { time } => moments.iter().find(|(.., at)| at.time > time),
                 _ => None,
             };
             let water = next.map_or(*last, |(index, ..)| *index);
@@ -118,8 +118,8 @@ impl<const D: usize> Flows<D> {
             }
         })?;
         let states: Vec<Arc<Seepage<D>>> = found.states.into_iter().map(Arc::new).collect();
-        for (index, _, own) in moments {
-            let state = course.times.iter().position(|time| *time >= own.time);
+        for (index, _, at) in moments {
+            let state = course.times.iter().position(|time| *time >= at.time);
             self.by_condition[*index] = state.map(|state| Arc::clone(&states[state]));
         }
         self.courses.push(Followed {
@@ -135,11 +135,11 @@ impl<const D: usize> Flows<D> {
 fn solved<const D: usize>(
     case: &Case<D>,
     condition: usize,
-    own: &SeepageCase,
+    flow: &SeepageCase,
     varied: &[Varied<'_, D>],
 ) -> Result<Seepage<D>, CaseError> {
     let bodies = bodies(case, (condition, condition), varied)?;
-    let (conditions, free) = given(case, own);
+    let (conditions, free) = given(case, flow);
     solve(&case.grid.grid()?, &bodies, &conditions, &free).map_err(|source| CaseError::Seepage {
         water: case.water[condition].name.clone(),
         source,
@@ -165,7 +165,7 @@ fn bodies<'c, const D: usize>(
     let body = |(region, soil): (_, usize)| SeepageBody {
         region,
         soil,
-        scale: varied[soil].as_deref().map(|own| -> Scale<'c, D> { own }),
+        scale: varied[soil].as_deref().map(|f| -> Scale<'c, D> { f }),
     };
     Ok(bodies.into_iter().map(body).collect())
 }
@@ -173,15 +173,15 @@ fn bodies<'c, const D: usize>(
 /// What a flow is given: its conditions, and the level of free water by place.
 fn given<'a, const D: usize>(
     case: &Case<D>,
-    own: &'a SeepageCase,
+    flow: &'a SeepageCase,
 ) -> (
     Conditions<D>,
     impl Fn(&[f64; D]) -> Option<f64> + Sync + use<'a, D>,
 ) {
     let free = |place: &[f64; D]| {
-        let level = own.free_water.as_ref()?.table(place)?;
+        let level = flow.free_water.as_ref()?.table(place)?;
         level.is_finite().then_some(level)
     };
-    let conditions = own.with_soils(&case.materials, case.water_unit_weight);
+    let conditions = flow.with_soils(&case.materials, case.water_unit_weight);
     (conditions, free)
 }

@@ -53,7 +53,7 @@ impl Way {
         ContinuationSettings {
             first_change: self.first_change,
             direct_steps: self.direct_steps.unwrap_or(usize::MAX),
-            resolves_peak: (model.case.materials.iter()).any(|own| own.softening.is_some()),
+            resolves_peak: (model.case.materials.iter()).any(|soil| soil.softening.is_some()),
             ..ContinuationSettings::new(model.march_settings(1).newton)
         }
     }
@@ -420,8 +420,8 @@ impl<const D: usize> Observer<D> for Watch<'_, '_, D> {
 
     fn on_cut(&mut self, error: &StepError) {
         self.session.drop_system();
-        let told = self.session.tally_cut(self.summary, error);
-        if let (Ok(_), Err(error)) = (&self.stopped, told) {
+        let tally = self.session.tally_cut(self.summary, error);
+        if let (Ok(_), Err(error)) = (&self.stopped, tally) {
             self.stopped = Err(error);
         }
     }

@@ -37,32 +37,32 @@ pub(super) fn of(path: &PathSummary) -> Vec<String> {
     let Some(mechanism) = path.mechanism else {
         return remarks;
     };
-    let told =
+    let text =
         |point: &PathPoint| format!("{:.4} at {} m", point.factor, short(point.displacement));
     let limit = path.limit.unwrap_or(*last);
     if path.end == PathEnd::StillRising {
         let since = match limit::gone_back_from(path, &limit) {
             Some(largest) => format!(
                 "the factor has fallen since on the given geometry: the value reported is the largest, {}, and after four times the work it is {}",
-                told(&largest),
-                told(&limit)
+                text(&largest),
+                text(&limit)
             ),
             None => format!(
                 "the factor still rises on the given geometry: the value reported is that after four times the work, {}, and the last \
                  doubling of the work brought {} %",
-                told(&limit),
+                text(&limit),
                 short(100.0 * path.rise.unwrap_or(0.0))
             ),
         };
         remarks.push(format!(
             "the body moves as a mechanism from {} on, and {since}",
-            told(&mechanism)
+            text(&mechanism)
         ));
     } else if limit.factor > (1.0 + APART) * mechanism.factor {
         remarks.push(format!(
             "the body moves as a mechanism from {} on, and the factor rises no longer from {}",
-            told(&mechanism),
-            told(&limit)
+            text(&mechanism),
+            text(&limit)
         ));
     }
     remarks
@@ -99,18 +99,18 @@ mod tests {
     #[test]
     fn a_factor_that_falls_is_not_said_to_rise() {
         let rising = path([1.01, 1.02, 1.035, 1.05]);
-        let told = of(&rising);
+        let remarks = of(&rising);
         assert_eq!(limit::interval(&rising).0, Some(1.05));
-        assert!(told[0].contains("the factor still rises"), "{told:?}");
-        assert!(told[0].contains("four times the work, 1.0500 at 0.08 m"));
+        assert!(remarks[0].contains("the factor still rises"), "{remarks:?}");
+        assert!(remarks[0].contains("four times the work, 1.0500 at 0.08 m"));
         // It falls by 1.5 % and rises by 0.2 % in the last doubling.
         let falling = path([1.02, 1.01, 1.005, 1.007]);
-        let told = of(&falling);
+        let remarks = of(&falling);
         assert_eq!(limit::interval(&falling).0, Some(1.02));
-        assert!(!told[0].contains("rises"), "{told:?}");
+        assert!(!remarks[0].contains("rises"), "{remarks:?}");
         assert!(
-            told[0].contains("the value reported is the largest, 1.0200 at 0.01 m, and after four times the work it is 1.0070 at 0.08 m"),
-            "{told:?}"
+            remarks[0].contains("the value reported is the largest, 1.0200 at 0.01 m, and after four times the work it is 1.0070 at 0.08 m"),
+            "{remarks:?}"
         );
     }
 }

@@ -56,16 +56,16 @@ pub(super) fn few_cells<const D: usize>(
     if rows <= 1.0 + 1e-6 {
         return None;
     }
-    let (told, wanted) = if rows < ENOUGH * (1.0 - 1e-6) {
+    let (size, wanted) = if rows < ENOUGH * (1.0 - 1e-6) {
         (format!("is {} cells high", short(rows)), ENOUGH)
     } else if columns < ENOUGH_COLUMNS * (1.0 - 1e-6) {
-        let told = format!("is as high as {} cells are wide", short(columns));
-        (told, ENOUGH_COLUMNS)
+        let size = format!("is as high as {} cells are wide", short(columns));
+        (size, ENOUGH_COLUMNS)
     } else {
         return None;
     };
     Some(format!(
-        "the slope {told}: with fewer than {wanted} cells over the height a factor of safety is several per cent too high; a \
+        "the slope {size}: with fewer than {wanted} cells over the height a factor of safety is several per cent too high; a \
          study of meshes (--meshes 2) tells by how much"
     ))
 }
@@ -113,7 +113,7 @@ pub(super) fn holds_its_weight<const D: usize>(
     reduction: &StrengthReduction,
 ) -> Option<String> {
     let by_weight = reduction.path == ReductionPath::Gravity && !case.stages[number].drained;
-    let holds = |own: &Material| matches!(own.drainage, Drainage::Undrained { .. });
+    let holds = |material: &Material| matches!(material.drainage, Drainage::Undrained { .. });
     let of_soil = by_weight && weight_drains(case, number) && case.materials.iter().any(holds);
     of_soil.then(|| {
         "trials raise gravity on soil that holds its water, though its weight came while all soil drained: the weight is carried \
@@ -192,7 +192,7 @@ pub(super) fn tension<const D: usize>(case: &Case<D>, state: &State<D>) -> Optio
     let pulled = sum_of_moving(particles, is_pulled)?;
     let share = pulled / all;
     let mut materials = case.materials.iter();
-    let has_cone = materials.any(|own| matches!(own.strength, Strength::DruckerPrager { .. }));
+    let has_cone = materials.any(|soil| matches!(soil.strength, Strength::DruckerPrager { .. }));
     (share >= CARRIES).then(|| {
         format!(
             "{} % of the mass that moves carries tension, which open cracks would not: the factor may be a few per cent too \

@@ -63,9 +63,9 @@ pub(super) fn shares<const D: usize>(
         for parameter in [Parameter::Whole, Parameter::Friction] {
             if let Some(laws) = step.stronger(&conditions, material, parameter)? {
                 asked.push((material, parameter));
-                let mut own = conditions.clone();
-                own.laws = laws;
-                beside.push(own);
+                let mut stronger = conditions.clone();
+                stronger.laws = laws;
+                beside.push(stronger);
             }
         }
     }
@@ -78,14 +78,14 @@ pub(super) fn shares<const D: usize>(
     let by_factor = (step.at)(step.factor * (1.0 + DIFFERENCE))?;
     let changes = increment.sensitivity(&by_factor, &beside, workspace)?;
     let change = |material: usize, parameter: Parameter| {
-        let place = asked.iter().position(|own| *own == (material, parameter))?;
+        let place = asked.iter().position(|key| *key == (material, parameter))?;
         Some(changes[place])
     };
     let dissipated = step.dissipated();
     let whole: f64 = dissipated.iter().sum::<f64>() + step.work.in_reinforcement;
     let share = |dissipated: f64| {
-        let is_told = whole > LEAST_DISSIPATED * step.gross_work;
-        if is_told { dissipated / whole } else { 0.0 }
+        let is_known = whole > LEAST_DISSIPATED * step.gross_work;
+        if is_known { dissipated / whole } else { 0.0 }
     };
     let of_material = |(number, dissipated): (usize, &f64)| {
         let strength = change(number, Parameter::Whole)?;
@@ -110,7 +110,7 @@ pub(super) fn shares<const D: usize>(
             .collect(),
         reinforcement: share(step.work.in_reinforcement),
         kinematic: kinematic
-            .filter(|own| own.missed <= LARGEST_MISSED)
+            .filter(|found| found.missed <= LARGEST_MISSED)
             .map(|found| Kinematic {
                 factor: found.factor,
                 missed: found.missed,
@@ -123,8 +123,8 @@ impl<const D: usize> LastStep<'_, D> {
     fn dissipated(&self) -> Vec<f64> {
         let case = self.model.case;
         let mut dissipated = vec![0.0; case.materials.len()];
-        for (law, own) in self.work.dissipated.iter().enumerate() {
-            dissipated[case.number_of_material(law)] += own;
+        for (law, energy) in self.work.dissipated.iter().enumerate() {
+            dissipated[case.number_of_material(law)] += energy;
         }
         dissipated
     }
