@@ -283,8 +283,8 @@ impl<const D: usize> GroundWater<D> {
         material: &Material,
         x: &[f64; D],
     ) -> [f64; 2] {
-        let given = self.by_body[self.seeded.body[number]].as_ref();
-        let table = match given.unwrap_or(&self.reference) {
+        let body = self.by_body[self.seeded.body[number]].as_ref();
+        let table = match body.unwrap_or(&self.reference) {
             source @ Source::Table { .. } => source.top(x),
             Source::Seepage { flow, .. } => flow.free_surface(x).unwrap_or(f64::NEG_INFINITY),
             _ => f64::NEG_INFINITY,
@@ -294,10 +294,7 @@ impl<const D: usize> GroundWater<D> {
         let weight = ground.weight_above(x) + ground.added_above(x, table);
         match material.drainage {
             Drainage::Total => [-weight, -pond],
-            _ => [
-                given.unwrap_or(&self.reference).at(x) - (weight + pond),
-                0.0,
-            ],
+            _ => [body.unwrap_or(&self.reference).at(x) - (weight + pond), 0.0],
         }
     }
 }

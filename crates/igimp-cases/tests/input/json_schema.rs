@@ -67,7 +67,9 @@ fn described(schema: &serde_json::Value) -> usize {
     };
     match schema {
         serde_json::Value::Object(entries) => {
-            let properties = entries.get("properties").and_then(|own| own.as_object());
+            let properties = entries
+                .get("properties")
+                .and_then(|value| value.as_object());
             let mut count = 0;
             for (key, property) in properties.into_iter().flatten() {
                 let forms = property["anyOf"].as_array();

@@ -163,7 +163,7 @@ fn messages_hold_no_control_characters() {
 /// GOAL: a slip of the unit is told, with its place and what may be meant; a value that soil, rock or steel has is not.
 #[test]
 fn implausible_values_are_told() {
-    let told = [
+    let cases = [
         (
             "unit_weight",
             "20 N/m3",
@@ -184,7 +184,7 @@ fn implausible_values_are_told() {
             "`clay` has permeability = 1 m/s, outside the range",
         ),
     ];
-    for (key, value, expected) in told {
+    for (key, value, expected) in cases {
         let file = overridden(SLOPE, &[&format!("materials.clay.{key}={value}")]).unwrap();
         let warnings = file.warnings();
         assert!(warnings.contains(expected), "{warnings}");
@@ -214,7 +214,7 @@ fn implausible_values_are_told() {
 #[test]
 fn ranges_hold_for_all_forms_of_a_value() {
     let profile = |cu: &str| format!("materials.clay.cohesion={cu}");
-    let told = [
+    let cases = [
         (profile("{ levels = [\"20 m\", \"2 m\"], values = [\"20 kPa\", \"40 MPa\"] }"), "cohesion up to 40000 kPa"),
         (profile("{ at_surface = \"40 MPa\", gradient = \"1 kPa/m\" }"), "cohesion up to 40000 kPa"),
         (profile("{ at_top = \"20 kPa\", gradient = \"1.5 MPa/m\" }"), "cohesion up to 15000 kPa"),
@@ -228,7 +228,7 @@ fn ranges_hold_for_all_forms_of_a_value() {
         ("case.water_unit_weight=9.81 N/m3".to_owned(), "water_unit_weight = 0.00981 kN/m3 is not that of water"),
         ("case.water_unit_weight=98.1 kN/m3".to_owned(), "water has 9.8 kN/m3 under a gravity of 9.81 m/s2"),
     ];
-    for (set, expected) in told {
+    for (set, expected) in cases {
         let file = overridden(SLOPE, &[&set, "materials.clay.k0=0.5"])
             .unwrap_or_else(|error| panic!("{set}: {error}"));
         let warnings = file.warnings();
@@ -257,9 +257,9 @@ fn ranges_hold_for_all_forms_of_a_value() {
 /// GOAL: slips in loads and in reinforcement are told, and each once. ORACLE: the shipped files, whose values are usual.
 #[test]
 fn loads_and_reinforcement_have_ranges() {
-    let told = |name: &str, set: &[&str], expected: &str| {
+    let once = |name: &str, set: &[&str], expected: &str| {
         let file = find(name).unwrap();
-        let set: Vec<String> = set.iter().map(|&own| own.to_owned()).collect();
+        let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
         let file = file
             .case_file(set)
             .unwrap_or_else(|error| panic!("{error}"));
@@ -271,44 +271,44 @@ fn loads_and_reinforcement_have_ranges() {
         );
     };
     let nail = |key: &str| format!("reinforcement.0.{key}");
-    told(
+    once(
         "nailed_cut",
         &[&nail("capacity=30 N/m")],
         "has capacity = 0.03 kN",
     );
-    told("nailed_cut", &[&nail("bond=20 Pa")], "has bond = 0.02 kPa");
-    told(
+    once("nailed_cut", &[&nail("bond=20 Pa")], "has bond = 0.02 kPa");
+    once(
         "nailed_cut",
         &[&nail("bond=20 MPa")],
         "has bond = 20000 kPa",
     );
-    told(
+    once(
         "nailed_cut",
         &[&nail("stiffness=80000 MN/m")],
         "has stiffness = 80000 MN",
     );
-    told(
+    once(
         "nailed_cut",
         &[&nail("plate=1.5 mm")],
         "has plate = 0.0015 m",
     );
-    told(
+    once(
         "strip_load",
         &["loads.0.pressure=20 MPa"],
         "has pressure = 20000 kPa",
     );
-    told(
+    once(
         "strip_load",
         &["loads.0.pressure=-20 kPa"],
         "pulls at the soil",
     );
-    told(
+    once(
         "rock_slope",
         &["materials.rock.sci=30 kPa"],
         "has sci = 0.03 MPa",
     );
-    told("rock_slope", &["materials.rock.gsi=0.3"], "has gsi = 0.3");
-    told(
+    once("rock_slope", &["materials.rock.gsi=0.3"], "has gsi = 0.3");
+    once(
         "anisotropic_footing",
         &["materials.clay.anisotropy.simple_shear=70"],
         "has simple_shear = 70",
@@ -350,27 +350,27 @@ fn stages_that_change_nothing_are_told() {
         said(&CaseFile::parse(SLOPE.0, &text, &[]))
     };
     let again = |key: &str| stages(&format!("[[stages]]\nname = \"again\"\n{key}"));
-    let told = again("type = \"load\"\nload = \"q\"\n");
+    let text = again("type = \"load\"\nload = \"q\"\n");
     assert!(
-        told.contains("stage `again` changes nothing: load `q` acts with a factor of 1 already"),
-        "{told}"
+        text.contains("stage `again` changes nothing: load `q` acts with a factor of 1 already"),
+        "{text}"
     );
     assert!(
-        told.contains("factor = 2 makes it twice the load"),
-        "{told}"
+        text.contains("factor = 2 makes it twice the load"),
+        "{text}"
     );
-    let told = again("type = \"gravity\"\ngeometry = \"given\"\n");
+    let text = again("type = \"gravity\"\ngeometry = \"given\"\n");
     assert!(
-        told.contains("changes nothing: gravity acts as in stage `initial stresses` already"),
-        "{told}"
+        text.contains("changes nothing: gravity acts as in stage `initial stresses` already"),
+        "{text}"
     );
     for more in [
         "type = \"load\"\nload = \"q\"\nfactor = 2.0\n",
         "type = \"load\"\nload = \"q\"\nfactor = 0.0\n",
         "type = \"gravity\"\nhorizontal = 0.1\n",
     ] {
-        let told = again(more);
-        assert!(!told.contains("nothing:"), "{told}");
+        let text = again(more);
+        assert!(!text.contains("nothing:"), "{text}");
     }
     let none = said(&overridden(SLOPE, &["stages.initial stresses.factor=0.0"]));
     assert!(none.contains("raises no weight: factor = 0"), "{none}");
@@ -445,11 +445,11 @@ fn values_that_are_hardly_meant_are_told() {
         ("damping", "5", "0.05", "0.05 are 5 %"),
         ("materials.clay.k0", "8", "0.6", "beyond its strength"),
     ];
-    for (key, slip, meant, told) in said {
+    for (key, slip, meant, expected) in said {
         let warnings = of(key, slip).unwrap();
-        assert!(warnings.contains(told), "{key}: {warnings}");
+        assert!(warnings.contains(expected), "{key}: {warnings}");
         let warnings = of(key, meant).unwrap();
-        assert!(!warnings.contains(told), "{key}: {warnings}");
+        assert!(!warnings.contains(expected), "{key}: {warnings}");
     }
 }
 

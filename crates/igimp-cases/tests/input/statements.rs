@@ -55,9 +55,9 @@ fn a_check_keeps_the_unit_of_its_band() {
         );
         let text = edited(SLOPE.1, &[("[output]", &check)]);
         let file = CaseFile::parse(SLOPE.0, &text, &[]).unwrap_or_else(|error| panic!("{error}"));
-        let own = file.case().checks.last().unwrap();
-        let found = own.unit.as_ref().map(|unit| (&unit.name[..], unit.in_si));
-        assert_eq!((found, own.band), (unit, band), "{keys}");
+        let check = file.case().checks.last().unwrap();
+        let found = check.unit.as_ref().map(|unit| (&unit.name[..], unit.in_si));
+        assert_eq!((found, check.band), (unit, band), "{keys}");
     }
 }
 

@@ -166,7 +166,7 @@ figures = []
 "#;
 
 fn ran(text: &str, changes: &[&str]) -> Run<2> {
-    let changes: Vec<String> = changes.iter().map(|own| (*own).to_owned()).collect();
+    let changes: Vec<String> = changes.iter().map(|change| (*change).to_owned()).collect();
     let file = CaseFile::parse("blow.toml", text, &changes).unwrap();
     in_memory(file.case()).unwrap()
 }

@@ -155,8 +155,8 @@ fn frames_of_a_motion_have_velocities_and_times() {
             let holds = |field, value: f64| {
                 let values = read_back::values(&read, field).unwrap();
                 assert_eq!(values.len(), 16);
-                for own in values {
-                    assert!((own - value).abs() < 1e-8, "{field:?} at {time}: {own}");
+                for found in values {
+                    assert!((found - value).abs() < 1e-8, "{field:?} at {time}: {found}");
                 }
             };
             holds(Field::VelocityY, -10.0 * time);
@@ -242,16 +242,16 @@ fn a_block_falls_in_space() {
         let file = file.unwrap_or_else(|error| panic!("{error}"));
         in_memory(file.case_in_space()).unwrap().body.particles
     };
-    let own = particles("newmark");
-    for (displacement, velocity) in std::iter::zip(&own.displacement, &own.velocity) {
+    let block = particles("newmark");
+    for (displacement, velocity) in std::iter::zip(&block.displacement, &block.velocity) {
         assert!((displacement[2] + 1.8).abs() < 1e-9, "{displacement:?}");
         assert!((velocity[2] + 6.0).abs() < 1e-9, "{velocity:?}");
         assert!(displacement[0].abs() < 1e-9 && velocity[1].abs() < 1e-9);
     }
     for scheme in ["newmark", "backward-euler"] {
-        let own = particles(scheme);
+        let block = particles(scheme);
         let falls = |a: &[f64; 3]| (a[2] + 10.0).abs() < 1e-8;
-        assert!(own.acceleration.iter().all(falls), "{scheme}");
+        assert!(block.acceleration.iter().all(falls), "{scheme}");
     }
 }
 

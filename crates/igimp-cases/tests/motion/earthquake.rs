@@ -245,8 +245,8 @@ fn a_wavelet_among_wide_samples_is_not_passed_over() {
             samples.iter().map(of).collect::<Vec<_>>().join(", ")
         };
         let (times, values) = (
-            list(&|own| format!("\"{} s\"", own.0)),
-            list(&|own| own.1.to_string()),
+            list(&|sample| format!("\"{} s\"", sample.0)),
+            list(&|sample| sample.1.to_string()),
         );
         let stage = format!(
             "geometry = \"given\"\nduration = \"10 s\"\nsteps = 10\ntied_sides = true\n\
@@ -258,7 +258,7 @@ fn a_wavelet_among_wide_samples_is_not_passed_over() {
         let points = run.curves[0].points(0, 1);
         let most = points
             .iter()
-            .fold(0.0, |most: f64, own| most.max(own[1].abs()));
+            .fold(0.0, |most: f64, point| most.max(point[1].abs()));
         (most, run.summary.stages[1].steps)
     };
     let seconds = (0..=10).map(|k| (f64::from(k), 0.0));
@@ -334,16 +334,17 @@ fn a_search_between_motions_stops_nothing() {
             "{before}{first}{between}{second}[[monitors]]{after}"
         ))
     };
-    let told = |run: &Run<2>, said: &str| run.summary.warnings.iter().any(|own| own.contains(said));
+    let warns =
+        |run: &Run<2>, said: &str| run.summary.warnings.iter().any(|text| text.contains(said));
     let alone = with("");
-    assert!(!told(&alone, "moves as it begins"));
+    assert!(!warns(&alone, "moves as it begins"));
     for search in ["trials", "continuation"] {
         let run = with(&format!(
             "[[stages]]\nname = \"fos\"\ntype = \"strength-reduction\"\ngeometry = \"given\"\nsteps = 4\n\
              search = \"{search}\"\nbracket = [1, 1.2]\ntolerance = 0.2\n"
         ));
         assert!(
-            told(&run, "the search takes it for at rest"),
+            warns(&run, "the search takes it for at rest"),
             "{:?}",
             run.summary.warnings
         );
@@ -359,7 +360,7 @@ fn a_search_between_motions_stops_nothing() {
     let run =
         with("[[stages]]\nname = \"still\"\ntype = \"gravity\"\nsteps = 1\ngeometry = \"given\"\n");
     assert!(
-        told(&run, "a stage without inertia stops it"),
+        warns(&run, "a stage without inertia stops it"),
         "{:?}",
         run.summary.warnings
     );
@@ -429,7 +430,7 @@ fn a_resumed_earthquake_leaves_the_same_files() {
         run.summary
             .stages
             .iter()
-            .map(|own| own.steps)
+            .map(|stage| stage.steps)
             .sum::<usize>()
     };
     let stopped = run_into((&file, file.case()), &resumed, Start::Afresh, Some(40));
@@ -486,10 +487,10 @@ fn records_that_make_no_sense() {
     };
     let sound = "time [s], acceleration [g]\n0, 0\n0.1, 0.2\n0.2, 0\n";
     let file = read(sound, "").unwrap_or_else(|error| panic!("{error}"));
-    let igimp_model::StageKind::Dynamic(own) = &file.case().stages[1].kind else {
+    let igimp_model::StageKind::Dynamic(dynamic) = &file.case().stages[1].kind else {
         panic!("a stage of motion");
     };
-    let motion = own.ground_motion.as_ref().unwrap();
+    let motion = dynamic.ground_motion.as_ref().unwrap();
     assert!((motion.values[1] - 0.2 * 9.80665).abs() < 1e-12 && !motion.is_velocity);
     for (record, keys, said) in [
         (
@@ -737,7 +738,11 @@ y = { of = "rigid.ball.x" }
         ];
         let file = CaseFile::parse("layer.toml", &layer(stage), &changes).unwrap();
         let run = in_memory(file.case()).unwrap();
-        let curve = run.curves.iter().find(|own| own.name == "ball").unwrap();
+        let curve = run
+            .curves
+            .iter()
+            .find(|curve| curve.name == "ball")
+            .unwrap();
         let ways = curve.points(0, 1);
         let [.., [_, before], [_, last]] = ways[..] else {
             panic!("{ways:?}");
@@ -825,15 +830,21 @@ fn a_motion_of_round_off_is_rest() {
             "[[stages]]\nname = \"next\"\ntype = \"gravity\"\nsteps = 1\ngeometry = \"given\"\n";
         ran(&format!("{before}{next}[[monitors]]{after}")).summary
     };
-    let told = |values: &str| {
+    let found = |values: &str| {
         let summary = run(values);
         let most = summary.stages[1].energy.unwrap().most_kinetic;
         println!("{values}: {most:e} J, {:?}", summary.warnings);
         let mut warnings = summary.warnings.iter();
-        (most, warnings.any(|own| own.contains("moves as it begins")))
+        (
+            most,
+            warnings.any(|text| text.contains("moves as it begins")),
+        )
     };
-    let (most, is_told) = told("[0, 1e-9, 1e-9]");
-    assert!(most > 0.0 && most < 1e-9 && !is_told, "{most:e} {is_told}");
-    let (most, is_told) = told("[0, 0.1, 0.1]");
-    assert!(most > 1e-3 && is_told, "{most:e} {is_told}");
+    let (most, is_warned) = found("[0, 1e-9, 1e-9]");
+    assert!(
+        most > 0.0 && most < 1e-9 && !is_warned,
+        "{most:e} {is_warned}"
+    );
+    let (most, is_warned) = found("[0, 0.1, 0.1]");
+    assert!(most > 1e-3 && is_warned, "{most:e} {is_warned}");
 }

@@ -14,19 +14,19 @@ mod turning;
 use igimp_results::summary::EnergySummary;
 
 /// What comes in less where it goes.
-fn imbalance(own: &EnergySummary) -> f64 {
+fn imbalance(energy: &EnergySummary) -> f64 {
     let gone = [
-        own.kinetic_gain,
-        own.elastic,
-        own.plastic,
-        own.contact,
-        own.reinforcement,
-        own.water,
-        own.damping,
-        own.boundaries,
-        own.scheme,
-        own.map,
-        own.integration,
+        energy.kinetic_gain,
+        energy.elastic,
+        energy.plastic,
+        energy.contact,
+        energy.reinforcement,
+        energy.water,
+        energy.damping,
+        energy.boundaries,
+        energy.scheme,
+        energy.map,
+        energy.integration,
     ];
-    own.loads + own.supports - gone.iter().sum::<f64>()
+    energy.loads + energy.supports - gone.iter().sum::<f64>()
 }

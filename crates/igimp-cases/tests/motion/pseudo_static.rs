@@ -59,8 +59,11 @@ fn a_bar_pushed_along_itself_is_a_column() {
         let all: Vec<usize> = (0..lying.len()).collect();
         let other = *all.iter().find(near).expect("there is a particle across");
         let (a, b) = (column.sigma[particle], lying.sigma[other]);
-        for (own, turned) in [(a[0][0], b[1][1]), (a[1][1], b[0][0]), (a[2][2], b[2][2])] {
-            assert!((own - turned).abs() < 1e-9 * 18e3 * 8.0, "{own} {turned}");
+        for (stress, turned) in [(a[0][0], b[1][1]), (a[1][1], b[0][0]), (a[2][2], b[2][2])] {
+            assert!(
+                (stress - turned).abs() < 1e-9 * 18e3 * 8.0,
+                "{stress} {turned}"
+            );
         }
     }
 }
@@ -111,7 +114,7 @@ y = { of = "horizontal_factor" }
     assert!(
         steps[1..]
             .iter()
-            .all(|k| last.iter().any(|own| (own - k).abs() < 1e-12)),
+            .all(|k| last.iter().any(|value| (value - k).abs() < 1e-12)),
         "{found:?}"
     );
     assert!((found[found.len() - 1] + 0.1).abs() < 1e-12);

@@ -57,7 +57,7 @@ fn a_base_is_held_by_the_weight_of_what_lies_on_it() {
         let file = CaseFile::parse("base.toml", ON_BASE, &[change]).unwrap();
         assert!(file.warnings().is_empty(), "{:?}", file.warnings());
         let run = in_memory(file.case()).unwrap();
-        let curve = run.curves.iter().find(|own| own.name == "force");
+        let curve = run.curves.iter().find(|curve| curve.name == "force");
         let points = curve.unwrap().points(0, 1);
         let last = points[points.len() - 1];
         assert!((last[0] - 0.05).abs() < 1e-12, "{last:?}");
@@ -115,7 +115,7 @@ figures = []
 "#;
 
 fn swung(changes: &[&str]) -> Run<2> {
-    let changes: Vec<String> = changes.iter().map(|own| (*own).to_owned()).collect();
+    let changes: Vec<String> = changes.iter().map(|change| (*change).to_owned()).collect();
     let file = CaseFile::parse("pendulum.toml", PENDULUM, &changes).unwrap();
     assert!(file.warnings().is_empty(), "{:?}", file.warnings());
     in_memory(file.case()).unwrap()
@@ -127,7 +127,11 @@ fn swung(changes: &[&str]) -> Run<2> {
 #[test]
 fn the_pin_of_a_bar_has_the_force_of_its_turn() {
     let run = swung(&[]);
-    let curve = run.curves.iter().find(|own| own.name == "force").unwrap();
+    let curve = run
+        .curves
+        .iter()
+        .find(|curve| curve.name == "force")
+        .unwrap();
     let inertia = 1.0 + 4.25 / 12.0;
     let (mut seen, mut most) = (0, 0.0_f64);
     // By the generalised-alpha method forces are those of a moment within the step: where the bar turns fast, they are held at its lowest.

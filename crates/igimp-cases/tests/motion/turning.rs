@@ -107,13 +107,16 @@ ground_motion = { time = ["0 s", "0.1 s", "0.3 s"], values = [0, 0.5, -0.3], uni
         let curve = run
             .curves
             .iter()
-            .find(|own| own.name == "rotation")
+            .find(|curve| curve.name == "rotation")
             .unwrap();
         let all = curve.points(0, 1);
         all[all.len() - 1][1]
     });
-    for own in rotations {
-        assert!((own / rotations[0] - 1.0).abs() < 5e-3, "{rotations:?}");
+    for rotation in rotations {
+        assert!(
+            (rotation / rotations[0] - 1.0).abs() < 5e-3,
+            "{rotations:?}"
+        );
     }
 }
 
@@ -146,7 +149,7 @@ bodies = [{ body = "block", free = ["x", "y", "rotation"] }]
     let curve = run
         .curves
         .iter()
-        .find(|own| own.name == "rotation")
+        .find(|curve| curve.name == "rotation")
         .unwrap();
     let all = curve.points(0, 1);
     let fallen = all[all.len() - 1][0];
@@ -157,8 +160,8 @@ bodies = [{ body = "block", free = ["x", "y", "rotation"] }]
         "type = \"rigid\"",
     );
     let still = CaseFile::parse("block.toml", &still, &[]).unwrap();
-    let told = still.warnings().contains("gravity never acts");
-    assert!(told, "{:?}", still.warnings());
+    let warned = still.warnings().contains("gravity never acts");
+    assert!(warned, "{:?}", still.warnings());
 }
 
 /// A strip on clay, without what loads it.
@@ -211,7 +214,7 @@ fn weight_comes_on_as_a_body_is_let_go() {
         let file = CaseFile::parse("strip.toml", &text, &[]).unwrap();
         let run = in_memory(file.case()).unwrap();
         assert!(run.failure.is_none(), "{:?}", run.failure);
-        let at_once = (run.summary.warnings.iter()).any(|told| told.contains("acts whole"));
+        let at_once = (run.summary.warnings.iter()).any(|warning| warning.contains("acts whole"));
         let all = run.curves[0].points(0, 1);
         (all[all.len() - 1][1], at_once)
     };
@@ -224,14 +227,14 @@ fn weight_comes_on_as_a_body_is_let_go() {
     let free = stage("release", "free = [\"y\"]", 20);
     let held = stage("held", "y = \"0 m\"", 1) + &free;
     let (by_force, _) = loaded("", &stage("push", "force_y = \"-100 kN/m\"", 20));
-    let (released, told) = loaded(weight, &held);
+    let (released, warned) = loaded(weight, &held);
     assert!(
-        (released / by_force - 1.0).abs() < 1e-4 && !told,
+        (released / by_force - 1.0).abs() < 1e-4 && !warned,
         "{released} {by_force}"
     );
-    let (at_once, told) = loaded(weight, &free);
+    let (at_once, warned) = loaded(weight, &free);
     assert!(
-        at_once.abs() > 1.1 * by_force.abs() && told,
+        at_once.abs() > 1.1 * by_force.abs() && warned,
         "{at_once} {by_force}"
     );
 }

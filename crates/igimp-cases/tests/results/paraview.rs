@@ -175,8 +175,8 @@ fn rectangle() -> (RigidPart<2>, RigidBody<2>) {
         from_start: false,
         most_penetration: 0.1,
     };
-    let own = corners.map(|[x, y]| [x - 1.0, y]);
-    let surface = Surface::polygon(&own, 0.1, 0.4).unwrap();
+    let local = corners.map(|[x, y]| [x - 1.0, y]);
+    let surface = Surface::polygon(&local, 0.1, 0.4).unwrap();
     let mut body = RigidBody::new(surface, vec![Interface::rough(); 4], [1.0, 0.0]);
     body.pose = body.pose.moved(&[0.5, -0.25], &[0.3, 0.0, 0.0]);
     for (k, knot) in body.contact.knots.iter_mut().enumerate().take(4) {
@@ -360,7 +360,7 @@ fn tractions_turn_with_the_body() {
     let table = standing.table("plate__1-push".into(), false);
     let whole = standing.table("plate__1-push".into(), true);
     assert_eq!(
-        [&table, &whole].map(|own| own.header[7].as_str()),
+        [&table, &whole].map(|table| table.header[7].as_str()),
         ["contact_[m]", "contact_[m2]"]
     );
     let along: Vec<f64> = table.rows.iter().take(2).map(|row| row[1]).collect();

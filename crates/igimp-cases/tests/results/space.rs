@@ -132,8 +132,8 @@ fn size(png: &Path) -> [u32; 2] {
 fn pictures_need_no_browser() {
     let (folder, _) = results("space-pictures", 1.0, 1);
     for field in ["displacement", "sigma_zz", "plastic_strain"] {
-        for what in ["space", "cut-x", "cut-y"] {
-            let name = folder.join(format!("figures/{what}-1-slide-{field}"));
+        for view in ["space", "cut-x", "cut-y"] {
+            let name = folder.join(format!("figures/{view}-1-slide-{field}"));
             let [width, height] = size(&name.with_extension("png"));
             assert!(
                 (800..3000).contains(&width) && (400..3000).contains(&height),
@@ -141,7 +141,7 @@ fn pictures_need_no_browser() {
             );
             let svg = std::fs::read_to_string(name.with_extension("svg")).unwrap();
             assert!(svg.contains("z [m]") && svg.contains("A slope in space – slide"));
-            assert_eq!(svg.contains("<image "), what == "space");
+            assert_eq!(svg.contains("<image "), view == "space");
         }
     }
     let page = std::fs::read_to_string(folder.join("report.html")).unwrap();

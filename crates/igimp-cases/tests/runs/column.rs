@@ -356,7 +356,7 @@ steps = 1
         let run = in_memory(file.case()).unwrap();
         assert_eq!(run.summary.stages[0].outcome, StageOutcome::Completed);
         let stress = run.body.particles.sigma.iter().flatten().flatten();
-        stress.fold(0.0, |most: f64, own| most.max(own.abs()))
+        stress.fold(0.0, |most: f64, value| most.max(value.abs()))
     };
     assert_eq!(largest("0 m/s2").to_bits(), 0.0_f64.to_bits());
     let bottom = largest("9.81 m/s2");

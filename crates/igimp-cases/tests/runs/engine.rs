@@ -354,14 +354,14 @@ tolerance = 0.001
         assert!((x - 1.25).abs() < 0.01, "{row:?}");
         assert!((weight - 16e3 * distance).abs() < 2e-4 * 48e3, "{row:?}");
     }
-    let told: Vec<_> = run
+    let checks: Vec<_> = run
         .summary
         .checks
         .iter()
         .map(|row| (row.check.quantity.as_str(), row.pass))
         .collect();
     assert_eq!(
-        told,
+        checks,
         [
             ("down, sigma_yy at 0.25", true),
             ("down, sigma_yy at 2.75", true),

@@ -57,8 +57,8 @@ fn reduction(run: &Run<2>) -> f64 {
 /// The middle of the interval of the search of that name.
 fn factor(run: &Run<2>, stage: &str) -> f64 {
     let mut stages = run.summary.stages.iter();
-    let own = stages.find(|own| own.name == stage).unwrap();
-    let found = own.safety.as_ref().unwrap();
+    let summary = stages.find(|summary| summary.name == stage).unwrap();
+    let found = summary.safety.as_ref().unwrap();
     0.5 * (found.stable.unwrap() + found.failed.unwrap())
 }
 
@@ -102,7 +102,7 @@ fn the_factor_survives_a_restart() {
     let again = run_into((&file, case), &anew, Start::FromStage(4), None);
     assert!((reduction(&again) / reduction(&run) - 1.0).abs() < 1e-15);
     assert_equal(&expected, &everything(&anew), "from the run-out on");
-    let steps: usize = run.summary.stages.iter().map(|own| own.steps).sum();
+    let steps: usize = run.summary.stages.iter().map(|stage| stage.steps).sum();
     run_into((&file, case), &stopped, Start::Afresh, Some(steps - 1));
     run_into((&file, case), &stopped, Start::Resume, None);
     assert_equal(
@@ -157,8 +157,8 @@ fn a_search_that_nothing_bounds_ends_and_says_so() {
     assert_eq!(found.failed, None);
     let stable = found.stable.unwrap();
     assert!((1e3..1e5).contains(&stable), "{stable}");
-    let told = |text: &&String| text.contains("nothing fails");
-    assert_eq!(run.summary.warnings.iter().filter(told).count(), 1);
+    let is_remark = |text: &&String| text.contains("nothing fails");
+    assert_eq!(run.summary.warnings.iter().filter(is_remark).count(), 1);
 }
 
 // GOAL: the strength of soil that is not there decides nothing, and a search for it is refused.
@@ -198,7 +198,7 @@ fn a_curve_of_a_search_begins_with_nothing() {
     let file = CaseFile::parse("slope.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
     let run = in_memory(file.case()).unwrap();
     let settled = run.body.particles.displacement.iter().flatten();
-    let settled = settled.fold(0.0, |most: f64, own| most.max(own.abs()));
+    let settled = settled.fold(0.0, |most: f64, value| most.max(value.abs()));
     let rows = &run.curves[0].rows;
     println!("{rows:?}, settled {settled}");
     assert!(rows.len() > 1 && rows[0][1].abs() < 1e-15);

@@ -107,10 +107,10 @@ fn check<'r>(run: &'r Run<2>, name: &str) -> &'r CheckRow {
 #[track_caller]
 fn warns(run: &Run<2>, of: &[&str]) {
     let warnings = &run.summary.warnings;
-    let told = warnings
+    let found = warnings
         .iter()
         .any(|text| of.iter().all(|part| text.contains(part)));
-    assert!(told, "{of:?}: {warnings:#?}");
+    assert!(found, "{of:?}: {warnings:#?}");
 }
 
 // GOAL: monitors, sections, curves and checks that are changed have what the stages that run record, and no row of another place.
@@ -122,9 +122,9 @@ fn what_is_redefined_has_nothing_of_the_stages_before() {
     let run = ran(&changed, &mixed, Start::FromStage(1));
     let expected = ran(&changed, &fresh, Start::Afresh);
     for table in ["monitors/m.csv", "curves/c.csv"] {
-        let (own, whole) = (rows(&mixed, table), rows(&fresh, table));
+        let (rest, whole) = (rows(&mixed, table), rows(&fresh, table));
         assert_eq!(whole.len(), 5, "{table}");
-        assert_eq!(own, whole[3..], "{table}");
+        assert_eq!(rest, whole[3..], "{table}");
     }
     assert!(!mixed.join("sections/s__1-weight.csv").exists());
     for table in ["s__2-load.csv", "kept__1-weight.csv", "kept__2-load.csv"] {
@@ -136,7 +136,7 @@ fn what_is_redefined_has_nothing_of_the_stages_before() {
     assert_eq!(check(&run, "after"), check(&expected, "after"));
     assert_eq!(check(&run, "c at 1").standing, Standing::NotReached);
     let figures = run.summary.figures.iter();
-    let pictures = figures.filter(|own| own.caption.contains("along section"));
+    let pictures = figures.filter(|figure| figure.caption.contains("along section"));
     assert_eq!(pictures.count(), 3);
     warns(
         &run,

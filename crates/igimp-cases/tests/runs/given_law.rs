@@ -100,7 +100,7 @@ fn slope() -> Case<2> {
 
 #[test]
 fn a_law_in_batches_gives_the_same_bits() {
-    let own = in_memory(&slope()).unwrap();
+    let plain = in_memory(&slope()).unwrap();
     let mut case = slope();
     let asked = Arc::new(AtomicUsize::new(0));
     case.materials[0].given = Some(GivenLaw(Arc::new(Batched {
@@ -108,14 +108,14 @@ fn a_law_in_batches_gives_the_same_bits() {
         asked: Arc::clone(&asked),
     })));
     let given = in_memory(&case).unwrap();
-    assert_eq!(*given.body.particles, *own.body.particles);
+    assert_eq!(*given.body.particles, *plain.body.particles);
     assert!(
         given
             .body
             .particles
             .regime
             .iter()
-            .any(|own| own.is_plastic())
+            .any(|regime| regime.is_plastic())
     );
     let passes = asked.load(Ordering::Relaxed);
     let corrections = given.summary.stages[0].iterations;

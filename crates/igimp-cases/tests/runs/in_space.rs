@@ -253,8 +253,8 @@ fn reactions_carry_loads_and_weight() {
         Event::StageStarted { stage, .. } => stage_now = *stage,
         Event::Equilibrium { accepted, .. } => {
             let all = accepted.forces.reactions.iter();
-            let sum = all.fold([0.0; 3], |sum, own| {
-                std::array::from_fn(|axis| sum[axis] + own[axis])
+            let sum = all.fold([0.0; 3], |sum, force| {
+                std::array::from_fn(|axis| sum[axis] + force[axis])
             });
             sums.push((stage_now, sum));
         }
@@ -335,12 +335,12 @@ fn every_linear_solver_serves_a_run() {
         let run = on_threads(2, &|| written(&file, &whole, Start::Afresh, None));
         assert_done(&run.summary);
         assert!(run.body.particles == one, "{kind}: bits");
-        let mut told = run
+        let mut efforts = run
             .summary
             .stages
             .iter()
-            .filter_map(|own| own.linear.as_ref());
-        let linear = told.next().unwrap();
+            .filter_map(|stage| stage.linear.as_ref());
+        let linear = efforts.next().unwrap();
         assert!(linear.method.starts_with(kind), "{}", linear.sentence());
         assert!(linear.iterations > 0, "{}", linear.sentence());
         written(&file, &stopped, Start::Afresh, Some(3));
@@ -411,21 +411,21 @@ fn every_linear_solver_follows_a_path() {
             stage.safety.unwrap()
         };
         let expected = safety("auto", 1);
-        let told = expected.path.as_ref().unwrap();
-        assert_ne!(told.end, PathEnd::Lost);
+        let path = expected.path.as_ref().unwrap();
+        assert_ne!(path.end, PathEnd::Lost);
         for kind in ["multigrid", "single"] {
             let found = safety(kind, 1);
             assert_eq!(found, safety(kind, 2), "{kind}: bits");
             let off = found.stable.unwrap() / expected.stable.unwrap() - 1.0;
             assert!(off.abs() < 5e-4, "{kind}: {off}");
             let shares = |of: &SafetySummary| of.path.clone().unwrap().shares.unwrap().materials;
-            let [own] = &shares(&found)[..] else {
+            let [share] = &shares(&found)[..] else {
                 panic!("{kind}: one material")
             };
             let other = &shares(&expected)[0];
-            let friction = own.friction.unwrap_or(0.0) - other.friction.unwrap_or(0.0);
-            let apart = friction.abs().max((own.cohesion - other.cohesion).abs());
-            assert!(apart < 0.02, "{kind}: {own:?} and {other:?}");
+            let friction = share.friction.unwrap_or(0.0) - other.friction.unwrap_or(0.0);
+            let apart = friction.abs().max((share.cohesion - other.cohesion).abs());
+            assert!(apart < 0.02, "{kind}: {share:?} and {other:?}");
         }
     }
 }

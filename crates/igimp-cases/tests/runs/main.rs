@@ -19,6 +19,6 @@ mod remarks;
 mod revolution;
 mod run_out;
 mod swapped;
-mod told;
 mod unmet;
+mod warnings;
 mod without_hold;

@@ -52,9 +52,12 @@ figures = []
 #[test]
 fn rock_that_begins_to_yield_has_not_failed() {
     let by_trials = factor(12.0, "trials");
-    let [light, own, heavy] = [11.0, 12.0, 13.0].map(|weight| factor(weight, "continuation"));
-    assert!((own / by_trials - 1.0).abs() < 0.01, "{own} {by_trials}");
-    assert!(light > own && own > heavy, "{light} {own} {heavy}");
+    let [light, middle, heavy] = [11.0, 12.0, 13.0].map(|weight| factor(weight, "continuation"));
+    assert!(
+        (middle / by_trials - 1.0).abs() < 0.01,
+        "{middle} {by_trials}"
+    );
+    assert!(light > middle && middle > heavy, "{light} {middle} {heavy}");
     // The envelope is curved: its strength falls with less than the weight.
     let slope = (light / heavy).ln() / (13.0_f64 / 11.0).ln();
     assert!((0.3..1.0).contains(&slope), "{slope}");
@@ -133,13 +136,13 @@ fn a_slope_that_stands_barely_has_one_factor() {
     println!("{found:?}");
     let least = found
         .iter()
-        .fold(f64::INFINITY, |least, own| least.min(own.0));
-    let most = found.iter().fold(0.0, |most: f64, own| most.max(own.0));
+        .fold(f64::INFINITY, |least, pair| least.min(pair.0));
+    let most = found.iter().fold(0.0, |most: f64, pair| most.max(pair.0));
     assert!(most / least < 1.005, "{found:?}");
     // What the intervals tell overlaps.
     let highest = found
         .iter()
-        .fold(f64::INFINITY, |highest, own| highest.min(own.1));
+        .fold(f64::INFINITY, |highest, pair| highest.min(pair.1));
     assert!(most < 1.001 * highest, "{found:?}");
 }
 
@@ -345,12 +348,12 @@ fn soil_with_little_friction_has_the_factor_of_soil_without() {
     println!("{without} {hardly}");
     assert!((hardly / without - 1.0).abs() < 1e-3, "{without} {hardly}");
     for (cohesion, friction) in [(15.0, 1.0), (14.0, 2.0), (13.0, 5.0), (12.0, 7.5)] {
-        let [own, _] = barely_rubbing(cohesion, [friction, 0.0]);
+        let [found, _] = barely_rubbing(cohesion, [friction, 0.0]);
         let [most, _] = barely_rubbing(cohesion, [friction, friction]);
-        println!("{friction}: {own} {most}");
+        println!("{friction}: {found} {most}");
         assert!(
-            own < 1.001 * most && own > 0.99 * most,
-            "{friction}: {own} {most}"
+            found < 1.001 * most && found > 0.99 * most,
+            "{friction}: {found} {most}"
         );
     }
 }
@@ -362,7 +365,7 @@ fn soil_with_little_friction_has_the_factor_of_soil_without() {
 fn trials_in_weak_rock_stop_before_the_slope_moves() {
     let shipped = igimp_input::shipped::find("rock_slope").unwrap();
     let found = |search: &str| {
-        let sets = ["sci=\"1 MPa\"", "gsi=30", "mi=8"].map(|own| format!("materials.rock.{own}"));
+        let sets = ["sci=\"1 MPa\"", "gsi=30", "mi=8"].map(|set| format!("materials.rock.{set}"));
         let text = shipped.text.replace(
             "type = \"strength-reduction\"",
             &format!("type = \"strength-reduction\"\nsearch = \"{search}\""),

@@ -41,7 +41,7 @@ figures = []
     let run = in_memory(file.case()).unwrap();
     assert!(run.failure.is_none(), "{x} {y}: {:?}", run.failure);
     let safety = run.summary.stages[1].safety.as_ref();
-    safety.and_then(|own| own.stable).unwrap_or(f64::NAN)
+    safety.and_then(|safety| safety.stable).unwrap_or(f64::NAN)
 }
 
 /// GOAL: a heap with a sharp ridge is as safe wherever its ridge lies in its cell.
@@ -142,11 +142,11 @@ fn a_patch_settles_soil_that_does_not_yield_as_elastic_soil() {
     for radius in [0.9, 1.0, 1.07] {
         let [elastic, tresca, friction] = LAWS.map(|law| displacements(law, radius));
         println!("{radius} m: {elastic:?} {tresca:?} {friction:?}");
-        for own in [tresca, friction] {
-            for (own, elastic) in std::iter::zip(own, elastic) {
+        for found in [tresca, friction] {
+            for (value, elastic) in std::iter::zip(found, elastic) {
                 assert!(
-                    (own / elastic - 1.0).abs() < 0.06,
-                    "{radius} m: {own} {elastic}"
+                    (value / elastic - 1.0).abs() < 0.06,
+                    "{radius} m: {value} {elastic}"
                 );
             }
         }

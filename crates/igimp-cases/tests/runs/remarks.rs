@@ -53,7 +53,7 @@ type = "strength-reduction"
 {behind}
 "#
     );
-    let set: Vec<String> = set.iter().map(|&own| own.to_owned()).collect();
+    let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
     let file = CaseFile::parse("slope.toml", &text, &set).unwrap_or_else(|error| panic!("{error}"));
     in_memory(file.case()).unwrap()
 }
@@ -91,9 +91,12 @@ fn a_slope_that_does_not_stand_has_its_factor_all_the_same() {
     let (half, whole) = (factor(&falls), factor(&stands));
     assert!(half < 1.0 && whole > 1.0);
     assert!((2.0 * half / whole - 1.0).abs() < 0.02, "{half} {whole}");
-    let told = warnings_with(&falls, "does not stand under its weight");
-    assert_eq!(told.len(), 1);
-    assert!(told[0].starts_with("stage \"weight\": "), "{told:?}");
+    let warnings = warnings_with(&falls, "does not stand under its weight");
+    assert_eq!(warnings.len(), 1);
+    assert!(
+        warnings[0].starts_with("stage \"weight\": "),
+        "{warnings:?}"
+    );
     assert!(warnings_with(&stands, "does not stand").is_empty());
 }
 
@@ -116,7 +119,12 @@ fn a_factor_below_one_is_told_whatever_stands_around() {
             (2.5 * low / high - 1.0).abs() < 0.02,
             "{between}: {low} {high}"
         );
-        let outcomes: Vec<_> = falls.summary.stages.iter().map(|own| own.outcome).collect();
+        let outcomes: Vec<_> = falls
+            .summary
+            .stages
+            .iter()
+            .map(|stage| stage.outcome)
+            .collect();
         let expected = [
             StageOutcome::Stopped,
             StageOutcome::NotConverged,
@@ -138,10 +146,10 @@ fn a_factor_below_one_is_told_whatever_stands_around() {
         "{}",
         last.reason
     );
-    let told = run.summary.failure.as_ref().unwrap();
+    let message = run.summary.failure.as_ref().unwrap();
     assert!(
-        told.starts_with("stage \"run-out\": no equilibrium"),
-        "{told}"
+        message.starts_with("stage \"run-out\": no equilibrium"),
+        "{message}"
     );
 }
 
@@ -161,9 +169,12 @@ fn tension_that_carries_is_told_of_the_search() {
     let cracked = slope(60.0, tan, &["materials.soil.tension_cutoff=0 kPa"]);
     let (with, without) = (factor(&pulled), factor(&cracked));
     assert!(with > 1.02 * without, "{with} {without}");
-    let told = warnings_with(&pulled, "carries tension");
-    assert_eq!(told.len(), 1, "{:?}", pulled.summary.warnings);
-    assert!(told[0].starts_with("stage \"safety\": "), "{told:?}");
+    let warnings = warnings_with(&pulled, "carries tension");
+    assert_eq!(warnings.len(), 1, "{:?}", pulled.summary.warnings);
+    assert!(
+        warnings[0].starts_with("stage \"safety\": "),
+        "{warnings:?}"
+    );
     assert!(warnings_with(&cracked, "carries tension").is_empty());
 }
 
@@ -263,13 +274,16 @@ fn memory_that_decides_on_the_solver_is_told() {
         "{}",
         reason(&of_machine)
     );
-    let told = |run: &Run<3>| {
+    let count = |run: &Run<3>| {
         let warnings = run.summary.warnings.iter();
         warnings
             .filter(|text| text.contains("the memory for factors"))
             .count()
     };
-    assert_eq!([told(&roomy), told(&stated), told(&of_machine)], [0, 0, 1]);
+    assert_eq!(
+        [count(&roomy), count(&stated), count(&of_machine)],
+        [0, 0, 1]
+    );
     let moved = |run: &Run<3>| run.summary.stages[0].largest_displacement;
     assert!(
         (moved(&stated) / moved(&roomy) - 1.0).abs() < 1e-4,
@@ -283,7 +297,7 @@ fn memory_that_decides_on_the_solver_is_told() {
 /// ORACLE: the same of a field that is hardly wider than its step has no such remark.
 #[test]
 fn a_small_step_in_a_wide_field_may_fail_alone() {
-    let told = |width: f64| {
+    let is_local = |width: f64| {
         let text = format!(
             r#"
 igimp = 1
@@ -314,11 +328,11 @@ type = "strength-reduction"
             CaseFile::parse("step.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
         let run = in_memory(file.case()).unwrap();
         let share = safety(&run).moving_mass.unwrap();
-        let told = !warnings_with(&run, "may be a local failure").is_empty();
-        println!("{width} m: {share}, {told}");
-        assert_eq!(told, share < 0.02);
-        told
+        let warned = !warnings_with(&run, "may be a local failure").is_empty();
+        println!("{width} m: {share}, {warned}");
+        assert_eq!(warned, share < 0.02);
+        warned
     };
-    assert!(told(80.0));
-    assert!(!told(5.0));
+    assert!(is_local(80.0));
+    assert!(!is_local(5.0));
 }

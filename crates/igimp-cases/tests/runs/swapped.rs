@@ -15,10 +15,10 @@ const SPREAD: &str = "model = \"tresca\"\nyoung = \"10 MPa\"\npoisson = 0.3\ncu 
 const ELASTIC: &str = "model = \"elastic\"\nyoung = \"10 MPa\"\npoisson = 0.3\n";
 
 fn text(soil: &str, other: &str, stages: &str) -> String {
-    let own = "unit_weight = \"0.001 kN/m3\"\nk0 = 0.6\n";
+    let common = "unit_weight = \"0.001 kN/m3\"\nk0 = 0.6\n";
     format!(
         "igimp = 1\n[case]\ntitle = \"column\"\n[grid]\ncell = \"0.5 m\"\ndomain = {{ x = [\"0 m\", \"1 m\"], y = [\"0 m\", \"4 m\"] }}\n\
-        kinematics = \"small\"\n[materials.m]\n{own}{soil}[materials.m2]\n{own}{other}\
+        kinematics = \"small\"\n[materials.m]\n{common}{soil}[materials.m2]\n{common}{other}\
         [materials.cap]\nmodel = \"elastic\"\nunit_weight = \"100 kN/m3\"\nyoung = \"100 MPa\"\npoisson = 0.0\nk0 = 0.5\n\
         [[bodies]]\nname = \"b\"\nmaterial = \"m\"\npolygon = [[\"0 m\",\"0 m\"],[\"1 m\",\"0 m\"],[\"1 m\",\"2 m\"],[\"0 m\",\"2 m\"]]\n\
         [[bodies]]\nname = \"cap\"\nmaterial = \"cap\"\npolygon = [[\"0 m\",\"2 m\"],[\"1 m\",\"2 m\"],[\"1 m\",\"3 m\"],[\"0 m\",\"3 m\"]]\n\
@@ -94,7 +94,7 @@ fn soil_that_comes_to_a_material_like_its_own_goes_on_as_it_was() {
 /// What a swap is told of. ORACLE: the variables of the laws.
 #[test]
 fn what_a_swap_forgets_is_told() {
-    let told = |soil: &str, other: &str| -> String {
+    let warnings = |soil: &str, other: &str| -> String {
         file(&text(soil, other, &stages(&swap()))).warnings()
     };
     let lost = "stage `swap` makes `b` of `m2`: ";
@@ -125,28 +125,28 @@ fn what_a_swap_forgets_is_told() {
             "the nonlocal strain that it has by `m` is lost",
         ),
     ] {
-        let own = told(soil, other);
-        assert!(own.contains(&format!("{lost}{words}")), "{own}");
+        let found = warnings(soil, other);
+        assert!(found.contains(&format!("{lost}{words}")), "{found}");
     }
     for (soil, other) in [(ELASTIC, CLAY), (CLAY, HARDENING), (SOFTENING, SPREAD)] {
-        let own = told(soil, other);
-        assert!(!own.contains("lost"), "{own}");
+        let found = warnings(soil, other);
+        assert!(!found.contains("lost"), "{found}");
     }
-    let own = told(CLAY, &CLAY.replace("ocr = 1.5", "ocr = 3"));
+    let found = warnings(CLAY, &CLAY.replace("ocr = 1.5", "ocr = 3"));
     assert!(
-        own.contains(
+        found.contains(
             "`ocr` of `m2` has no effect on `b`, which keeps its preconsolidation pressure"
         ),
-        "{own}"
+        "{found}"
     );
 }
 
 /// Clay that a swap brings has the stresses of the soil that was there: it runs. ORACLE: what elastic ground carries stays.
 #[test]
 fn clay_that_a_swap_brings_begins_with_the_stress_that_is_there() {
-    let own = [load("up", 1), swap()].concat();
+    let swapped = [load("up", 1), swap()].concat();
     let before = run(&text(ELASTIC, CLAY, &load("up", 1)));
-    let after = run(&text(ELASTIC, CLAY, &own));
+    let after = run(&text(ELASTIC, CLAY, &swapped));
     let both = std::iter::zip(&before.body.particles.sigma, &after.body.particles.sigma);
     for (before, after) in both {
         assert!((before[1][1] - after[1][1]).abs() < 1.0, "{after:?}");

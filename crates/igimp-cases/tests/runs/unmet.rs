@@ -77,7 +77,7 @@ source = "by hand"
 "#;
 
 fn face(set: &[&str]) -> Run<2> {
-    let set: Vec<String> = set.iter().map(|&own| own.to_owned()).collect();
+    let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
     let file = CaseFile::parse("face.toml", FACE, &set).unwrap_or_else(|error| panic!("{error}"));
     in_memory(file.case()).unwrap()
 }
@@ -108,11 +108,11 @@ fn checks_of_stages_that_did_not_come_to_their_end_are_not_met() {
     let displaced = &row(&run, "at the end of the load").check;
     assert!((displaced.expected - 100.0).abs() < 1e-12);
     assert_eq!(displaced.told_band(), "≤ 1.000e4 cm");
-    let told = displaced.told(displaced.measured);
-    let number: f64 = told.strip_suffix(" cm").unwrap().parse().unwrap();
+    let printed = displaced.told(displaced.measured);
+    let number: f64 = printed.strip_suffix(" cm").unwrap().parse().unwrap();
     assert!(
         (number / (100.0 * displaced.measured) - 1.0).abs() < 1e-3,
-        "{told}"
+        "{printed}"
     );
     // The factor was found before.
     let factor = row(&run, "stands");
@@ -176,7 +176,7 @@ geometry = "given"
 #[test]
 fn a_uniform_collapse_is_told_as_one() {
     let run = |set: &[&str]| {
-        let set: Vec<String> = set.iter().map(|&own| own.to_owned()).collect();
+        let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
         let file = CaseFile::parse("block.toml", BLOCK, &set);
         in_memory(file.unwrap_or_else(|error| panic!("{error}")).case()).unwrap()
     };
@@ -194,19 +194,19 @@ fn a_uniform_collapse_is_told_as_one() {
         reason.ends_with("the soil comes to its strength all at once"),
         "{reason}"
     );
-    let told = failure.to_string();
+    let message = failure.to_string();
     assert!(
-        told.contains(
+        message.contains(
             "probably           collapse: the soil comes to its strength all at once, between"
         ),
-        "{told}"
+        "{message}"
     );
     assert!(
-        !told.contains("small_cuts") && !told.contains("supports in"),
-        "{told}"
+        !message.contains("small_cuts") && !message.contains("supports in"),
+        "{message}"
     );
     let advised = "stop_when = { no_equilibrium = true } in stage \"press\"";
-    assert!(failure.suggestions[1].starts_with(advised), "{told}");
+    assert!(failure.suggestions[1].starts_with(advised), "{message}");
     let followed = run(&["stages.press.stop_when={ no_equilibrium = true }"]);
     assert!(followed.failure.is_none());
     let reached = followed.summary.stages[0].reached;

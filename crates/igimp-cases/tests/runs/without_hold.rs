@@ -6,7 +6,7 @@ use igimp_cases::run::{Run, in_memory};
 use igimp_input::CaseFile;
 
 fn ran(text: &str, set: &[&str]) -> Run<2> {
-    let set: Vec<String> = set.iter().map(|&own| own.to_owned()).collect();
+    let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
     let file = CaseFile::parse("case.toml", text, &set).unwrap_or_else(|error| panic!("{error}"));
     in_memory(file.case()).unwrap()
 }
@@ -74,9 +74,9 @@ fn a_block_that_slides_is_told_to() {
         let pushed = 0.3 * run.failure.as_ref().unwrap().error.from;
         assert!((pushed / friction - 1.0).abs() < 0.01, "{pushed}");
         let failure = run.failure.unwrap();
-        let told = failure.error.failure.to_string();
+        let message = failure.error.failure.to_string();
         let expected = "nothing holds the rigid body \"block\" in its displacement in x";
-        assert!(told.starts_with(expected), "{told}");
+        assert!(message.starts_with(expected), "{message}");
         let first = &failure.suggestions[0];
         assert!(
             first.contains("friction") && first.contains("slides"),
@@ -173,17 +173,17 @@ fn an_acute_corner_may_lie_anywhere() {
     for (low, high) in [(1.57, 4.57), (2.1, 4.3), (1.62, 7.62), (1.6, 4.6)] {
         let wedge = WEDGE.replace("LOW", &low.to_string());
         let wedge = wedge.replace("HIGH", &high.to_string());
-        let [own, with_means] = [&[][..], &["grid.locking=b-bar"]].map(|set| {
+        let [plain, with_means] = [&[][..], &["grid.locking=b-bar"]].map(|set| {
             let run = ran(&wedge, set);
             assert!(run.failure.is_none(), "{low}: {:?}", run.failure);
             let stage = &run.summary.stages[0];
             tied += stage.ghost_steps;
             stage.largest_displacement
         });
-        println!("{low} {high}: {own} {with_means}");
+        println!("{low} {high}: {plain} {with_means}");
         assert!(
-            (own / with_means - 1.0).abs() < 0.01,
-            "{low}: {own} {with_means}"
+            (plain / with_means - 1.0).abs() < 0.01,
+            "{low}: {plain} {with_means}"
         );
     }
     assert!(tied >= 6, "{tied}");

@@ -53,9 +53,13 @@ fn ran(soil: &str, rest: &str) -> Run<2> {
 
 /// The last row of a monitor, without stage, step, progress and time; stresses with compression positive.
 fn last(run: &Run<2>, monitor: &str) -> Vec<f64> {
-    let table = run.monitors.iter().find(|own| own.name == monitor).unwrap();
+    let table = run
+        .monitors
+        .iter()
+        .find(|table| table.name == monitor)
+        .unwrap();
     let moment = ["stage", "step", "progress_[-]", "time_[s]"];
-    let is_moment = |own: &&String| moment.contains(&own.as_str());
+    let is_moment = |name: &&String| moment.contains(&name.as_str());
     let before = table.header.iter().take_while(is_moment).count();
     table.rows.last().unwrap()[before..].to_vec()
 }
@@ -78,14 +82,14 @@ fn saturated_soil_of_varied_weight_weighs_one() {
     ] {
         let run = ran(soil, &format!("{water}{stage}"));
         for side in ["left", "right"] {
-            let own = last(&run, side);
+            let row = last(&run, side);
             assert!(
-                (own[0] / 112.5e3 - 1.0).abs() < band,
-                "{stage} {side}: {own:?}"
+                (row[0] / 112.5e3 - 1.0).abs() < band,
+                "{stage} {side}: {row:?}"
             );
             assert!(
-                (own[1] / 57_318.75 - 1.0).abs() < band,
-                "{stage} {side}: {own:?}"
+                (row[1] / 57_318.75 - 1.0).abs() < band,
+                "{stage} {side}: {row:?}"
             );
         }
     }
@@ -99,12 +103,12 @@ fn level_ground_without_a_table_is_at_rest() {
     for (water, share) in [("r_u = 0.3", 0.7), ("dry = true", 1.0)] {
         let run = ran(soil, &format!("[[water]]\nname = \"water\"\n{water}\n{K0}"));
         for side in ["left", "right"] {
-            let own = last(&run, side);
+            let row = last(&run, side);
             let exact = [101.25e3, share * 101.25e3, 0.5 * share * 101.25e3];
-            for (own, exact) in own.iter().zip(exact) {
+            for (value, exact) in row.iter().zip(exact) {
                 assert!(
-                    (own / exact - 1.0).abs() < 1e-6,
-                    "{water} {side}: {own} {exact}"
+                    (value / exact - 1.0).abs() < 1e-6,
+                    "{water} {side}: {value} {exact}"
                 );
             }
         }
@@ -219,7 +223,7 @@ figures = []
 /// GOAL: a wait from which no water leaves is told. ORACLE: the keys that let it out, one by one.
 #[test]
 fn a_wait_without_an_outlet_is_told() {
-    let told = |keys: &str| {
+    let warns = |keys: &str| {
         let text = format!(
             r#"
 igimp = 1
@@ -252,9 +256,9 @@ consolidation = {{ duration = "1 d"{keys} }}
         file.warnings()
             .contains("water leaves nowhere in this stage")
     };
-    assert!(told(", open_faces = false"));
-    assert!(!told(""));
-    assert!(!told(", open_faces = false, open_sides = [\"bottom\"]"));
+    assert!(warns(", open_faces = false"));
+    assert!(!warns(""));
+    assert!(!warns(", open_faces = false, open_sides = [\"bottom\"]"));
 }
 
 /// GOAL: a stage that takes time goes at once to its end where no water is left to flow.
@@ -368,8 +372,8 @@ report = false
 "#
         );
         let file = CaseFile::parse("strip.toml", &text, &[]).unwrap();
-        let is_told = file.warnings().contains("a side of this drain, x =");
-        assert_eq!(is_told, width > 0.25, "{}", file.warnings());
+        let is_named = file.warnings().contains("a side of this drain, x =");
+        assert_eq!(is_named, width > 0.25, "{}", file.warnings());
         let run = in_memory(file.case()).unwrap();
         let rows = &run.monitors[0].rows;
         let column = rows[0].len() - 1;

@@ -157,8 +157,8 @@ fn wet() -> Case<2> {
         flows: false,
     };
     case.stages[0].drained = true;
-    if let StageKind::Construction(own) = &mut case.stages[3].kind {
-        own.water = Some(1);
+    if let StageKind::Construction(works) = &mut case.stages[3].kind {
+        works.water = Some(1);
     }
     case
 }
@@ -302,10 +302,10 @@ fn a_run_is_taken_up_within_a_construction_stage() {
     }
     written(&case, &stopped, Start::FromStage(3), None);
     assert_equal(&expected, &everything(&stopped), "from the last stage");
-    shows_what_is_there(&whole);
+    assert_shows_bodies(&whole);
 }
 
-fn shows_what_is_there(folder: &Path) {
+fn assert_shows_bodies(folder: &Path) {
     let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
     // Frames: one a step, and one at the end of each stage.
     let cells = |frame: usize| {
@@ -364,12 +364,12 @@ fn shows_what_is_there(folder: &Path) {
         "{summary}"
     );
     let report = read("report.html");
-    for told in [
+    for line in [
         "Largest pore pressure",
         "Excess pore pressure",
         "Total vertical stress",
     ] {
-        assert!(report.contains(told), "{told}");
+        assert!(report.contains(line), "{line}");
     }
     let table = read("monitors/crest.csv");
     assert!(
@@ -447,7 +447,7 @@ fn a_nail_is_installed_in_the_stage_that_digs() {
     assert!(forces(&nailed).iter().all(|force| *force >= 0.0));
     assert!(forces(&nailed).iter().any(|force| *force > 1e3));
     let outwards = |run: &Run<2>| {
-        let moved = run.body.particles.displacement.iter().map(|own| own[0]);
+        let moved = run.body.particles.displacement.iter().map(|u| u[0]);
         moved.fold(0.0, f64::max)
     };
     let [held, free] = [&nailed, &bare].map(outwards);
@@ -481,11 +481,11 @@ fn after(case: &Case<2>, material: Option<usize>) -> Particles<2> {
 /// Places \[m\] and total stresses \[Pa\] differ by no more.
 fn assert_same(expected: &Particles<2>, found: &Particles<2>, [length, pressure]: [f64; 2]) {
     for particle in 0..expected.len() {
-        let [a, b] = [expected, found].map(|own| own.x[particle]);
+        let [a, b] = [expected, found].map(|soil| soil.x[particle]);
         assert!((a[0] - b[0]).hypot(a[1] - b[1]) < length, "{a:?} {b:?}");
-        let [own, other] = [expected, found].map(|own| own.total_stress(particle));
-        for (a, b) in std::iter::zip(own.as_flattened(), other.as_flattened()) {
-            assert!((a - b).abs() < pressure, "{own:?} {other:?}");
+        let [stress, other] = [expected, found].map(|soil| soil.total_stress(particle));
+        for (a, b) in std::iter::zip(stress.as_flattened(), other.as_flattened()) {
+            assert!((a - b).abs() < pressure, "{stress:?} {other:?}");
         }
     }
 }
@@ -532,7 +532,7 @@ fn total_stress_stays_whatever_a_law_speaks_of() {
     }
     let (total, drained) = (2, 3);
     let undrained = after(&case, None);
-    assert!(undrained.excess.iter().any(|own| *own > 1e3));
+    assert!(undrained.excess.iter().any(|excess| *excess > 1e3));
     let by_total = after(&case, Some(total));
     assert_same(&undrained, &by_total, NEAR);
     let pores = |k: usize| by_total.pore_pressure[k].abs() + by_total.excess[k].abs();
@@ -551,7 +551,7 @@ fn total_stress_stays_whatever_a_law_speaks_of() {
         assert!((a - b).abs() < 0.1, "{a} {b}");
     }
     let drains = after(&case, Some(drained));
-    assert!(drains.excess.iter().all(|own| *own == 0.0));
+    assert!(drains.excess.iter().all(|excess| *excess == 0.0));
     let dissipation = Construction {
         dissipate: true,
         ..Construction::default()

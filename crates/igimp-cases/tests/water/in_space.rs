@@ -149,10 +149,10 @@ fn a_drowned_slope_feels_buoyancy_alone() {
     let (_, high) = done(&slope_in_pond(&pond("20 m")));
     let dry = slope_in_pond("").replace("weight = \"20 kN/m3\"", "weight = \"10 kN/m3\"");
     let (_, dry) = done(&dry);
-    for (what, other) in [("pond", &high), ("buoyant", &dry)] {
+    for (name, other) in [("pond", &high), ("buoyant", &dry)] {
         let [displacement, stress] = largest_difference(&low, other);
-        assert!(displacement < 1e-9, "{what}: {displacement}");
-        assert!(stress < 1e-9, "{what}: {stress}");
+        assert!(displacement < 1e-9, "{name}: {displacement}");
+        assert!(stress < 1e-9, "{name}: {stress}");
     }
 }
 
@@ -169,17 +169,17 @@ fn a_water_table_can_be_said_in_several_ways() {
     };
     let line = of(line);
     assert!(line.body.particles.pore_pressure.iter().any(|u| *u > 0.0));
-    for (what, other) in [("lines", of(lines)), ("points", of(points))] {
+    for (name, other) in [("lines", of(lines)), ("points", of(points))] {
         let [displacement, stress] = largest_difference(&line, &other);
-        assert!(displacement < 1e-9, "{what}: {displacement}");
-        assert!(stress < 1e-9, "{what}: {stress}");
+        assert!(displacement < 1e-9, "{name}: {displacement}");
+        assert!(stress < 1e-9, "{name}: {stress}");
     }
     let level = of("level = \"2 m\"");
     let drained = of("inside = \"2 m\"\noutside = \"2 m\"");
     assert!(
         largest_difference(&level, &drained)
             .iter()
-            .all(|own| *own < 1e-12)
+            .all(|apart| *apart < 1e-12)
     );
     // Where the ground lies between the levels, the table is its surface.
     let drawn = of("inside = \"2.5 m\"\noutside = \"1.5 m\"");
@@ -187,7 +187,7 @@ fn a_water_table_can_be_said_in_several_ways() {
     assert!(
         largest_difference(&drawn, &along)
             .iter()
-            .all(|own| *own < 1e-9)
+            .all(|apart| *apart < 1e-9)
     );
 }
 
@@ -363,7 +363,7 @@ fn half_a_circle_beside_a_plane_of_symmetry_presses_with_half_its_force() {
     assert!(
         largest_difference(&square, &rectangle)
             .iter()
-            .all(|own| *own < 1e-9)
+            .all(|apart| *apart < 1e-9)
     );
 }
 
@@ -433,9 +433,9 @@ fn what_makes_no_sense_is_refused() {
         };
         let _ = writeln!(out, "## {title}\n{said}");
     };
-    let water = |own: &str| format!("[[water]]\nname = \"w\"\n{own}");
-    for (title, own) in WATER {
-        problem(title, &block(2.0, &water(own), WEIGHT));
+    let water = |keys: &str| format!("[[water]]\nname = \"w\"\n{keys}");
+    for (title, keys) in WATER {
+        problem(title, &block(2.0, &water(keys), WEIGHT));
     }
     let upright = block(
         2.0,
@@ -447,15 +447,15 @@ fn what_makes_no_sense_is_refused() {
         "to = [\"1 m\", \"1 m\", \"2 m\"]",
     );
     problem("drawdown behind an upright face", &upright);
-    for (title, own) in MEMBERS {
+    for (title, keys) in MEMBERS {
         let member = format!(
-            "[[reinforcement]]\nname = \"r\"\nstiffness = \"20 MN\"\ncapacity = \"100 kN\"\nbond = \"40 kN/m\"\n{own}"
+            "[[reinforcement]]\nname = \"r\"\nstiffness = \"20 MN\"\ncapacity = \"100 kN\"\nbond = \"40 kN/m\"\n{keys}"
         );
         problem(title, &block(2.0, "", &format!("{member}\n{WEIGHT}")));
     }
-    for (title, own) in PATCHES {
+    for (title, keys) in PATCHES {
         let patch = format!(
-            "[[loads]]\nname = \"p\"\ntype = \"patch\"\npressure = \"10 kPa\"\n{own}\n{WEIGHT}"
+            "[[loads]]\nname = \"p\"\ntype = \"patch\"\npressure = \"10 kPa\"\n{keys}\n{WEIGHT}"
         );
         problem(title, &block(2.0, "", &patch));
     }

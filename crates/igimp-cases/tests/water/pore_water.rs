@@ -140,15 +140,15 @@ fn messages(cases: &[Edits<'_>]) -> String {
 /// states it are not.
 #[test]
 fn soil_that_weighs_the_same_below_the_table_is_told() {
-    let told = |edits: Edits<'_>| {
+    let count = |edits: Edits<'_>| {
         let file = CaseFile::parse("slope.toml", &edited(TEXT, edits), &[]).unwrap();
         file.warnings().matches("weighs below the table").count()
     };
     let sand = ("saturated_unit_weight = \"20 kN/m3\"\n", "");
     let clay = ("saturated_unit_weight = \"17 kN/m3\"\n", "");
-    assert_eq!(told(&[]), 0);
-    assert_eq!(told(&[clay]), 1);
-    assert_eq!(told(&[sand, clay]), 2);
+    assert_eq!(count(&[]), 0);
+    assert_eq!(count(&[clay]), 1);
+    assert_eq!(count(&[sand, clay]), 2);
 }
 
 #[test]
@@ -166,12 +166,12 @@ fn a_file_states_water_and_stages() {
         [(2, PoreSource::Ratio(0.25)), (1, PoreSource::Dry)]
     );
     assert!(case.stages[0].drained && !case.stages[1].drained);
-    let StageKind::Construction(own) = &case.stages[5].kind else {
+    let StageKind::Construction(works) = &case.stages[5].kind else {
         panic!("{:?}", case.stages[5]);
     };
-    assert_eq!((&own.place[..], &own.remove[..]), (&[][..], &[1][..]));
-    assert_eq!((&own.materials[..], own.water), (&[(0, 1)][..], None));
-    assert!(own.dissipate);
+    assert_eq!((&works.place[..], &works.remove[..]), (&[][..], &[1][..]));
+    assert_eq!((&works.materials[..], works.water), (&[(0, 1)][..], None));
+    assert!(works.dissipate);
 }
 
 /// GOAL: pressures by points act as the table does that they were taken from, with a pond, above the table and in what is
@@ -188,7 +188,7 @@ fn points_act_as_the_table_that_they_are_of() {
         run.body.particles.displacement.clone()
     };
     let apart = |one: &[[f64; 2]], other: &[[f64; 2]]| {
-        let size = |own: &[f64; 2]| own[0].hypot(own[1]);
+        let size = |u: &[f64; 2]| u[0].hypot(u[1]);
         let most = one.iter().map(size).fold(0.0, f64::max);
         let pairs = std::iter::zip(one, other);
         pairs
@@ -244,9 +244,9 @@ fn the_water_of_undrained_soil_follows_from_its_poisson_ratio() {
         "drainage = \"undrained\"",
         "drainage = \"undrained\"\npore_water = \"500 MPa\"",
     )]);
-    let own = stated.materials[1].drainage;
+    let drainage = stated.materials[1].drainage;
     assert_eq!(
-        own,
+        drainage,
         Drainage::Undrained {
             stiffness: 500e6.into(),
             flows: false

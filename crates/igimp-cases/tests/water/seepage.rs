@@ -117,7 +117,7 @@ fn a_slope_drains_to_its_toe() {
     let rows = &one.summary.setup;
     let rows = rows
         .iter()
-        .find(|own| own.title == "Seepage: discharges")
+        .find(|table| table.title == "Seepage: discharges")
         .unwrap();
     let all = rows.rows.iter().find(|row| row[1] == "all").unwrap();
     assert_eq!(all[2], all[3]);
@@ -174,7 +174,9 @@ type = "strength-reduction"
 #[test]
 fn a_slope_in_space_lets_through_what_it_does_in_the_plane() {
     let all = |setup: &[igimp_results::summary::SetupTable]| -> f64 {
-        let table = setup.iter().find(|own| own.title == "Seepage: discharges");
+        let table = setup
+            .iter()
+            .find(|table| table.title == "Seepage: discharges");
         let rows = &table.unwrap().rows;
         let all = rows.iter().find(|row| row[1] == "all").unwrap();
         all[2].parse().unwrap()
@@ -231,7 +233,11 @@ fn a_flow_is_written_and_drawn() {
         &done,
     )
     .unwrap();
-    let names = found.summary.figures.iter().map(|own| own.file.as_str());
+    let names = found
+        .summary
+        .figures
+        .iter()
+        .map(|figure| figure.file.as_str());
     assert!({ names }.any(|name| name == "figures/seepage-steady"));
     for name in [
         "figures/seepage-steady.svg",
@@ -309,25 +315,28 @@ fn discharges_are_checked_on_meshes() {
     assert!(run.summary.checks.len() == 2 && run.summary.checks.iter().all(|row| row.pass));
     let study = run.summary.mesh_study.as_ref().unwrap();
     for name in ["discharge", "through the middle"] {
-        let result = study.results.iter().find(|own| own.name.starts_with(name));
+        let result = study
+            .results
+            .iter()
+            .find(|result| result.name.starts_with(name));
         let result = result.unwrap_or_else(|| panic!("{:?}", study.results));
         let values: Vec<f64> = result.values.iter().flatten().copied().collect();
-        let own = result.estimate.as_ref().unwrap();
-        println!("{name}: {values:?} -> {own:?}");
+        let estimate = result.estimate.as_ref().unwrap();
+        println!("{name}: {values:?} -> {estimate:?}");
         assert!(values[0] < values[1] && values[1] < values[2]);
-        assert!((own.value - 4.8e-5).abs() < (values[2] - 4.8e-5).abs());
-        assert!((own.value - 4.8e-5).abs() < own.uncertainty);
+        assert!((estimate.value - 4.8e-5).abs() < (values[2] - 4.8e-5).abs());
+        assert!((estimate.value - 4.8e-5).abs() < estimate.uncertainty);
     }
     let text = DAM.replace("seepage.steady.outflow", "seepage.steady.inflow");
     let error = CaseFile::parse("dam.toml", &text, &[]).unwrap_err();
-    let told = error.to_string();
+    let message = error.to_string();
     assert!(
-        told.contains("there is no quantity `seepage.steady.inflow`"),
-        "{told}"
+        message.contains("there is no quantity `seepage.steady.inflow`"),
+        "{message}"
     );
     assert!(
-        told.contains("did you mean `seepage.steady.outflow`"),
-        "{told}"
+        message.contains("did you mean `seepage.steady.outflow`"),
+        "{message}"
     );
 }
 
@@ -392,11 +401,11 @@ level = "6 m"
     let file = CaseFile::parse("seepage.toml", &edited(&[(FORM, form)]), &[]);
     let file = file.unwrap_or_else(|error| panic!("{error}"));
     let case = file.case();
-    let PoreSource::Seepage(own) = &case.water[0].source else {
+    let PoreSource::Seepage(flow) = &case.water[0].source else {
         panic!("{:?}", case.water[0]);
     };
-    assert_eq!(own.free_water, Some(case.water[1].source.clone()));
-    let stated = format!("{:?}", own.conditions);
+    assert_eq!(flow.free_water, Some(case.water[1].source.clone()));
+    let stated = format!("{:?}", flow.conditions);
     for text in ["Recharge(2.5", "Inflow(-2.3148", "Soil(0)", "along: 1e-9"] {
         assert!(stated.contains(text), "{text} in {stated}");
     }
@@ -567,7 +576,7 @@ fn a_slope_is_safer_as_it_drains() {
         .summary
         .stages
         .iter()
-        .map(|own| own.name.as_str())
+        .map(|stage| stage.name.as_str())
         .collect();
     let water = ["safety at 0_5 d (water)", "safety at 20 d (water)"];
     assert_eq!(
@@ -581,8 +590,8 @@ fn a_slope_is_safer_as_it_drains() {
         ]
     );
     let factor = |run: &Run<2>, stage: usize| {
-        let own = run.summary.stages[stage].safety.as_ref().unwrap();
-        0.5 * (own.stable.unwrap() + own.failed.unwrap())
+        let search = run.summary.stages[stage].safety.as_ref().unwrap();
+        0.5 * (search.stable.unwrap() + search.failed.unwrap())
     };
     let [early, late] = [2, 4].map(|stage| factor(&found, stage));
     // The end without time, on the way from the same start.

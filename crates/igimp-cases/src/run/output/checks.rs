@@ -124,7 +124,7 @@ pub(crate) fn of_curves<const D: usize>(
         };
         // A run that is taken up reads its rows from files.
         let points = table.as_written().points(0, 1);
-        let found = against(case, &curve.name, &points, reference);
+        let held = against(case, &curve.name, &points, reference);
         let ran = |stage: usize| stages.get(stage).is_some_and(is_reached);
         let came_to_end = match curve.stage {
             Some(stage) => ran(stage),
@@ -134,13 +134,9 @@ pub(crate) fn of_curves<const D: usize>(
         let since = since.get(k).copied().unwrap_or(0);
         let is_whole = since <= curve.stage.unwrap_or(0) || (is_of_end && curve.stage.is_none());
         if (is_of_end && !came_to_end) || !is_whole {
-            rows.extend(
-                found
-                    .into_iter()
-                    .map(|row| CheckRow::not_reached(row.check)),
-            );
+            rows.extend(held.into_iter().map(|row| CheckRow::not_reached(row.check)));
         } else {
-            rows.extend(found);
+            rows.extend(held);
         }
     }
     rows

@@ -164,9 +164,9 @@ fn a_report_can_be_handed_on() {
     ] {
         assert!(text.contains(expected), "{expected} is missing in {text}");
     }
-    let place = |what: &str| {
-        text.find(what)
-            .unwrap_or_else(|| panic!("{what} is missing"))
+    let place = |phrase: &str| {
+        text.find(phrase)
+            .unwrap_or_else(|| panic!("{phrase} is missing"))
     };
     assert!(place("Factor of safety 1.375") < place("Newton iterations"));
     assert!(place("Materials Material") < place("Newton iterations"));
@@ -446,7 +446,7 @@ fn compared_states_share_unit_and_colours() {
         case: &case,
         pieces: &pieces,
     };
-    let bar = |name: &str, own: &Particles<2>, compared: &[&Particles<2>]| {
+    let bar = |name: &str, particles: &Particles<2>, compared: &[&Particles<2>]| {
         let shown = Shown {
             name: name.into(),
             title: String::new(),
@@ -457,12 +457,12 @@ fn compared_states_share_unit_and_colours() {
             laws: &laws,
         };
         let compared: Vec<_> = compared.iter().map(|&other| seen(other)).collect();
-        let own = seen(own);
+        let drawn = seen(particles);
         let note = pictures::field_picture(
             &canvas,
             &shown,
             Field::Displacement,
-            own,
+            drawn,
             &compared,
             &pictures::Over::default(),
         );

@@ -44,9 +44,9 @@ paraview = {{ every = "never" }}
     CaseFile::parse("slope.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn told<'r>(run: &'r Run<2>, text: &str) -> &'r str {
+fn warning<'r>(run: &'r Run<2>, text: &str) -> &'r str {
     let mut warnings = run.summary.warnings.iter();
-    let found = warnings.find(|own| own.contains(text));
+    let found = warnings.find(|warning| warning.contains(text));
     found.unwrap_or_else(|| panic!("{text}: {:#?}", run.summary.warnings))
 }
 
@@ -55,7 +55,7 @@ fn told<'r>(run: &'r Run<2>, text: &str) -> &'r str {
 #[test]
 fn cells_are_counted_in_both_directions() {
     let count = |run: &Run<2>, words: [&str; 2]| {
-        let text = told(run, words[1]);
+        let text = warning(run, words[1]);
         let cells = text.split(words[0]).nth(1).unwrap();
         cells.split(' ').next().unwrap().parse::<f64>().unwrap()
     };
@@ -73,7 +73,7 @@ fn cells_are_counted_in_both_directions() {
 #[test]
 fn heights_are_those_of_the_soil() {
     let run = in_memory::<2>(slope("1 m", "").case()).unwrap();
-    let text = told(&run, " cells high");
+    let text = warning(&run, " cells high");
     let cells = text.split("the slope is ").nth(1).unwrap();
     let cells: f64 = cells.split(' ').next().unwrap().parse().unwrap();
     // Weight moves the particles by some millimetres.
@@ -97,9 +97,9 @@ fn warnings_of_the_file_stand_in_the_summary_and_the_report() {
     let root = folder("told-warnings");
     let run = run_into((&file, file.case()), &root, Start::Afresh, None);
     for text in file.told() {
-        assert_eq!(told(&run, &text), text);
+        assert_eq!(warning(&run, &text), text);
     }
-    told(&run, "body `sheet` is 1 cells thick");
+    warning(&run, "body `sheet` is 1 cells thick");
     let report = std::fs::read_to_string(root.join("report.html")).unwrap();
     assert!(report.contains("cells thick, where three are needed"));
 }
