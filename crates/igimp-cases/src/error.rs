@@ -1,4 +1,4 @@
-//! What can be wrong with a case, and what can stop it from being written down.
+//! Faults of a case, and of the writing of one.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -45,7 +45,7 @@ pub enum CaseError {
     RigidBody {
         /// Its name.
         name: String,
-        /// What is wrong with its surface.
+        /// The fault of its surface.
         #[source]
         source: SurfaceError,
     },
@@ -105,7 +105,7 @@ pub enum CaseError {
     /// The elimination of the unknowns cannot be planned.
     #[error(transparent)]
     LinearSolver(#[from] LinearSolverError),
-    /// The cost of the case cannot be told, or is more than can be had.
+    /// The cost of the case is not known, or is more than can be had.
     #[error(transparent)]
     Estimate(#[from] EstimateError),
 }
@@ -132,7 +132,7 @@ impl CaseError {
         matches!(self, Self::Estimate(EstimateError::Memory { .. }))
     }
 
-    /// What is wrong with results, if that is what stands in the way.
+    /// The fault of results, if one stands in the way.
     pub fn of_results(&self) -> Option<&ResultsError> {
         match self {
             Self::Results(error) | Self::Report(ReportError::Results(error)) => Some(error),

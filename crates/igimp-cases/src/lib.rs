@@ -1,12 +1,12 @@
 //! Problems of geotechnics and their runs: stages, searches, events as they happen.
 //!
 //! A case file is read into a [`Case`](igimp_model::Case) by [`igimp_input`], and a [`run`](mod@run) takes that case through
-//! its stages. The program `igimp` is a shell around these; what it can do, a Rust program can.
+//! its stages. The program `igimp` is a shell around these; a Rust program can do the same.
 //!
-//! | module | what to find |
+//! | module | contents |
 //! |---|---|
 //! | [`run`](mod@run) | the engine: stages, strength reduction, run-out, resuming |
-//! | [`mesh_study`] | what the runs of a case on several meshes say together |
+//! | [`mesh_study`] | results of a case on several meshes together |
 //! | [`exact`] | exact solutions |
 //!
 //! # The factor of safety of a slope

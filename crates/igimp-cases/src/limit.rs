@@ -1,4 +1,4 @@
-//! What a path of equilibria says of its limit: numbers only (theory, eqs. 33e and 33f).
+//! The limit of a path of equilibria: numbers only (theory, eqs. 33e and 33f).
 
 use igimp_results::ending::PathEnd;
 use igimp_results::summary::{PathPoint, PathSummary};
@@ -55,7 +55,7 @@ impl Course {
         self.side * (factor - other)
     }
 
-    /// What changes of the factor are shares of: its size, or its way so far where it passes zero \[-\].
+    /// The scale of changes of the factor: its size, or its way so far where it passes zero \[-\].
     fn scale(self, factor: f64) -> f64 {
         factor.abs().max((factor - self.from).abs())
     }
@@ -95,7 +95,7 @@ pub(crate) fn point(report: &StepReport, factor: f64, work: f64, displacement: f
     }
 }
 
-/// What ends the path at its last point, if anything does: why, and the equilibrium that tells the factor. `limit` is a
+/// The end of the path at its last point, if it ends there: why, and the equilibrium with its factor. `limit` is a
 /// displacement at which the body counts as failed \[m\].
 pub(crate) fn end(
     points: &[PathPoint],

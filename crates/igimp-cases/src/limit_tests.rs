@@ -67,7 +67,7 @@ fn other_steps_tell_the_same_factor() {
 }
 
 #[test]
-fn a_factor_that_rises_on_and_one_that_falls_are_told_apart() {
+fn a_factor_that_rises_on_is_none_that_falls() {
     let rising: Vec<PathPoint> = (0..14)
         .map(|k| {
             let work = 2.0_f64.powi(k);

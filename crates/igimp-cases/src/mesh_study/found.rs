@@ -14,7 +14,7 @@ struct Found {
     value: f64,
     /// Half the width of the interval in which a search left it; 0 where nothing was searched for.
     half_width: f64,
-    /// Whether the run ended before it came to what the value stands for.
+    /// Whether the run ended before it came to the place of the value.
     ended_early: bool,
 }
 
@@ -212,7 +212,7 @@ fn at_stage<const D: usize>(case: &Case<D>, run: &Summary, number: usize) -> Opt
     })
 }
 
-/// Whether a stage ended before what its case asks of it, or stands on one that did.
+/// Whether a stage ended before its end as the case asks, or stands on one that did.
 fn has_ended_early<const D: usize>(case: &Case<D>, run: &Summary, number: usize) -> bool {
     let summary = run.stages.get(number);
     summary.is_none_or(|stage| !stage.came_to_its_end()) || stands_on_less(case, run, number)

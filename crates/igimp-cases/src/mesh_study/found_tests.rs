@@ -51,7 +51,7 @@ fn path(end: PathEnd, factor: f64) -> PathSummary {
 /// GOAL: a load at which the march or its path was given up is told and not extrapolated; a limit is.
 /// CASE: a vertical cut under a growing multiple of gravity.
 #[test]
-fn what_ended_early_is_not_extrapolated() {
+fn loads_that_ended_early_are_not_extrapolated() {
     let case = case("vertical_cut", &["checks=[]"]);
     let of = |end| {
         move |stage: &mut StageSummary| {
@@ -259,9 +259,9 @@ fn stages_that_were_given_up_and_those_that_stand_on_them_have_no_result() {
     assert!(of_run_out(&|_| {}) && !of_run_out(&moves));
 }
 
-/// GOAL: what is in the case decides which orders are allowed for.
+/// GOAL: the case decides which orders are allowed for.
 #[test]
-fn what_is_in_the_case_decides() {
+fn the_case_decides_on_orders() {
     let slowest = |name: &str| {
         let case = case(name, &[]);
         let stage = case.stages.len() - 1;

@@ -3,7 +3,7 @@
 use igimp_model::{Case, Driven, LoadKind, Material, Quantity, Stage, StageKind};
 use igimp_results::mesh_study::{Convergence, ResultKind};
 
-/// The result that a stage is made for, if it is made for one: its name, what it is, and how it converges.
+/// The result that a stage is made for, if it is made for one: its name, kind and convergence.
 pub(super) fn of_stage<const D: usize>(
     case: &Case<D>,
     number: usize,

@@ -2,7 +2,7 @@
 //! that it may have.
 //!
 //! [`run`](crate::run::run) computes a case whose [`mesh_study`](igimp_model::Case::mesh_study) asks for more than one mesh on all
-//! of them; its [`Summary`](igimp_results::summary::Summary) says what was found.
+//! of them; its [`Summary`](igimp_results::summary::Summary) has the results.
 
 mod found;
 #[cfg(test)]

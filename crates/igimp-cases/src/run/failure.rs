@@ -1,4 +1,4 @@
-//! What is known of a step that found no equilibrium, and what may help.
+//! The message of a step that found no equilibrium, and its remedies.
 
 pub(super) mod advice;
 pub(crate) mod message;
@@ -90,7 +90,7 @@ pub(crate) fn describe<const D: usize>(
     }
 }
 
-/// What a uniform collapse is, in words.
+/// A uniform collapse, in words.
 pub(crate) const COLLAPSE: &str = "the soil comes to its strength all at once";
 
 /// Whether a linear system could not be solved because soil came to its strength: the system of the step's start was solved,

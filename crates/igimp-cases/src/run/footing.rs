@@ -37,7 +37,7 @@ pub(crate) fn followed<const D: usize>(
     Ok(Some((index, row.round() as usize)))
 }
 
-/// The rows of the grid when what stood on a row of nodes has gone down by w \[m\], with rows added on top
+/// The rows of the grid when a row of nodes has gone down by w \[m\], with rows added on top
 /// for those that sank.
 pub(crate) fn rows(spec: &AxisSpec, base: usize, w: f64) -> Result<Axis, ShapeError> {
     let lower = spec.lower();

@@ -40,7 +40,7 @@ pub use output::entry::can_go_on;
 pub use rigid::outlines as rigid_outlines;
 pub use state::{Controls, ReinforcementControls, RigidControls, RigidTrack, State};
 
-/// What happens during a run, as it happens.
+/// A moment of a run, as it happens.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a, const D: usize> {
     /// The model is made; the first step follows.
@@ -80,19 +80,19 @@ pub enum Event<'a, const D: usize> {
     },
     /// A step was not accepted and is tried again with a smaller one.
     Cut {
-        /// What failed.
+        /// Its failure.
         error: &'a StepError,
     },
     /// A trial of a strength reduction by trials ended; a search along the path of equilibria tells [`Event::Path`].
     Trial {
-        /// What it found.
+        /// Its result.
         trial: &'a TrialSummary,
         /// Its last equilibrium.
         state: &'a State<D>,
     },
     /// A search along a path of equilibria reached the next one.
     Path {
-        /// What it found.
+        /// The point.
         point: &'a PathPoint,
     },
     /// A stage ended.
@@ -109,7 +109,7 @@ pub enum Event<'a, const D: usize> {
     OfMesh {
         /// Into how many parts the mesh cuts the cells of the case.
         parts: usize,
-        /// What happens.
+        /// The event.
         event: &'a Event<'a, D>,
     },
 }
@@ -209,15 +209,15 @@ pub struct Target {
     ///
     /// [`linear_system`]: igimp_results::linear_system
     pub systems: Option<PathBuf>,
-    /// Day and time of the run, for its report. The library reads no time of day: who starts a run says it.
+    /// Day and time of the run, for its report, stated by the caller. The library reads no time of day.
     pub date: Option<String>,
-    /// What the run is thought to cost, to be kept beside what it did.
+    /// The expected cost of the run, kept beside its actual cost.
     pub expectation: Option<Expectation>,
     /// Of a study of the mesh error: the completed case of each mesh.
     pub meshes: Vec<String>,
     /// Where the case comes from: results of another one are not replaced unasked.
     pub origin: Origin,
-    /// What the run may replace in its folder.
+    /// The replaceable files of its folder.
     pub replace: Replace,
     /// Warnings of the case file, in a sentence each: its summary and its report have them, and listeners are not told.
     pub warnings: Vec<String>,
@@ -242,7 +242,7 @@ impl Target {
 }
 
 impl Target {
-    /// What is known of a run of a case into this folder.
+    /// The claim of a run of a case on this folder.
     fn claim<const D: usize>(&self, case: &Case<D>) -> Claim {
         Claim {
             origin: self.origin.clone(),
@@ -252,10 +252,10 @@ impl Target {
     }
 }
 
-/// What a run hands back.
+/// The result of a run.
 #[derive(Debug)]
 pub struct Run<const D: usize> {
-    /// What `summary.json` says.
+    /// As in `summary.json`.
     pub summary: Summary,
     /// Curves, named as in the case.
     pub curves: Vec<Table>,
@@ -271,10 +271,10 @@ pub struct Run<const D: usize> {
     pub lost: Vec<CaseError>,
 }
 
-/// What a run says of itself, in any dimension.
+/// The result of a run, in any dimension.
 #[derive(Debug)]
 pub struct Account {
-    /// What `summary.json` says.
+    /// As in `summary.json`.
     pub summary: Summary,
     /// The step that ended the run for want of equilibrium, if one did.
     pub failure: Option<Failure>,
@@ -327,15 +327,15 @@ pub struct Failure {
     pub smallest: f64,
     /// Most corrections allowed.
     pub max_iterations: usize,
-    /// What failed.
+    /// The error.
     pub error: StepError,
     /// Particles within a cell of the worst node.
     pub near_worst: Option<NearWorst>,
     /// Material of most particles there.
     pub material: Option<String>,
-    /// What may help, most promising first; in the words of the case file.
+    /// Remedies, most promising first; in the words of the case file.
     pub suggestions: Vec<String>,
-    /// Files and folders with what was computed.
+    /// Files and folders with results.
     pub saved: Vec<PathBuf>,
 }
 

@@ -1,4 +1,4 @@
-//! From a case to what the solver marches: grid, particles, laws, supports, loads.
+//! From a case to the solver's model: grid, particles, laws, supports, loads.
 
 mod seeding;
 
@@ -43,7 +43,7 @@ pub struct Model<'c, const D: usize> {
     water: Vec<Arc<GroundWater<D>>>,
     /// Flows that were followed in time.
     pub(crate) courses: Vec<Followed>,
-    /// What the particles were seeded in.
+    /// The seeds of the particles.
     pub(crate) seeded: Arc<Seeded<D>>,
     /// The particles of bodies that stages place.
     pub(crate) later: Option<Particles<D>>,
@@ -55,7 +55,7 @@ impl<'c, const D: usize> Model<'c, D> {
     /// The model of a case, and its undeformed, stress-free state.
     ///
     /// # Errors
-    /// [`CaseError`] for what cannot be made.
+    /// [`CaseError`] for impossible parts.
     pub fn new(case: &'c Case<D>) -> Result<(Self, State<D>), CaseError> {
         Self::with_water(case, None)
     }
@@ -209,7 +209,7 @@ impl<'c, const D: usize> Model<'c, D> {
         }
     }
 
-    /// How far what the grid follows has gone down \[m\]: a rigid footing, or a rigid body.
+    /// The way down of the rigid footing or rigid body that the grid follows \[m\].
     pub fn lowered(&self, controls: &Controls) -> f64 {
         match self.followed {
             Some((body, _)) => controls.rigid[body].track.lowered,
@@ -217,7 +217,7 @@ impl<'c, const D: usize> Model<'c, D> {
         }
     }
 
-    /// The background grid when what it follows has gone down so far \[m\].
+    /// The background grid when its followed body has sunk so far \[m\].
     ///
     /// # Errors
     /// [`ShapeError`] for cells that make no grid.
@@ -232,7 +232,7 @@ impl<'c, const D: usize> Model<'c, D> {
         Ok(grid)
     }
 
-    /// What holds during a step between two controls, with so much `drag` \[1/s²\], on the grid of the
+    /// The conditions of a step between two controls, with so much `drag` \[1/s²\], on the grid of the
     /// settlement that the step begins with.
     ///
     /// # Errors

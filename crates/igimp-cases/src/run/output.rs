@@ -1,4 +1,4 @@
-//! The results folder of a run: what is written, and when.
+//! The results folder of a run, and when it is written.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -79,12 +79,12 @@ pub(crate) struct Output<const D: usize> {
     /// The edges of the bodies in space, once a picture wants them.
     edges: Option<Arc<Outlines>>,
     seconds: f64,
-    /// What was found when the run was taken up, to be told and not kept: a resumed run leaves the files
+    /// Warnings of a run that was taken up, to be printed and not kept: a resumed run leaves the files
     /// of one that was never stopped.
     pub(crate) notes_for_user: Vec<String>,
-    /// What was found when the run began with a later stage, to be told and kept.
+    /// Warnings of a run that began with a later stage, to be printed and kept.
     pub(crate) warnings: Vec<String>,
-    /// What tables, sections and checks are read from.
+    /// The sources of tables, sections and checks.
     readings: Readings,
 }
 
@@ -177,7 +177,7 @@ impl<const D: usize> Output<D> {
         })
     }
 
-    /// Notes what the checks at the end of a stage were read from.
+    /// Notes the sources of the checks at the end of a stage.
     pub(crate) fn note_readings(
         &mut self,
         case: &Case<D>,

@@ -1,4 +1,4 @@
-//! Reinforcement of a case as the solver has it: made, installed, what acts on it, and what it tells.
+//! Reinforcement of a case as the solver has it: made, installed, loaded, and its results.
 
 use igimp_assembly::{Hold, Reinforcement, ReinforcementControl, Segment, SegmentState, Station};
 use igimp_model::{Case, ReinforcementPart, ReinforcementQuantity, Stage, distance};
@@ -106,7 +106,7 @@ fn head_points<const D: usize>(case: &Case<D>, part: &ReinforcementPart<D>) -> V
     places
 }
 
-/// Installs what a stage installs, in the ground as it stands. A jack takes hold of what is stressed.
+/// Installs the members of a stage, in the ground as it stands. A jack takes hold of stressed ones.
 pub(crate) fn begin<const D: usize>(case: &Case<D>, state: &mut State<D>, stage: &Stage) {
     for &index in &stage.install {
         let part = &case.reinforcement[index];
@@ -120,7 +120,7 @@ pub(crate) fn begin<const D: usize>(case: &Case<D>, state: &mut State<D>, stage:
     }
 }
 
-/// What is said where a stage ended before its jacks held all of the prestress: the tension that was locked off.
+/// Warning of a stage that ended before its jacks held all of the prestress: the tension that was locked off.
 pub(crate) fn locked_early<const D: usize>(case: &Case<D>, state: &State<D>) -> Option<String> {
     let unit = format!("kN{}", case.per_metre());
     let parts = std::iter::zip(&case.reinforcement, &state.controls.reinforcement);
@@ -144,7 +144,7 @@ pub(crate) fn locked_early<const D: usize>(case: &Case<D>, state: &State<D>) -> 
     })
 }
 
-/// What acts on the members that are there, at the end of a step with these controls.
+/// Controls of the members that are there, at the end of a step with these controls.
 pub(crate) fn controls<const D: usize>(case: &Case<D>, to: &Controls) -> Vec<ReinforcementControl> {
     to.installed()
         .map(|index| ReinforcementControl {

@@ -122,7 +122,7 @@ pub(crate) struct Notes {
     pub(crate) history: String,
     pub(crate) stages: Vec<StageSummary>,
     pub(crate) checks: Vec<CheckRow>,
-    /// What tables, sections and checks were read from.
+    /// The sources of tables, sections and checks.
     #[serde(default)]
     pub(crate) readings: Readings,
     pub(crate) warnings: Vec<String>,
@@ -141,7 +141,7 @@ pub(crate) struct Notes {
     pub(crate) rigid: BTreeMap<String, Vec<SavedBody>>,
     /// The reinforcement of each state, by its name.
     pub(crate) reinforcement: BTreeMap<String, Vec<SavedMember>>,
-    /// What moves in free field beside the current state.
+    /// Columns in free field beside the current state.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) free_fields: Vec<SavedFreeField>,
     pub(crate) convergence_rows: usize,

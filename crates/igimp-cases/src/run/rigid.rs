@@ -1,4 +1,4 @@
-//! Rigid bodies of a case as the solver has them: made, placed, moved, and what they did.
+//! Rigid bodies of a case as the solver has them: made, placed, moved, and their motion.
 
 use igimp_assembly::{Drive, Interface, Particles, RigidBody, RigidMotion, Shear};
 use igimp_model::{
@@ -65,7 +65,7 @@ fn interface<const D: usize>(case: &Case<D>, of: &RigidInterface, laws: usize) -
     }
 }
 
-/// Own weight, with what pseudo-static acceleration adds to it, by component \[N/m\], of whole bodies \[N\].
+/// Own weight and the force of pseudo-static acceleration, by component \[N/m\], of whole bodies \[N\].
 fn weight<const D: usize>(part: &RigidPart<D>, controls: &Controls) -> [f64; D] {
     controls.body_force::<D>().map(|share| share * part.weight)
 }
@@ -98,8 +98,8 @@ pub(crate) fn motions<const D: usize>(
         .collect()
 }
 
-/// What the rigid bodies did by the end of an accepted step, at whose end `controls` act; they tell what
-/// was done before.
+/// The motion of the rigid bodies by the end of an accepted step, where `controls` act; these have
+/// the motion before.
 pub(crate) fn tracks<const D: usize>(
     case: &Case<D>,
     controls: &Controls,
@@ -148,7 +148,7 @@ pub(crate) fn gap_below<const D: usize>(part: &RigidPart<D>, particles: &Particl
     least
 }
 
-/// Whether a body stands on a level base: what lies under it touches all of the base at once.
+/// Whether a body stands on a level base: soil under it touches all of the base at once.
 pub(crate) fn has_level_base<const D: usize>(part: &RigidPart<D>) -> bool {
     const SHARES: [f64; 5] = [0.2, 0.35, 0.5, 0.65, 0.8];
     let (lower, upper) = part.bounds();
@@ -199,7 +199,7 @@ pub(crate) fn quantity<const D: usize>(
     }
 }
 
-/// What is recorded of a rigid body, under these labels.
+/// Recorded quantities of a rigid body, with labels.
 pub(crate) fn recorded<const D: usize>(case: &Case<D>) -> Vec<(String, RigidQuantity)> {
     let per_run = case.per_metre();
     let mut recorded = Vec::new();
@@ -270,7 +270,7 @@ pub(crate) fn too_deep<const D: usize>(
 /// Rigid bodies that reach into each other by less than this share of a cell touch \[-\].
 const TOUCH: f64 = 1e-3;
 
-/// What is to be said of two rigid bodies that have come into each other: which they are, and how far. Nothing keeps them apart.
+/// The warning of two rigid bodies that have come into each other: which they are, and how far. Nothing keeps them apart.
 pub(crate) fn meet<const D: usize>(
     case: &Case<D>,
     controls: &Controls,

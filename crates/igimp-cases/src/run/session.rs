@@ -1,4 +1,4 @@
-//! What passes from stage to stage of a run: model, listener, records and results folder.
+//! Data passed from stage to stage of a run: model, listener, records and results folder.
 
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
@@ -84,7 +84,7 @@ impl<const D: usize> Session<'_, D> {
         self.warn(format!("stage \"{name}\": {text}"));
     }
 
-    /// What a march needs besides the body.
+    /// Memory of a march besides the body.
     pub(super) fn workspace(&self) -> Workspace<D> {
         let solver = self.model.solver();
         Workspace::new(match &self.export {
@@ -100,7 +100,7 @@ impl<const D: usize> Session<'_, D> {
         }
     }
 
-    /// What was solved since the last accepted step belongs to none.
+    /// Solutions since the last accepted step belong to none.
     pub(crate) fn drop_system(&mut self) {
         if let Some(export) = &mut self.export {
             export.not_accepted();
@@ -293,7 +293,7 @@ pub(crate) struct StagePath<'a, const D: usize> {
     pub(crate) method: Method,
     /// Sizes of steps.
     pub(crate) settings: MarchSettings,
-    /// What holds the body at the beginning and is let go on the way, by node \[N/m\].
+    /// Forces that hold the body at first and are let go on the way, by node \[N/m\].
     pub(crate) held: Option<Arc<Vec<[f64; D]>>>,
     /// Where an earlier run left the march.
     pub(crate) left: Option<&'a Resumption>,
@@ -353,7 +353,7 @@ impl<'a, const D: usize> StagePath<'a, D> {
     }
 }
 
-/// Adds to the conditions of a step between two controls what the ground does.
+/// Adds the motion of the ground to the conditions between two controls.
 pub(crate) type OnGround<'a, const D: usize> = dyn Fn(&Controls, &Controls, StepConditions<D>) -> Result<StepConditions<D>, AssemblyError>
     + 'a;
 
@@ -400,7 +400,7 @@ pub(crate) enum StageEnd {
     NotConverged(StepError),
 }
 
-/// What a stage says after a step: a reason to stop, if it has one.
+/// A stage's answer after a step: a reason to stop, if it has one.
 pub(crate) type StopRequest = Result<Option<EndReason>, CaseError>;
 
 /// Marches a state along a path. `each` is called after every accepted step. The state ends with
@@ -484,9 +484,9 @@ struct Watch<'w, 's, const D: usize> {
     path: &'w StagePath<'w, D>,
     each:
         &'w mut dyn FnMut(&mut Session<'_, D>, &StageSummary, &AcceptedStep<'_, D>) -> StopRequest,
-    /// What the rigid bodies did so far.
+    /// Motion of rigid bodies so far.
     tracks: &'w RefCell<Vec<RigidTrack>>,
-    /// What stands at walls.
+    /// The tracks of walls.
     walls: &'w RefCell<Vec<WallTrack>>,
     /// Duration of the last step.
     last_step: &'w Cell<f64>,

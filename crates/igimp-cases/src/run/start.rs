@@ -8,13 +8,13 @@ use crate::run::{AtomicBool, Entered, Event, Listener, Run, Start, Target, study
 
 /// Runs a case. With a target everything is written as it is computed.
 ///
-/// A case with a [`mesh_study`](Case::mesh_study) of several meshes is run on each of them, and what
-/// they say together is told in the [`Summary`](igimp_results::summary::Summary); the rest of the [`Run`] is that of the finest mesh that
+/// A case with a [`mesh_study`](Case::mesh_study) of several meshes is run on each of them, and the
+/// [`Summary`](igimp_results::summary::Summary) has their results together; the rest of the [`Run`] is that of the finest mesh that
 /// came to its end.
 ///
 /// Want of equilibrium is a result ([`Run::failure`]), and so is an interruption: when `interrupt`
 /// becomes true the run ends after its step, with everything saved. Nobody else writes into the results
-/// folder meanwhile, and what is there is replaced as far as [`Target::replace`] allows.
+/// folder meanwhile, and its files are replaced as far as [`Target::replace`] allows.
 ///
 /// # Errors
 /// [`CaseError`] for a case that cannot be set up, and for files that cannot be written or read.
@@ -45,7 +45,7 @@ pub(crate) fn run_entered<const D: usize>(
     one_mesh(case, target, start, listener, interrupt)
 }
 
-/// Runs a case from its beginning and keeps what it finds in memory.
+/// Runs a case from its beginning and keeps its results in memory.
 ///
 /// # Errors
 /// [`CaseError`] for a case that cannot be set up.

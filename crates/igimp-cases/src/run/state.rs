@@ -4,7 +4,7 @@ use igimp_model::{COMPONENTS, Case};
 use igimp_solver::Body;
 use serde::{Deserialize, Serialize};
 
-/// What acts on the body: everything that a stage can change.
+/// Controls of the body: everything that a stage can change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Controls {
     /// Multiple of gravity \[-\].
@@ -31,12 +31,12 @@ pub struct Controls {
     /// Duration of the last step; zero where statics came after it, and as a stage begins \[s\].
     #[serde(default)]
     pub last_step: f64,
-    /// What stands at the nodes of walls that a motion has let go.
+    /// Tracks of the nodes of walls that a motion has let go.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub walls: Vec<WallTrack>,
 }
 
-/// What stands at a node of a wall behind which the ground goes on.
+/// The track of a node of a wall behind which the ground goes on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WallTrack {
     /// The node of the grid.
@@ -61,7 +61,7 @@ impl WallTrack {
     }
 }
 
-/// What acts on a member of reinforcement.
+/// Controls of a member of reinforcement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ReinforcementControls {
     /// Whether it is there.
@@ -77,7 +77,7 @@ impl ReinforcementControls {
     }
 }
 
-/// What acts on a rigid body, and where that brought it, by component.
+/// Controls of a rigid body, and its motion by them, by component.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RigidControls {
     /// Whether it is there.
@@ -86,11 +86,11 @@ pub struct RigidControls {
     pub moved: [f64; COMPONENTS],
     /// The force \[N/m\] or moment \[N\] on the whole body of each component that is not held.
     pub loaded: [Option<f64>; COMPONENTS],
-    /// What it did so far.
+    /// Its motion so far.
     pub track: RigidTrack,
 }
 
-/// What a rigid body did so far.
+/// A rigid body's motion so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RigidTrack {
     /// Displacement of the reference point \[m\] and rotation \[rad\] since it was placed, or since
@@ -186,7 +186,7 @@ impl Controls {
         bodies.filter(|(_, part)| part.placed).map(|(body, _)| body)
     }
 
-    /// What the rigid bodies did so far.
+    /// Motion of rigid bodies so far.
     pub(crate) fn tracks(&self) -> Vec<RigidTrack> {
         self.rigid.iter().map(|body| body.track).collect()
     }
@@ -200,14 +200,14 @@ impl Controls {
         self
     }
 
-    /// The same with what stands at walls.
+    /// The same with tracks of walls.
     #[must_use]
     pub(crate) fn with_walls(mut self, walls: &[WallTrack]) -> Self {
         self.walls = walls.to_vec();
         self
     }
 
-    /// What stands at walls after a step by nodal displacements \[m\].
+    /// The tracks of walls after a step by nodal displacements \[m\].
     pub(crate) fn walls_after<const D: usize>(&self, u: &[[f64; D]]) -> Vec<WallTrack> {
         self.walls.iter().map(|wall| wall.moved(u)).collect()
     }
@@ -224,18 +224,18 @@ impl Controls {
     }
 }
 
-/// A body and what acted on it last.
+/// A body and its last controls.
 #[derive(Clone, Debug)]
 pub struct State<const D: usize> {
-    /// The body. Of the rigid bodies of the case it and of its reinforcement it has what is there
+    /// The body. Of the rigid bodies and reinforcement of the case it has those that are there
     /// ([`Controls::placed`], [`Controls::installed`]).
     pub body: Body<D>,
-    /// What acts on it.
+    /// Its controls.
     pub controls: Controls,
 }
 
 impl<const D: usize> State<D> {
-    /// Takes all motion from the body, and what stands at walls that a motion had let go.
+    /// Takes all motion from the body, and the tracks of walls that a motion had let go.
     pub(crate) fn rest(&mut self) {
         self.body.rest();
         self.controls.walls.clear();

@@ -1,7 +1,7 @@
-//! A case on several meshes: their runs side by side, and what they say together.
+//! A case on several meshes: their runs side by side, and their results together.
 //!
-//! A mesh is a run of its own with a folder of its own; what happens beside it changes none of its bits.
-//! What goes wrong on a mesh takes nothing from the others.
+//! A mesh is a run of its own with a folder of its own; events beside it change none of its bits.
+//! A failure on a mesh takes nothing from the others.
 
 use std::path::Path;
 use std::sync::Mutex;
@@ -181,7 +181,7 @@ fn all<const D: usize>(
     done.into_iter().map(|(_, run)| run).collect()
 }
 
-/// Tells what happens on a mesh to the listener of the study.
+/// Passes events of a mesh on to the listener of the study.
 struct OfMesh<'a, 'l, const D: usize> {
     parts: usize,
     listener: &'a Mutex<&'l mut dyn Listener<D>>,
@@ -231,7 +231,7 @@ fn mesh_summary<const D: usize>(
     }
 }
 
-/// The run of the finest mesh that came to its end, or of the finest at all, with what the study found.
+/// The run of the finest mesh that came to its end, or of the finest at all, with the study's results.
 ///
 /// # Errors
 /// The first error, if no mesh could be run.

@@ -22,7 +22,7 @@ const ALONG: [(f64, f64); 3] = [
 /// Halvings of a column in which the end of the pressure is looked for.
 const HALVINGS: usize = 16;
 
-/// What pieces of ground the particles were seeded in.
+/// The pieces of ground of the particles.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Seeded<const D: usize> {
     /// Body by number.
@@ -274,7 +274,7 @@ impl<const D: usize> GroundWater<D> {
         }
     }
 
-    /// What the law of a particle under level ground speaks of, tension positive \[Pa\]: the vertical stress by the weight of the
+    /// The stress of the law of a particle under level ground, tension positive \[Pa\]: the vertical stress by the weight of the
     /// ground, and the pressure of a pond above it, which acts in all directions alike on soil of total stress (theory, eq. 36c).
     pub(crate) fn at_rest(
         &self,

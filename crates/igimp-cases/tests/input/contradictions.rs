@@ -1,4 +1,4 @@
-//! What is said of values that make no sense together.
+//! Messages on values that make no sense together.
 
 use crate::edits::{Edits, edited};
 use crate::messages::messages;
@@ -337,7 +337,7 @@ fn records_that_make_no_sense() {
     ));
 }
 
-/// GOAL: what cannot be held against a reference is said with its place and a remedy.
+/// GOAL: a check without a comparison is named with its place and a remedy.
 #[test]
 fn messages_of_references() {
     let section = |reference: &str| {

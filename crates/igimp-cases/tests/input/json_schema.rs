@@ -59,7 +59,7 @@ fn pointers(value: &serde_json::Value, at: &str) -> Vec<String> {
     std::iter::once(at.to_owned()).chain(deeper).collect()
 }
 
-/// How many properties a schema has; each says what it is, in either analysis.
+/// How many properties a schema has, each described, in either analysis.
 fn described(schema: &serde_json::Value) -> usize {
     let says = |property: &serde_json::Value| {
         let text = property["description"].as_str();

@@ -1,5 +1,5 @@
 //! Case files with every kind of damage: the reader never panics, and either accepts the file or
-//! says what is wrong with it.
+//! names its fault.
 
 use std::panic::catch_unwind;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What is said of slips of syntax, of keys and of values.
+//! Messages on slips of syntax, of keys and of values.
 
 use igimp_input::shipped::find;
 use igimp_input::{CaseFile, InputError};
@@ -126,7 +126,7 @@ fn tabs_carriage_returns_and_accents_keep_their_columns() {
     insta::assert_snapshot!(format!("{first}\n{second}"));
 }
 
-/// A file from elsewhere must not get at the terminal through what is said of it.
+/// A file from elsewhere must not get at the terminal through its messages.
 #[test]
 fn messages_hold_no_control_characters() {
     for (key, value) in [
@@ -160,9 +160,9 @@ fn messages_hold_no_control_characters() {
     }
 }
 
-/// GOAL: a slip of the unit is told, with its place and what may be meant; a value that soil, rock or steel has is not.
+/// GOAL: a slip of the unit is told, with its place and a likely meaning; a value of soil, rock or steel is not.
 #[test]
-fn implausible_values_are_told() {
+fn implausible_values_are_named() {
     let cases = [
         (
             "unit_weight",
@@ -340,7 +340,7 @@ fn a_tolerance_has_bounds() {
 /// GOAL: stages that change nothing, or that lift a body off its soil, are told; those that change something are not.
 /// ORACLE: by hand.
 #[test]
-fn stages_that_change_nothing_are_told() {
+fn stages_that_change_nothing_are_named() {
     let load = "[[loads]]\nname = \"q\"\ntype = \"pressure\"\nfrom = [\"2 m\", \"20 m\"]\nto = [\"8 m\", \"20 m\"]\npressure = \"20 kPa\"\n";
     let stages = |more: &str| {
         let text = format!(
@@ -398,7 +398,7 @@ fn stages_that_change_nothing_are_told() {
 /// ORACLE: by hand: tan 20° = 0.364; K₀ of soil without cohesion at 20° lies between 0.49 and 2.04; E / (3 (1 − 2 ν)) of 20 MPa
 /// and 0.3 is 16.7 MPa.
 #[test]
-fn values_that_are_hardly_meant_are_told() {
+fn values_that_are_hardly_meant_are_named() {
     let of = |key: &str, value: &str| {
         let impact = find("impact").unwrap();
         let (file, set) = match key {
@@ -453,10 +453,10 @@ fn values_that_are_hardly_meant_are_told() {
     }
 }
 
-/// GOAL: keys of materials that nothing of a case asks for are told of, and are quiet where something does. ORACLE: the words of the
+/// GOAL: keys of materials that nothing of a case asks for are named, and are quiet where something does. ORACLE: the words of the
 /// messages, and their places.
 #[test]
-fn keys_without_effect_are_told_of() {
+fn keys_without_effect_are_named() {
     let warned = |set: &[&str]| overridden(SLOPE, set).unwrap().warnings();
     let k0 = "`k0` of `clay` has no effect";
     assert!(warned(&["materials.clay.k0=0.6"]).contains(k0));
@@ -504,9 +504,9 @@ fn names_of_runs_and_points_on_circles_are_refused() {
     );
 }
 
-/// GOAL: sharp edges of a body that sinks and slides are told of: they plough. CASE: a footing that is pressed and pushed.
+/// GOAL: sharp edges of a body that sinks and slides are named: they plough. CASE: a footing that is pressed and pushed.
 #[test]
-fn sharp_edges_that_slide_are_told_of() {
+fn sharp_edges_that_slide_are_named() {
     let warned = |rounding: &str, by: &str| {
         let shipped = igimp_input::shipped::find("eccentric_footing").unwrap();
         let changes = [
@@ -522,10 +522,10 @@ fn sharp_edges_that_slide_are_told_of() {
     assert!(!warned("0.3", "x = \"0.01 m\""));
 }
 
-/// GOAL: sides that hold soil against the motion of the ground are told of: they go along as rigid walls. CASE: the shipped slope in an
+/// GOAL: sides that hold soil against the motion of the ground are named: they go along as rigid walls. CASE: the shipped slope in an
 /// earthquake, with soil in free field at its sides and without.
 #[test]
-fn rigid_walls_of_shaken_ground_are_told_of() {
+fn rigid_walls_of_shaken_ground_are_named() {
     let warned = |free_field: &str| {
         let shipped = igimp_input::shipped::find("earthquake_slope").unwrap();
         let changes = [

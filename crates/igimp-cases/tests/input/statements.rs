@@ -1,4 +1,4 @@
-//! What files state: their cases, the completed files, the files beside them, the reference of all keys.
+//! Statements of files: cases, completed files, files beside them, the reference of all keys.
 
 use igimp_input::shipped::SHIPPED;
 use igimp_input::{CaseFile, InputError};
@@ -28,7 +28,7 @@ fn the_shipped_files_are_right_and_without_warning() {
     }
 }
 
-/// GOAL: a check is told in the unit in which the file writes what is accepted, of several in that of the first, and its numbers
+/// GOAL: a check is printed in the unit of the file for its band, of several in that of the first, and its numbers
 /// are in SI units. ORACLE: by hand: 1 cm is 0.01 m, 1 ft is 0.3048 m.
 #[test]
 fn a_check_keeps_the_unit_of_its_band() {

@@ -201,7 +201,7 @@ fn threads_change_no_bit_of_a_motion() {
     }
 }
 
-/// GOAL: in space a block falls freely, its acceleration is told by either scheme, and time is a quantity.
+/// GOAL: in space a block falls freely, either scheme has its acceleration, and time is a quantity.
 #[test]
 fn a_block_falls_in_space() {
     let text = r#"

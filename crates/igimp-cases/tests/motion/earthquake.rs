@@ -202,7 +202,7 @@ figures = []
 
 /// GOAL: a compliant base carries a column of one cell in space as it does in the plane: nodes of full soil at its corners have an
 /// eighth of a cell, and keep their dashpots.
-/// ORACLE: the outcrop, whose displacement is the record integrated twice, delayed by H/c = 0.1 s; a displacement that is told is
+/// ORACLE: the outcrop, whose displacement is the record integrated twice, delayed by H/c = 0.1 s; a printed displacement is
 /// that less the way of the ground itself. And each other.
 #[test]
 fn a_compliant_base_carries_a_column_in_space_as_in_the_plane() {
@@ -414,7 +414,7 @@ const SHORT: [&str; 4] = [
     "stages.earthquake.steps = 3",
 ];
 
-/// GOAL: a run in the middle of an earthquake goes on with the same bytes, with what moves in free field.
+/// GOAL: a run in the middle of an earthquake goes on with the same bytes, with columns in free field.
 #[test]
 fn a_resumed_earthquake_leaves_the_same_files() {
     let file = slope(&[&SHORT[..], &FREE].concat());
@@ -471,7 +471,7 @@ fn threads_change_no_bit_of_an_earthquake() {
     }
 }
 
-/// GOAL: what makes no sense of a record is told, with file and line.
+/// GOAL: a record without sense is refused, with file and line.
 #[test]
 fn records_that_make_no_sense() {
     let path = std::env::temp_dir().join(format!("igimp-records-{}", std::process::id()));
@@ -651,7 +651,7 @@ fn walls_stand_where_ground_is() {
     }
 }
 
-/// GOAL: a block is told of no motion across its way.
+/// GOAL: a block hears of no motion across its way.
 /// ORACLE: the key and the words.
 #[test]
 fn a_block_slides_along_its_push() {
@@ -774,7 +774,7 @@ fn ground_that_moves_late_is_waited_for() {
 
 /// GOAL: a record that begins after its stage, and soil without mass, are told. ORACLE: the words; a case that has neither.
 #[test]
-fn motions_that_do_little_are_told() {
+fn motions_that_do_little_are_named() {
     let warnings = |begins: &str, weight: &str| {
         let stage = format!(
             "duration = \"1 s\"\nground_motion = {{ unit = \"g\", time = [\"{begins} s\", \"9 s\"], values = [0, 1] }}"
@@ -797,7 +797,7 @@ fn motions_that_do_little_are_told() {
 /// GOAL: a record of velocity that does not begin at zero is told, as its first value is left out. ORACLE: the words; records that begin at
 /// zero, and of acceleration.
 #[test]
-fn a_record_of_velocity_that_begins_moving_is_told() {
+fn a_record_of_velocity_that_begins_moving_is_named() {
     let warnings = |unit: &str, first: &str| {
         let stage = format!(
             "duration = \"0.5 s\"\nground_motion = {{ unit = \"{unit}\", time = [\"0 s\", \"0.2 s\", \"0.4 s\"], \

@@ -82,7 +82,7 @@ fn a_push_to_the_left_is_the_mirror_image_of_one_to_the_right() {
     assert!(at.factor > 0.1 && a.points.len() > 2, "{at:?}");
 }
 
-/// GOAL: the limit is told of a control that the stage changes, whatever it states beside it.
+/// GOAL: the limit is that of a control that the stage changes, whatever it states beside it.
 /// ORACLE: the same body force by another control: gravity restated with no push, and a push downwards beside gravity.
 #[test]
 fn a_limit_is_that_of_the_control_that_changes() {

@@ -13,7 +13,7 @@ mod turning;
 
 use igimp_results::summary::EnergySummary;
 
-/// What comes in less where it goes.
+/// Incoming less outgoing energy.
 fn imbalance(energy: &EnergySummary) -> f64 {
     let gone = [
         energy.kinetic_gain,

@@ -68,7 +68,7 @@ fn a_bar_pushed_along_itself_is_a_column() {
     }
 }
 
-/// GOAL: what a stage does not state stays.
+/// GOAL: controls that are not stated stay.
 #[test]
 fn the_push_stays_until_it_is_stated_anew() {
     let stages = r#"

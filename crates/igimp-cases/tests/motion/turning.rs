@@ -5,7 +5,7 @@
 use igimp_cases::run::{Run, in_memory};
 use igimp_input::CaseFile;
 
-/// A block 1 m wide and 2 m high, without what pushes it.
+/// A block 1 m wide and 2 m high, without its load.
 const BLOCK: &str = r#"
 igimp = 1
 [case]
@@ -124,7 +124,7 @@ ground_motion = { time = ["0 s", "0.1 s", "0.3 s"], values = [0, 0.5, -0.3], uni
 /// CASE: a block that is lowered by 0.1 m in the air, and let go.
 /// ORACLE: free fall, g t² / 2.
 #[test]
-fn what_is_let_go_falls() {
+fn a_released_block_falls() {
     let text = BLOCK
         .replace(
             "type = \"gravity\"\nsteps = 2",
@@ -164,7 +164,7 @@ bodies = [{ body = "block", free = ["x", "y", "rotation"] }]
     assert!(warned, "{:?}", still.warnings());
 }
 
-/// A strip on clay, without what loads it.
+/// A strip on clay, without its load.
 const STRIP: &str = r#"
 igimp = 1
 [case]

@@ -1,4 +1,4 @@
-//! GOAL: what is written for ParaView and numpy opens there, with the numbers that were meant.
+//! GOAL: files for ParaView and numpy open there, with the numbers that were meant.
 //! ORACLE: VTK, PyVista, meshio and numpy, where they are installed; else these tests say that
 //! they were skipped.
 
@@ -115,7 +115,7 @@ fn particles<const D: usize>(side: usize) -> Particles<D> {
     .unwrap()
 }
 
-/// What the readers must find, and the total area or volume of the cells.
+/// Numbers for the readers, and the total area or volume of the cells.
 fn expected(grid: &UnstructuredGrid, time: f64, size: f64) -> Value {
     let array = |array: &DataArray| {
         let (kind, values) = match array.values() {
@@ -320,7 +320,7 @@ fn total_and_effective_stress_are_arrays_of_their_own() {
     assert_eq!(of(&dry, "u [Pa], compression +"), None);
 }
 
-/// GOAL: what soil does to a body points into it, and along it where the soil slips.
+/// GOAL: traction of soil on a body points into it, and along it where soil slips.
 /// ORACLE: pressure p and shear −p/2 on the soil along the base of a plate turned by 0.3: the body feels
 /// p upwards and p/2 to its right.
 #[test]

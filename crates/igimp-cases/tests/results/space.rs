@@ -206,7 +206,7 @@ const WITH_GL: [&str; 3] = [
 const WITHOUT_GL: [&str; 2] = ["--disable-gpu", "--disable-3d-apis"];
 
 /// GOAL: the report shows the surface, and the particle that is pointed at with its value, whether the browser
-/// has WebGL2 or not; a cut shows what lies behind it.
+/// has WebGL2 or not; a cut shows the soil behind it.
 #[test]
 fn a_slope_in_space_is_shown() {
     let Some(browser) = browser() else {

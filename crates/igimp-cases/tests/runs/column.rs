@@ -1,4 +1,4 @@
-//! GOAL: the shipped column in memory. What makes no sense is refused with its reason, a run that
+//! GOAL: the shipped column in memory. A senseless case is refused with its reason, a run that
 //! finds no equilibrium is a result and not an error, and the exact solution is met. So is that of a block under
 //! pressure on its faces, wherever in a cell they lie.
 
@@ -118,7 +118,7 @@ fn a_coarse_column_is_close_to_the_exact_solution() {
     assert_eq!(result.summary.stages[0].outcome, StageOutcome::Completed);
 }
 
-/// What is done about small cuts shows in the column at E = 1 MPa with 128 cells: tying a node to
+/// The treatment of small cuts shows in the column at E = 1 MPa with 128 cells: tying a node to
 /// its neighbour keeps the accuracy of doing nothing, dropping it doubles the error.
 #[test]
 fn tying_small_cuts_costs_no_accuracy_and_dropping_them_does() {
@@ -142,7 +142,7 @@ fn tying_small_cuts_costs_no_accuracy_and_dropping_them_does() {
     }
 }
 
-/// Every step tells of its iterations, and what a curve recorded is what the checks looked at.
+/// Every step reports its iterations, and checks look at the points that a curve recorded.
 #[test]
 fn a_factor_listed_is_tried_and_recorded() {
     let coarse = [

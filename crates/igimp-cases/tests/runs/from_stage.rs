@@ -1,4 +1,4 @@
-//! GOAL: a run that begins with a later stage tells of no place what was read at another one.
+//! GOAL: a run that begins with a later stage has no value that was read at another place.
 //! CASE: level elastic ground under its weight, and then under a strip of pressure.
 //! ORACLE: the case as it is changed, run from its beginning.
 
@@ -115,7 +115,7 @@ fn warns(run: &Run<2>, of: &[&str]) {
 
 // GOAL: monitors, sections, curves and checks that are changed have what the stages that run record, and no row of another place.
 #[test]
-fn what_is_redefined_has_nothing_of_the_stages_before() {
+fn redefined_records_have_nothing_of_the_stages_before() {
     let [mixed, fresh] = ["from-stage-mixed", "from-stage-fresh"].map(folder);
     ran(&parsed(&[]), &mixed, Start::Afresh);
     let changed = parsed(&[MOVED, ["to = [\"5 m\",\"1 m\"]", "to = [\"5 m\",\"3 m\"]"]]);
@@ -183,7 +183,7 @@ fn other_fields_and_bands_are_taken_up() {
 
 // GOAL: what is not changed is kept to the byte, and a call that is refused changes no byte.
 #[test]
-fn what_stays_and_what_is_refused_changes_nothing() {
+fn a_case_that_stays_or_is_refused_changes_nothing() {
     let root = folder("from-stage-same");
     ran(&parsed(&[]), &root, Start::Afresh);
     let before = everything(&root);

@@ -1,4 +1,4 @@
-//! GOAL: what yields first is not taken for a mechanism, where one begins is seen, and a path goes past what yields before.
+//! GOAL: first yield is not taken for a mechanism, where one begins is seen, and a path goes past early yield.
 //! CASE: a slope of 20 m in weak rock, 1:2, by the criterion of Hoek and Brown, whose first particles yield far below its strength.
 //! ORACLE: the search by trials, which asks for equilibrium and for no mechanism; and rock that is lighter is safer.
 
@@ -226,7 +226,7 @@ fn soil_drains_under_a_weight_that_is_raised_anew() {
     assert!((raised / reduced - 1.0).abs() < 0.01, "{reduced} {raised}");
 }
 
-/// What a slope is brought to its limit by: a force aside, or a pressure on its crest.
+/// A load that takes a slope to its limit: a force aside, or a pressure on its crest.
 const ASIDE: &str = "type = \"gravity\"\nhorizontal";
 const DOWN: &str = "type = \"load\"\nload = \"crest\"\nfactor";
 
@@ -358,7 +358,7 @@ fn soil_with_little_friction_has_the_factor_of_soil_without() {
     }
 }
 
-/// GOAL: what a search by trials says in weak rock without dilation is known (limits.md): it stops before the slope moves as a mechanism.
+/// GOAL: a search by trials in weak rock without dilation has a known answer (limits.md): it stops before the slope moves as a mechanism.
 /// CASE: the shipped slope in rock, of 1 MPa, GSI 30 and m_i 8.
 /// ORACLE: the path of equilibria, which goes on through equilibria beyond.
 #[test]

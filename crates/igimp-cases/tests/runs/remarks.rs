@@ -1,5 +1,5 @@
-//! GOAL: what misleads is said: a slope that does not stand has its factor all the same, tension that carries is told, memory
-//! that decides is told, a run-out's last step is in its tables; each once, and with its stage.
+//! GOAL: misleading results have remarks: a slope that does not stand has its factor all the same, tension that carries, memory
+//! that decides, a run-out whose last step is in its tables; each once, and with its stage.
 //! CASE: slopes of some hundred particles, run in memory.
 //! ORACLE: F of strengths times k is k times F; a cut-off takes away what tension carried; the state that a run ends with.
 
@@ -100,9 +100,9 @@ fn a_slope_that_does_not_stand_has_its_factor_all_the_same() {
     assert!(warnings_with(&stands, "does not stand").is_empty());
 }
 
-/// What stands between the weight and the search is raised with gravity anew; what else begins with the body that fell is not run.
+/// A load between the weight and the search is raised with gravity anew; other stages on the body that fell are not run.
 #[test]
-fn a_factor_below_one_is_told_whatever_stands_around() {
+fn a_factor_below_one_is_found_whatever_stands_around() {
     let load = "[[loads]]\nname = \"q\"\ntype = \"pressure\"\nfrom = [\"5 m\", \"15 m\"]\nto = [\"15 m\", \"15 m\"]\n\
                 pressure = \"10 kPa\"\n[[stages]]\nname = \"q\"\ntype = \"load\"\nload = \"q\"\n";
     let shaken = "[[stages]]\nname = \"shaken\"\ntype = \"gravity\"\nhorizontal = 0.05\n";
@@ -163,7 +163,7 @@ fn a_slope_that_falls_before_other_stages_ends_the_run() {
 }
 
 #[test]
-fn tension_that_carries_is_told_of_the_search() {
+fn tension_that_carries_has_a_remark() {
     let tan = 20.0_f64.to_radians().tan();
     let pulled = slope(60.0, tan, &[]);
     let cracked = slope(60.0, tan, &["materials.soil.tension_cutoff=0 kPa"]);
@@ -179,7 +179,7 @@ fn tension_that_carries_is_told_of_the_search() {
 }
 
 #[test]
-fn remarks_name_their_stage_and_are_told_once() {
+fn remarks_name_their_stage_and_stand_once() {
     let tan = 20.0_f64.to_radians().tan();
     for search in ["continuation", "trials"] {
         let run = slope(10.0, tan, &[&format!("stages.safety.search={search}")]);
@@ -243,7 +243,7 @@ fn computers_with_room_for_factors_are_counted() {
 // CASE: the weight of the shipped slope in space, with room for factors, with none by the case, and with none by the machine.
 // ORACLE: equilibrium, which no solver changes beyond the tolerance; the choice of the solver as the record of its stage has it.
 #[test]
-fn memory_that_decides_on_the_solver_is_told() {
+fn memory_that_decides_on_the_solver_has_a_remark() {
     let run = |memory: &str| -> Run<3> {
         let set = [format!("solver.memory={memory}")];
         let file = igimp_input::shipped::find("landslide_3d")

@@ -1,4 +1,4 @@
-//! GOAL: soil remembers what it bore when a stage makes its body of another material, as far as the law can; what is lost is told.
+//! GOAL: soil remembers its loads when a stage makes its body of another material, as far as the law can; losses are named.
 //! CASE: a column under a stiff cap, loaded to 400 kPa, unloaded to 100, swapped or not, and loaded again.
 //! ORACLE: a material that is the same, or says another `ocr` alone, changes nothing.
 
@@ -91,9 +91,9 @@ fn soil_that_comes_to_a_material_like_its_own_goes_on_as_it_was() {
     }
 }
 
-/// What a swap is told of. ORACLE: the variables of the laws.
+/// The warnings of a swap. ORACLE: the variables of the laws.
 #[test]
-fn what_a_swap_forgets_is_told() {
+fn a_swap_names_its_losses() {
     let warnings = |soil: &str, other: &str| -> String {
         file(&text(soil, other, &stages(&swap()))).warnings()
     };

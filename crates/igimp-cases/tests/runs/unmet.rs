@@ -1,5 +1,5 @@
 //! GOAL: a check is held at the end of its stage and nowhere else: one whose stage found no equilibrium on its way, or was never
-//! reached, is told and not met, whatever its value is by then; a factor of safety beyond all numbers meets what it is at least.
+//! reached, is named and not met, whatever its value is by then; a factor of safety beyond all numbers meets any lower bound.
 //! CASE: an upright face of clay, loaded beyond what it carries; the same with next to no weight.
 //! ORACLE: by hand: the bands hold any displacement, so that "met" would be the verdict on a value on the way.
 
@@ -174,7 +174,7 @@ geometry = "given"
 /// GOAL: a uniform collapse is told as that, with where it lies, and the advice leads to the limit load.
 /// ORACLE: the unconfined strength 2 c tan(45° + φ/2), 43.65 kPa: 0.873 of the load.
 #[test]
-fn a_uniform_collapse_is_told_as_one() {
+fn a_uniform_collapse_is_named() {
     let run = |set: &[&str]| {
         let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
         let file = CaseFile::parse("block.toml", BLOCK, &set);
@@ -216,7 +216,7 @@ fn a_uniform_collapse_is_told_as_one() {
 /// GOAL: the peak of a quantity that is told with its sign turned is the largest as it is told.
 /// CASE: elastic ground settles under its weight in four steps. ORACLE: its settlement at the end, which only grows.
 #[test]
-fn a_peak_is_that_of_what_is_told() {
+fn a_peak_is_that_of_printed_values() {
     let text = r#"
 igimp = 1
 [case]

@@ -1,4 +1,4 @@
-//! GOAL: what is said of a case stands with its results, with the numbers of its soil: warnings of the file, the height of a slope in
+//! GOAL: remarks on a case stand with its results, with the numbers of its soil: warnings of the file, the height of a slope in
 //! cells, the scale of its displacements, a body without volume. CASE: a slope from 2.3 to 8.15 m on cells of a metre.
 //! ORACLE: by hand: heights of 5.85 and 8.15 m, γH²/E of them; the warnings that the file is read with.
 

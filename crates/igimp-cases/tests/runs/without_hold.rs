@@ -1,4 +1,4 @@
-//! GOAL: what lost its hold is told by what it does, and a node that the soil of a corner cannot hold is no want of equilibrium.
+//! GOAL: a body without hold is named by its motion, and a node that the soil of a corner cannot hold is no want of equilibrium.
 //! CASE: a block whose friction is used up; elastic wedges with an acute corner at a free upright side.
 //! ORACLE: the block slides along x; a wedge settles as it does with B-bar, whose means hold every node.
 
@@ -68,7 +68,7 @@ paraview = { every = "never" }
 
 /// GOAL: a block that slides is told to slide, with what helps, at any friction. ORACLE: it goes along x at μ of its weight.
 #[test]
-fn a_block_that_slides_is_told_to() {
+fn a_block_that_slides_is_said_to() {
     for friction in [0.2, 0.23, 0.28, 0.29] {
         let run = ran(BLOCK, &[&format!("rigid.0.interface.friction={friction}")]);
         let pushed = 0.3 * run.failure.as_ref().unwrap().error.from;

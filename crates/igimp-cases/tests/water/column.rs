@@ -5,7 +5,7 @@
 use igimp_cases::run::{Run, in_memory};
 use igimp_input::CaseFile;
 
-/// A column 6 m high of one soil, with what else a case says.
+/// A column 6 m high of one soil, with the rest of a case.
 fn column(soil: &str, rest: &str) -> String {
     format!(
         r#"
@@ -66,7 +66,7 @@ fn last(run: &Run<2>, monitor: &str) -> Vec<f64> {
 
 const K0: &str = "[[stages]]\nname = \"rest\"\ntype = \"k0\"\nsteps = 1\n";
 
-/// GOAL: soil under a table weighs what it weighs saturated, also where its unit weight varies above; on either side of the ground alike.
+/// GOAL: soil under a table has its saturated weight, also where its unit weight varies above; on either side of the ground alike.
 /// ORACLE: 20 kN/m³ over 5.625 m, less 9.81 kN/m³ of water.
 #[test]
 fn saturated_soil_of_varied_weight_weighs_one() {
@@ -222,7 +222,7 @@ figures = []
 
 /// GOAL: a wait from which no water leaves is told. ORACLE: the keys that let it out, one by one.
 #[test]
-fn a_wait_without_an_outlet_is_told() {
+fn a_wait_without_an_outlet_is_named() {
     let warns = |keys: &str| {
         let text = format!(
             r#"

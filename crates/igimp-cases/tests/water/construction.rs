@@ -1,7 +1,7 @@
 //! GOAL: bodies that come and go leave results that belong together, whatever is written and wherever a run is taken up.
 //! CASE: two lifts on undrained ground under water, then a slice of the ground is taken away and the water lowered. The
 //! lifts stand first in the case, so that particles are not numbered in the order in which they come.
-//! ORACLE: the weight of what is there; hydrostatic pressure; the same run left alone.
+//! ORACLE: the weight of the bodies; hydrostatic pressure; the same run left alone.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -205,7 +205,7 @@ fn lifts_are_placed_and_a_slice_is_gone() {
     assert_eq!(run.curves[0].rows.len(), 8);
 }
 
-/// GOAL: fields name total and effective stress, pore pressure and what soil made of it.
+/// GOAL: fields name total and effective stress, pore pressure and the excess by soil.
 /// ORACLE: hydrostatic pressure below the level; total stress is effective stress and pore pressure.
 #[test]
 fn fields_name_total_and_effective_stress() {
@@ -280,7 +280,7 @@ fn bodies_that_come_and_go_are_the_same_on_any_number_of_threads() {
     }
 }
 
-/// GOAL: a run that is taken up within any stage, or begun again at one, ends with the same files; they show what is there.
+/// GOAL: a run that is taken up within any stage, or begun again at one, ends with the same files; they show the bodies.
 #[test]
 fn a_run_is_taken_up_within_a_construction_stage() {
     let case = wet();
@@ -617,7 +617,7 @@ fn a_search_by_gravity_sees_what_was_built() {
     assert_eq!(built, whole);
 }
 
-/// GOAL: a monitor where ground meets what is dug follows the ground, wherever the corner lies in its cell.
+/// GOAL: a monitor where ground meets a dug slice follows the ground, wherever the corner lies in its cell.
 /// CASE: the crest of a cut is a corner of the ground and of the slice that is dug.
 /// ORACLE: it has a displacement to the end, that of a particle of the ground.
 #[test]

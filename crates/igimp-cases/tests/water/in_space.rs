@@ -422,7 +422,7 @@ const PATCHES: [(&str, &str); 3] = [
     ),
 ];
 
-/// GOAL: what cannot be is refused with its place and a remedy.
+/// GOAL: the impossible is refused with its place and a remedy.
 #[test]
 fn what_makes_no_sense_is_refused() {
     let mut out = String::new();

@@ -1,4 +1,4 @@
-//! Water and construction stages in case files: what they state, and what is refused and why.
+//! Water and construction stages in case files: their statements and refusals.
 
 // Values are read to the last digit.
 #![allow(clippy::float_cmp)]
@@ -139,7 +139,7 @@ fn messages(cases: &[Edits<'_>]) -> String {
 /// GOAL: soil below the table without a weight of full pores is told, once a material; dry soil and soil that
 /// states it are not.
 #[test]
-fn soil_that_weighs_the_same_below_the_table_is_told() {
+fn soil_that_weighs_the_same_below_the_table_is_named() {
     let count = |edits: Edits<'_>| {
         let file = CaseFile::parse("slope.toml", &edited(TEXT, edits), &[]).unwrap();
         file.warnings().matches("weighs below the table").count()
@@ -174,8 +174,8 @@ fn a_file_states_water_and_stages() {
     assert!(works.dissipate);
 }
 
-/// GOAL: pressures by points act as the table does that they were taken from, with a pond, above the table and in what is
-/// saturated; from a file as from the case.
+/// GOAL: pressures by points act as the table does that they were taken from, with a pond, above the table and in
+/// saturated soil; from a file as from the case.
 /// ORACLE: the same case with a level.
 /// BAND: ten times the tolerance of a step; a thousandth with a level on a line of points; between two lines the kink is lost.
 #[test]

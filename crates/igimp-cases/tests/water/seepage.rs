@@ -1,5 +1,5 @@
-//! Computed seepage as a source of pore pressure: the same as water that is given where nothing flows, factors of safety, files,
-//! and what is refused and why.
+//! Computed seepage as a source of pore pressure: the same as water that is given where nothing flows, factors of safety, files
+//! and refusals.
 
 use std::sync::atomic::AtomicBool;
 
@@ -56,7 +56,7 @@ fn ran(edits: &[(&str, &str)]) -> Run<2> {
     in_memory(file.unwrap_or_else(|error| panic!("{error}")).case()).unwrap()
 }
 
-/// What is refused, in words.
+/// The message of a refusal.
 fn refused(from: &str, to: &str) -> String {
     match CaseFile::parse("seepage.toml", &edited(&[(from, to)]), &[]) {
         Ok(_) => panic!("{to} was taken"),
@@ -413,9 +413,9 @@ level = "6 m"
     assert!((soil.along / soil.across - 2.0).abs() < 1e-12);
 }
 
-/// GOAL: what makes no flow is refused where it stands.
+/// GOAL: impossible flows are refused where they stand.
 #[test]
-fn what_makes_no_flow_is_refused() {
+fn impossible_flows_are_refused() {
     for (from, to, message) in [
         (
             "permeability = { horizontal = \"1e-5 m/s\", vertical = \"5e-6 m/s\" }",
@@ -480,7 +480,7 @@ fn what_makes_no_flow_is_refused() {
     }
 }
 
-/// GOAL: what is found as the flow begins is refused too, with its cause.
+/// GOAL: faults found as a flow begins are refused too, with their cause.
 #[test]
 fn a_face_within_the_ground_is_refused() {
     let nowhere = edited(&[
@@ -501,10 +501,10 @@ fn a_face_within_the_ground_is_refused() {
     );
 }
 
-/// GOAL: keys of the fall of permeability that nothing asks for are told of, and are quiet where something does. ORACLE: the words of
+/// GOAL: keys of the fall of permeability that nothing asks for are named, and are quiet where something does. ORACLE: the words of
 /// the messages.
 #[test]
-fn falls_without_effect_are_told_of() {
+fn falls_without_effect_are_named() {
     let said = |edits: &[(&str, &str)]| parsed(&edited(edits)).warnings();
     let fall = ("seepage = {", "seepage = { fall = \"3 m\",");
     let gardner = ("vertical = \"5e-6 m/s\"", "gardner = \"1 m\"");
@@ -642,9 +642,9 @@ fn a_slope_is_safer_as_it_drains() {
     );
 }
 
-/// GOAL: levels from a file are those that stand in the case, and what cannot be followed is refused where it stands.
+/// GOAL: levels from a file are those of the case, and impossible histories are refused where they stand.
 #[test]
-fn what_changes_in_time_is_read() {
+fn histories_in_time_are_read() {
     let place = folder("seepage_histories");
     std::fs::create_dir_all(&place).unwrap();
     std::fs::write(

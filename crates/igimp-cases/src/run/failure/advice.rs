@@ -25,7 +25,7 @@ const DENOMINATORS: u32 = 1000;
 /// Poisson's ratio from which on the bulk modulus dwarfs the shear modulus \[-\].
 const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
 
-/// What was seen of a stage beside the step that failed.
+/// Observations of a stage beside the step that failed.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Seen {
     /// Particles within a cell of the worst node.
@@ -385,7 +385,7 @@ fn percent(share: f64) -> String {
     format!("{} %", short(100.0 * share))
 }
 
-/// Less than what the soil collapses under.
+/// Less than the load of collapse.
 fn less_than_collapses<const D: usize>(
     case: &Case<D>,
     number: usize,

@@ -406,7 +406,7 @@ fn half_a_cell_is_a_length_that_divides_the_domain() {
 
 /// GOAL: a push that ends after its load has fallen is not told to look for its limit load. ORACLE: by hand, 25 % below the peak.
 #[test]
-fn a_push_past_its_peak_is_told_so() {
+fn a_push_past_its_peak_names_its_limit() {
     let case = case(StageKind::Displacement {
         load: 0,
         settlement: 0.2,

@@ -1,4 +1,4 @@
-//! The message of a step that found no equilibrium: where, how, what is kept, what to try.
+//! The message of a step that found no equilibrium: place, cause, saved files, remedies.
 
 use std::fmt::{self, Write as _};
 use std::path::Path;
@@ -79,7 +79,7 @@ fn render(failure: &Failure) -> String {
     text
 }
 
-/// What soil that comes to its strength in a step does, and where on the way of the stage.
+/// The collapse of soil at its strength in a step, and where on the way of the stage.
 fn collapse(error: &StepError) -> String {
     format!(
         "collapse: {COLLAPSE}, between load factors {} and {}",
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failure_says_where_and_what_to_try() {
+    fn a_failure_names_its_place_and_remedies() {
         insta::assert_snapshot!(render(&failure()), @r#"
         error: stage "run-out", step 57 of 200 did not converge (5 step cuts, smallest step 1/32)
           residual |r|/|f|   it 1..15: 4e-1 2e-1 9e-2 8e-2 8e-2 ... 8e-2  (stagnates)

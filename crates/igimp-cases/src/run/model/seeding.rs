@@ -10,7 +10,7 @@ use crate::error::CaseError;
 use crate::run::state::gravity_of_weights;
 use crate::run::water::Seeded;
 
-/// Particles of all bodies, and what they were seeded in. Places with parameters of their own, and cells that several soils share, append
+/// Particles of all bodies, and their seeds. Places with parameters of their own, and cells that several soils share, append
 /// their laws.
 pub(super) fn seeded<const D: usize>(
     case: &Case<D>,

@@ -1,4 +1,4 @@
-//! Holds what a run found against the references of its case.
+//! Holds results of a run against the references of its case.
 
 use igimp_model::check::{Band, Check};
 use igimp_model::{Case, CaseCheck, CheckTime, Quantity, Reference, ReferenceValues};

@@ -1,4 +1,4 @@
-//! The way into a results folder: locked, and asked whether what it holds may be replaced, before
+//! The way into a results folder: locked, and asked whether its files may be replaced, before
 //! anything is touched.
 
 use std::path::Path;

@@ -37,7 +37,7 @@ pub(crate) struct Moment<'a, const D: usize> {
 }
 
 impl<const D: usize> Moment<'_, D> {
-    /// What the rows of histories begin with: the values of [`moment_columns`].
+    /// The first columns of histories: the values of [`moment_columns`].
     pub(crate) fn row(&self, case: &Case<D>) -> Vec<f64> {
         let time = case.takes_time().then_some(self.controls.time);
         let place = [self.stage as f64 + 1.0, self.number as f64, self.progress];

@@ -1,4 +1,4 @@
-//! What stages that move in time have beside the others: frames with times, and the picture of their energy.
+//! Additions for stages that move in time: frames with times, and the picture of their energy.
 
 use igimp_model::{Case, Every, StageKind};
 use igimp_report::pictures::{self, Shown};
@@ -60,7 +60,7 @@ impl<const D: usize> Output<D> {
     }
 }
 
-/// What the pictures of the end of a stage say of it: of a motion its time too.
+/// The title of pictures at the end of a stage: of a motion with its time.
 pub(super) fn shown<const D: usize>(case: &Case<D>, number: usize, state: &State<D>) -> Shown {
     let shown = Shown::end_of_stage(case, number);
     match case.stages[number].kind {

@@ -1,4 +1,4 @@
-//! What of the tables, sections and checks of earlier stages is kept where a run begins with a later stage: all that is read
+//! Tables, sections and checks of earlier stages that stay where a run begins with a later stage: all that is read
 //! from the same as then.
 
 use igimp_model::{Case, Quantity};
@@ -16,14 +16,14 @@ use crate::error::CaseError;
 use crate::run::resume::Notes;
 use crate::run::resume::readings::{Readings, TableReading};
 
-/// The folders of tables that grow by a row a moment, with what is said of the tables in them.
+/// The folders of tables that grow by a row a moment, with a word for the tables in them.
 const GROWING: [(&str, &str); 3] = [
     ("curves", "curve"),
     ("monitors", "monitor"),
     ("rigid", "rigid body"),
 ];
 
-/// What a quantity is read from: a monitor by the particles around its place.
+/// The source of a quantity: a monitor by the particles around its place.
 pub(super) fn of_quantity(records: &Records, quantity: Quantity) -> String {
     match quantity {
         Quantity::Monitor(monitor, field) => format!("{field:?} of {:?}", records.watched[monitor]),
@@ -31,7 +31,7 @@ pub(super) fn of_quantity(records: &Records, quantity: Quantity) -> String {
     }
 }
 
-/// What everything in a case is read from, before its first stage.
+/// The sources of everything in a case, before its first stage.
 pub(super) fn of_case<const D: usize>(case: &Case<D>, records: &Records) -> Readings {
     let mut readings = Readings::default();
     let curves = case.curves.iter().map(|curve| {
@@ -77,7 +77,7 @@ pub(super) fn curves_since<const D: usize>(case: &Case<D>, readings: &Readings) 
         .collect()
 }
 
-/// What rows of checks at the end of a stage were read from: those of quantities, then those of sections.
+/// The sources of rows of checks at the end of a stage: those of quantities, then those of sections.
 pub(super) fn of_rows<const D: usize>(
     case: &Case<D>,
     records: &Records,
@@ -98,11 +98,11 @@ pub(super) fn of_rows<const D: usize>(
     quantities.chain(sections).collect()
 }
 
-/// What is kept of the results of earlier stages, and what has to be said of the rest.
+/// The results of earlier stages that are kept, and warnings of the rest.
 pub(super) struct Kept {
     /// The notes of the checkpoint, as far as they hold for the case as it is.
     pub(super) notes: Notes,
-    /// What was lost, for the user.
+    /// Losses, for the user.
     pub(super) warnings: Vec<String>,
     /// By kept stage, the sections whose tables stay.
     sections: Vec<Vec<String>>,
@@ -118,7 +118,7 @@ pub(super) struct Beginning<'b, const D: usize> {
 }
 
 impl<const D: usize> Beginning<'_, D> {
-    /// Holds what the case reads against what the notes at the end of the stage before say; nothing is changed.
+    /// Holds the sources of the case against the notes at the end of the stage before; nothing is changed.
     pub(super) fn kept(&self, before: &Notes) -> Result<Kept, CaseError> {
         let mut kept = Kept {
             notes: before.clone(),
@@ -299,5 +299,5 @@ impl<const D: usize> Beginning<'_, D> {
     }
 }
 
-/// What the user can do for rows that are not there.
+/// The remedy for rows that are not there.
 const REMEDY: &str = "run the case from its beginning for them";

@@ -29,7 +29,7 @@ pub(crate) struct Records {
     pub(crate) peaks: Vec<f64>,
     /// Middle of the interval of the factor of safety found last \[-\].
     pub(crate) factor_of_safety: f64,
-    /// By condition of the water: what leaves the ground in its flow, then what passes each section; empty without one
+    /// By condition of the water: the outflow of its flow, then the inflow through each section; empty without one
     /// \[m²/s; m³/s in space\].
     discharges: Vec<Vec<f64>>,
     laws: Vec<SharedLaw>,

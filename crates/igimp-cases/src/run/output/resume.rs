@@ -96,7 +96,7 @@ impl<const D: usize> Output<D> {
         Ok((output, Some(left)))
     }
 
-    /// Opens a results folder after the rows that a checkpoint tells of; what came after is gone.
+    /// Opens a results folder after the rows of a checkpoint; later ones are gone.
     fn go_on(
         folder: Folder,
         target: &Target,
@@ -246,7 +246,7 @@ impl<const D: usize> SavedStates<'_, D> {
         }
     }
 
-    /// A state with the structures that its controls have, without what moves beside its walls.
+    /// A state with the structures that its controls have, without columns beside its walls.
     fn body(&self, name: &str, controls: &Controls) -> Result<Body<D>, CaseError> {
         let found = self.found.states.iter().find(|(state, _)| state == name);
         let missing = || self.damaged(name, "the state is missing".to_owned());
@@ -261,13 +261,13 @@ impl<const D: usize> SavedStates<'_, D> {
         Ok(body)
     }
 
-    /// What moves in free field beside the walls.
+    /// The columns in free field beside walls.
     fn free_fields(&self) -> Result<Vec<FreeField<D>>, CheckpointError> {
         free_field::taken_up(&self.notes.free_fields, &self.found.states)
             .map_err(|why| self.damaged(META, why))
     }
 
-    /// Refuses a state that names what the case does not have.
+    /// Refuses a state with names that are not in the case.
     fn fits(&self, records: &Records, name: &str, body: &Body<D>) -> Result<(), CheckpointError> {
         match unfit(self.case, records, body) {
             Some((array, why)) => Err(self.damaged(format!("{name}/{array}.npy"), why)),
@@ -314,8 +314,8 @@ fn impossible_march(resumption: &Resumption) -> Option<String> {
     })
 }
 
-/// The array of a body that names a law, a particle or a load that the case does not have, and what it
-/// names.
+/// The array of a body that names a law, a particle or a load that is not in the case, and that
+/// name.
 fn unfit<const D: usize>(
     case: &Case<D>,
     records: &Records,
@@ -355,7 +355,7 @@ mod tests {
     use crate::fixture::case;
     use crate::run::Model;
 
-    /// GOAL: a state that names what the case does not have is refused before a step looks for it.
+    /// GOAL: a state with names that are not in the case is refused before a step looks for them.
     #[test]
     fn materials_and_loads_that_are_not_there_are_named() {
         let case = case();

@@ -1,4 +1,4 @@
-//! Checkpoints of a run: what they hold beside the particles, and when they are written.
+//! Checkpoints of a run: their content beside the particles, and when they are written.
 
 use std::collections::BTreeMap;
 
@@ -86,7 +86,7 @@ impl<const D: usize> Output<D> {
         Ok(Meta::new(&self.claim.input, data))
     }
 
-    /// Writes a checkpoint within a stage. It follows the rows that it counts on; what is in the
+    /// Writes a checkpoint within a stage. It follows the rows that it counts on; data in the
     /// hands of the system outlasts a kill.
     pub(super) fn save(&self, states: &[(&str, &Body<D>)], notes: &Notes) -> Result<(), CaseError> {
         let name = format!("step-{:06}", self.steps);

@@ -1,4 +1,4 @@
-//! What is written of seepage that was computed: tables of discharges, files for ParaView, the free surface, pictures.
+//! Output of computed seepage: tables of discharges, files for ParaView, the free surface, pictures.
 
 use std::time::Instant;
 
@@ -97,7 +97,7 @@ fn flows<'m, const D: usize>(
     })
 }
 
-/// By condition of the water: what leaves the ground in its flow, then what passes each section; empty without a flow.
+/// By condition of the water: the outflow of its flow, then the inflow through each section; empty without a flow.
 pub(crate) fn by_condition<const D: usize>(model: &Model<'_, D>) -> Vec<Vec<f64>> {
     let of = |condition: usize| {
         let flow = model.ground_water(condition)?.flow()?;

@@ -33,7 +33,7 @@ pub(crate) fn of_history<const D: usize>(case: &Case<D>, stages: usize) -> Strin
     sha256(format!("{history:?}").as_bytes())
 }
 
-/// A case without what concerns its output, the head of its report, the memory for factors and a given solver alone.
+/// A case without its output, the head of its report, the memory for factors and a given solver alone.
 fn whole<const D: usize>(case: &Case<D>) -> Case<D> {
     Case {
         title_block: TitleBlock::default(),

@@ -1,4 +1,4 @@
-//! What moves in free field beside walls as checkpoints keep it: its particles are states of their own.
+//! Columns in free field beside walls as checkpoints keep them: their particles are separate states.
 
 use std::sync::Arc;
 

@@ -1,24 +1,24 @@
-//! What the tables, sections and checks of a run were read from: a later stage may begin with others than those before it had.
+//! The sources of tables, sections and checks of a run: a later stage may begin with others than those before it had.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-/// What was read up to a checkpoint, and from what.
+/// Readings up to a checkpoint, and their sources.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Readings {
     /// By path of a table within the results folder.
     pub(crate) tables: BTreeMap<String, TableReading>,
-    /// By section: what its tables are read from.
+    /// By section: the source of its tables.
     pub(crate) sections: BTreeMap<String, String>,
-    /// By row of the checks so far: what its value was read from.
+    /// By row of the checks so far: the source of its value.
     pub(crate) checks: Vec<String>,
 }
 
-/// What a table is read from, and its rows at the end of a stage.
+/// The source of a table, and its rows at the end of a stage.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TableReading {
-    /// Fingerprint of what its columns are read from.
+    /// Fingerprint of the source of its columns.
     pub(crate) definition: String,
     /// Number of the first stage that it was read in, from 0.
     pub(crate) since: usize,

@@ -1,4 +1,4 @@
-//! Reinforcement as checkpoints keep it: where it is, and what steps have made of it. What it is stands in
+//! Reinforcement as checkpoints keep it: its place, and its state after steps. Its data stand in
 //! the case.
 
 use igimp_assembly::{Reinforcement, SegmentState};

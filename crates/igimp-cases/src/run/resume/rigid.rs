@@ -1,5 +1,5 @@
-//! Rigid bodies as checkpoints keep them: where they stand, and what contact has left behind. What they
-//! are is in the case.
+//! Rigid bodies as checkpoints keep them: their place, and the state of contact. Their data
+//! are in the case.
 
 use igimp_assembly::{ContactNode, RigidBody};
 use igimp_model::{Case, in_space};

@@ -60,7 +60,7 @@ pub(crate) fn build<const D: usize>(
     )
 }
 
-/// A state with everything that a stage changes, and what is to be said of it.
+/// A state with everything that a stage changes, and its warning.
 fn changed<const D: usize>(
     model: &Model<'_, D>,
     start: &State<D>,
@@ -132,7 +132,7 @@ const LEAST_SHIFT: f64 = 1e-9;
 /// Fill that is moved off rigid bodies by more than this share of the half-length of its particles is worth a warning \[-\].
 const PUSHED: f64 = 0.25;
 
-/// Moves fill off rigid bodies that stand elsewhere than they are drawn; what is to be said of it where that is far.
+/// Moves fill off rigid bodies that stand elsewhere than they are drawn; a warning where that is far.
 fn pushed_aside<const D: usize>(case: &Case<D>, state: &mut State<D>) -> Option<String> {
     let stands_elsewhere = |(index, body): (usize, &RigidBody<D>)| {
         distance(&body.pose.origin, &case.rigid[index].reference) > LEAST_SHIFT
@@ -161,7 +161,7 @@ fn pushed_aside<const D: usize>(case: &Case<D>, state: &mut State<D>) -> Option<
 }
 
 /// Makes the stress of a particle that had another law before that of which its law speaks, total or effective; the total
-/// stress stays. The excess pressure of soil that drains from now on goes, and what it bore is out of balance.
+/// stress stays. The excess pressure of soil that drains from now on goes, and its share is out of balance.
 fn drain_as<const D: usize>(
     model: &Model<'_, D>,
     state: &State<D>,
@@ -194,7 +194,7 @@ fn drain_as<const D: usize>(
     }
 }
 
-/// Takes the excess pore pressure of a particle, and what flow had left of it within its cell and in time.
+/// Takes the excess pore pressure of a particle, and the rest of flow within its cell and in time.
 fn let_water_out<const D: usize>(fields: &mut ParticleFields<D>, particle: usize) {
     fields.excess[particle] = 0.0;
     fields.excess_within_cell[particle] = 0.0;
@@ -202,7 +202,7 @@ fn let_water_out<const D: usize>(fields: &mut ParticleFields<D>, particle: usize
 }
 
 /// Gives a particle weight, strength and stiffness of a material; its stress stays, of which `stretch` makes that which goes with
-/// the elastic strain (theory, eq. 15), and so does what it remembers of the law before.
+/// the elastic strain (theory, eq. 15), and so does its memory of the law before.
 fn become_soil_of<const D: usize>(
     (model, ground): (&Model<'_, D>, &Ground<D>),
     fields: &mut ParticleFields<D>,
@@ -258,7 +258,7 @@ fn holding<const D: usize>(
     Ok(system.holding_forces(&trial))
 }
 
-/// What is to be said where the ground has moved by more than a quarter of a cell around a body that is placed where the
+/// The warning where the ground has moved by more than a quarter of a cell around a body that is placed where the
 /// case draws it.
 fn moved_below<const D: usize>(
     model: &Model<'_, D>,

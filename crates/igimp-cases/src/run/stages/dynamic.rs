@@ -25,7 +25,7 @@ use crate::run::state::{Controls, State};
 /// The first step over the time in which a wave crosses a cell \[-\].
 const FIRST_STEP: f64 = 1.0;
 
-/// How often a step may be cut in succession, at least: what is chosen by error and way may be far too long.
+/// How often a step may be cut in succession, at least: a step chosen by error and way may be far too long.
 const CUTS: u32 = 12;
 
 /// How often a step of a stage may be cut in succession.
@@ -196,8 +196,8 @@ fn method<const D: usize>(model: &Model<'_, D>, dynamic: &Dynamic, stage: &Stage
     }
 }
 
-/// What a sliding block does by the motion of the ground, if the stage asks for it: by the yield acceleration at the limit of the
-/// path of the stage that tells it, or at its last equilibrium.
+/// The slide of a block by the motion of the ground, if the stage asks for it: by the yield acceleration at the limit of the
+/// path of the stage that has it, or at its last equilibrium.
 fn sliding_block<const D: usize>(
     session: &Session<'_, D>,
     dynamic: &Dynamic,

@@ -39,7 +39,7 @@ pub(crate) fn passed_over<const D: usize>(
     })
 }
 
-/// What is said of it.
+/// The remark on it.
 pub(crate) fn remark(summary: &StageSummary) -> String {
     format!(
         "the body does not stand under its weight: no equilibrium was found beyond {} % of the stage, and so F < 1 unless steps or \

@@ -158,7 +158,7 @@ pub(crate) fn follow_on<const D: usize>(
     Ok(ended)
 }
 
-/// What a reader has to know of a path that was lost.
+/// The remark on a path that was lost.
 fn lost(error: &StepError) -> String {
     let cause = on_one_line(&*error.failure);
     format!(
@@ -166,7 +166,7 @@ fn lost(error: &StepError) -> String {
     )
 }
 
-/// What a reader has to know of the path.
+/// The remark on the path.
 fn remark(path: &PathSummary, stage: &str) -> Option<String> {
     let last = path.limit?;
     let text =
@@ -212,7 +212,7 @@ struct Watch<'w, 's, const D: usize> {
     /// The control that tells the factor; none: forces on rigid bodies.
     driven: Option<Driven>,
     course: Course,
-    /// What the rigid bodies did so far.
+    /// Motion of rigid bodies so far.
     tracks: &'w RefCell<Vec<RigidTrack>>,
     session: &'w mut Session<'s, D>,
     summary: &'w mut StageSummary,

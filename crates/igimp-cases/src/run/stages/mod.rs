@@ -1,4 +1,4 @@
-//! What the stages of a case do.
+//! The stages of a case.
 
 pub(crate) mod construction;
 pub(crate) mod dynamic;

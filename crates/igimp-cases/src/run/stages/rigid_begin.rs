@@ -8,8 +8,8 @@ use crate::CaseError;
 use crate::run::rigid::{cell_near, gap_below, has_level_base, made};
 use crate::run::{Model, State};
 
-/// Prepares a state for a stage that moves rigid bodies: those that are not there are placed, and what
-/// held a component hands over to the force that will drive it. Tells of bodies that were shifted, and of those that soil is never near.
+/// Prepares a state for a stage that moves rigid bodies: those that are not there are placed, and a held
+/// component goes over to the force that will drive it. Warns of bodies that were shifted, and of those that soil is never near.
 pub(crate) fn begin<const D: usize>(
     model: &Model<'_, D>,
     state: &mut State<D>,
@@ -43,7 +43,7 @@ pub(crate) fn begin<const D: usize>(
     Ok(remarks)
 }
 
-/// What is said of a body whose weight nothing holds as it is placed, where forces come on in steps.
+/// The remark on a body whose weight nothing holds as it is placed, where forces come on in steps.
 fn heavy_at_once<const D: usize>(
     model: &Model<'_, D>,
     stage: &Stage,
@@ -62,7 +62,7 @@ fn heavy_at_once<const D: usize>(
     })
 }
 
-/// What is said of a body that touches no soil as a geometry is drawn that stays as it is: the gap never closes.
+/// The remark on a body that touches no soil as a geometry is drawn that stays as it is: the gap never closes.
 fn out_of_reach<const D: usize>(
     model: &Model<'_, D>,
     state: &State<D>,

@@ -231,7 +231,7 @@ impl<'a> Creep<'a> {
     }
 }
 
-/// The drag of the next step over that of one whose longest motion was `moved` of what is aimed at: a cut step of a share of a whole one
+/// The drag of the next step over that of one whose longest motion was `moved` of the aim: a cut step of a share of a whole one
 /// is to go that share of the way \[-\].
 fn change_of_drag(moved: f64, share_of_step: f64) -> f64 {
     let is_cut = share_of_step < 1.0 - 1e-6;
@@ -248,7 +248,7 @@ fn marching<const D: usize>(model: &Model<'_, D>, steps: usize) -> MarchSettings
     }
 }
 
-/// What strength is divided by; none where the factor of safety that it refers to was not found.
+/// The divisor of strength; none where the factor of safety that it refers to was not found.
 pub(super) fn divisor<const D: usize>(
     session: &Session<'_, D>,
     number: usize,
@@ -269,7 +269,7 @@ fn factor_found<const D: usize>(session: &Session<'_, D>, number: usize) -> Opti
     Some((search, 0.5 * (safety.stable? + safety.failed?)))
 }
 
-/// By how much strength is divided in a stage, of what search it is a multiple, for the verdict; none where the case states it.
+/// The divisor of strength in a stage, and the search that it is a multiple of, for the verdict; none where the case states it.
 pub(crate) fn remark<const D: usize>(session: &Session<'_, D>, number: usize) -> Option<String> {
     let stages = &session.model.case.stages;
     let times = match &stages[number].kind {
@@ -290,7 +290,7 @@ pub(crate) fn remark<const D: usize>(session: &Session<'_, D>, number: usize) ->
     }
 }
 
-/// The longest step displacement of the nodes of the grid \[m\]; what stands behind them for rigid bodies is none of it.
+/// The longest step displacement of the nodes of the grid \[m\]; nodes of rigid bodies behind them do not count.
 fn largest_motion<const D: usize>(u: &[[f64; D]], nodes: usize) -> f64 {
     let lengths = u.iter().take(nodes).map(length);
     lengths.fold(0.0, f64::max)

@@ -110,7 +110,7 @@ struct Trials<'a, const D: usize> {
     found: &'a State<D>,
     /// The displacement at which the body counts as failed \[m\], if one does.
     limit: Option<f64>,
-    /// What every trial begins with: that state, or undeformed bodies where gravity is raised anew.
+    /// The beginning of every trial: that state, or undeformed bodies where gravity is raised anew.
     base: State<D>,
     made: Vec<TrialSummary>,
     /// The largest stable factor, with its equilibrium.
@@ -403,7 +403,7 @@ impl<'a, const D: usize> Trials<'a, D> {
         })
     }
 
-    /// The interval with its criterion; warns of what a reader has to know.
+    /// The interval with its criterion; warns of its remarks.
     fn finish(self, session: &mut Session<'_, D>) -> SafetySummary {
         let case = session.model.case;
         let mut criterion = match self.stage.geometry {
@@ -440,7 +440,7 @@ impl<'a, const D: usize> Trials<'a, D> {
     }
 }
 
-/// What a search begins with: the state found, or undeformed bodies where gravity is raised anew. Displacements count
+/// The beginning of a search: the state found, or undeformed bodies where gravity is raised anew. Displacements count
 /// from there.
 fn undeformed_or_found<const D: usize>(
     model: &Model<'_, D>,

@@ -1,4 +1,4 @@
-//! What a stage without inertia takes from a body that moves.
+//! The motion that a stage without inertia takes from a body.
 
 use igimp_model::StageKind;
 use igimp_text::short;

@@ -61,8 +61,8 @@ fn held_by_walls<const D: usize>(
         .collect())
 }
 
-/// What stands at the nodes of the walls as a stage begins: the forces of the supports that it lets go. Components that the
-/// motion before had already let go keep what they have.
+/// The tracks of the nodes of the walls as a stage begins: the forces of the supports that it lets go. Components that the
+/// motion before had already let go keep theirs.
 pub(super) fn begin<const D: usize>(
     model: &Model<'_, D>,
     state: &State<D>,
@@ -108,7 +108,7 @@ pub(super) fn begin<const D: usize>(
         .collect())
 }
 
-/// Lets go what the supports of these walls alone hold.
+/// Lets go components held by these walls alone.
 fn release<const D: usize>(
     model: &Model<'_, D>,
     walls: &[(usize, bool)],
@@ -122,7 +122,7 @@ fn release<const D: usize>(
     Ok(())
 }
 
-/// What moves in free field beside the walls of a stage as it begins: a column that a motion before had goes on.
+/// The columns in free field beside the walls of a stage as it begins: one that a motion before had goes on.
 pub(super) fn free_fields<const D: usize>(
     model: &Model<'_, D>,
     state: &State<D>,

@@ -67,7 +67,7 @@ fn fastest_consolidation<const D: usize>(case: &Case<D>) -> f64 {
         .fold(f64::MIN_POSITIVE, f64::max)
 }
 
-/// What the water in a material does.
+/// Flow of the water in a material.
 fn pore_flow<const D: usize>(case: &Case<D>, material: &Material) -> PoreFlow<D> {
     match (material.drainage, material.permeability) {
         (Drainage::Drained, _) => PoreFlow::Drained,
@@ -88,7 +88,7 @@ fn pore_flow<const D: usize>(case: &Case<D>, material: &Material) -> PoreFlow<D>
     }
 }
 
-/// Adds an accepted step to what a stage tells of its consolidation.
+/// Adds an accepted step to the summary of consolidation of a stage.
 pub(crate) fn tally<const D: usize>(
     summary: &mut ConsolidationSummary,
     case: &Case<D>,

@@ -1,4 +1,4 @@
-//! What a stage leaves in the pores, and what of it makes a number unsafe.
+//! Pressures that a stage leaves in pores, and the unsafe ones among them.
 
 use igimp_assembly::Particles;
 use igimp_model::{Case, Drainage, Strength};
@@ -92,7 +92,7 @@ mod tests {
 
     /// GOAL: extremes are told of all particles, and soil under effective tension is counted.
     #[test]
-    fn pores_are_told_by_their_extremes() {
+    fn pores_have_their_extremes() {
         let mut case = case();
         let particles = Model::new(&case).unwrap().1.body.particles;
         assert_eq!(summary(&case, &particles), None);
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn undrained_soil_that_dilates_is_told_of() {
+    fn undrained_soil_that_dilates_has_a_remark() {
         let mut case = case();
         case.materials[0].strength = Strength::MohrCoulomb {
             cohesion: 5e3,

@@ -1,4 +1,4 @@
-//! Seepage of a case: what is solved, and what is followed in time.
+//! Seepage of a case: steady, or followed in time.
 
 use std::sync::Arc;
 
@@ -170,7 +170,7 @@ fn bodies<'c, const D: usize>(
     Ok(bodies.into_iter().map(body).collect())
 }
 
-/// What a flow is given: its conditions, and the level of free water by place.
+/// The data of a flow: its conditions, and the level of free water by place.
 fn given<'a, const D: usize>(
     case: &Case<D>,
     flow: &'a SeepageCase,

@@ -1,4 +1,4 @@
-//! What the made-up run found: tables, trials, the summary, the convergence.
+//! Results of the made-up run: tables, trials, the summary, the convergence.
 
 use igimp_model::check::{Band, Check};
 use igimp_model::{Monitor, Section};

@@ -1,4 +1,4 @@
-//! GOAL: a results folder becomes a page that stands alone, escapes what it shows, and reads well
+//! GOAL: a results folder becomes a page that stands alone, escapes its text, and reads well
 //! after a run that failed. The pages stay in the `tmp` folder of the target, to be looked at.
 
 mod example;
@@ -123,8 +123,8 @@ fn a_run_makes_a_whole_page() {
     );
 }
 
-/// GOAL: whom it is for, when and of what it was made stands in the head; what an engineer asks for
-/// stands before what the computer did; the model is told in tables.
+/// GOAL: reader, date and input stand in the head; the results of an engineer
+/// stand before the effort of the computer; tables hold the model.
 #[test]
 fn a_report_can_be_handed_on() {
     let folder = example::folder("handed-on");
@@ -353,7 +353,7 @@ fn empty_tables_make_empty_pictures() {
     );
 }
 
-/// GOAL: attempts at a step are told apart, and names are safe for files.
+/// GOAL: attempts at a step are kept apart, and names are safe for files.
 #[test]
 fn convergence_is_read_by_attempt() {
     let folder = example::folder("convergence");

@@ -152,7 +152,7 @@ struct Followed<const D: usize> {
     limit: Option<PathPoint>,
     /// The last equilibrium, with that before.
     last: Option<End<D>>,
-    /// What decides the factor, or why that is not known.
+    /// The shares in the factor, or why they are unknown.
     shares: Option<Result<StrengthShares, StepFailure>>,
 }
 
@@ -338,7 +338,7 @@ struct Watch<'w, 's, const D: usize> {
     points: Vec<PathPoint>,
     end: PathEnd,
     limit: Option<PathPoint>,
-    /// What the last step did, and the work of the external force on it \[force·length\].
+    /// The work within the last step, and of the external force on it \[force·length\].
     work: Option<(StepWork, f64, f64)>,
     stopped: Result<Option<StageEnd>, CaseError>,
 }
@@ -511,7 +511,7 @@ fn finish<const D: usize>(
     }
 }
 
-/// What counts as failure, in words.
+/// Criterion of failure, in words.
 fn criterion(reduction: &StrengthReduction, whose: &str) -> String {
     let limit =
         "the increment is a mechanism and the factor rises no longer, on the given geometry";

@@ -1,4 +1,4 @@
-//! What a reader has to know of the path of equilibria of a search.
+//! Remarks on the path of equilibria of a search.
 
 use igimp_results::ending::PathEnd;
 use igimp_results::summary::{PathPoint, PathSummary};
@@ -12,7 +12,7 @@ pub(super) const MOST_FACTOR: f64 = 1000.0;
 /// A mechanism whose factor lies this share below that of the limit is worth a remark \[-\].
 const APART: f64 = 5e-3;
 
-/// What a reader has to know of a path.
+/// Remarks on a path.
 pub(super) fn of(path: &PathSummary) -> Vec<String> {
     let mut remarks = Vec::new();
     let Some(last) = path.points.last() else {

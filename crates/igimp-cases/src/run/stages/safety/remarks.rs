@@ -1,4 +1,4 @@
-//! What a reader has to know about an interval.
+//! Remarks on an interval.
 
 use std::collections::HashMap;
 
@@ -70,7 +70,7 @@ pub(super) fn few_cells<const D: usize>(
     ))
 }
 
-/// What a reader has to know about an interval.
+/// Remarks on an interval.
 pub(super) fn remarks(safety: &SafetySummary, reduction: &StrengthReduction) -> Vec<String> {
     let mut remarks = Vec::new();
     let [low, high] = reduction.bracket;
@@ -216,7 +216,7 @@ mod tests {
     // GOAL: a body that did not move has no moving share, not one of nothing; of one that did it is that of its mass.
     // ORACLE: by hand.
     #[test]
-    fn what_did_not_move_has_no_share() {
+    fn a_body_at_rest_has_no_moving_share() {
         let seed = |x: f64, density: f64| ParticleSeed {
             x: [x, 0.5],
             half_length: [0.25; 2],

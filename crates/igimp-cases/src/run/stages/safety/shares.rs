@@ -1,4 +1,4 @@
-//! What decides a factor of safety: the shares of materials in the dissipation of the last step of its path, the changes
+//! Shares in a factor of safety: those of materials in the dissipation of the last step of its path, the changes
 //! of the factor with each strength, and the factor by the kinematic theorem (theory, eqs. 33g to 33i).
 
 use igimp_assembly::{AssemblyError, Method, SharedLaw, StepConditions, StepWork};
@@ -25,7 +25,7 @@ pub(super) struct LastStep<'a, const D: usize> {
     pub(super) body: &'a Body<D>,
     /// Nodal step displacements \[length\].
     pub(super) u: &'a [[f64; D]],
-    /// What the step did.
+    /// Work of the step.
     pub(super) work: &'a StepWork,
     /// Work of the external force on it \[force·length\].
     pub(super) external_work: f64,
@@ -37,7 +37,7 @@ pub(super) struct LastStep<'a, const D: usize> {
     pub(super) reduced: &'a [usize],
     /// The factor that it reached \[-\].
     pub(super) factor: f64,
-    /// What holds at a factor at its end.
+    /// Conditions at a factor at its end.
     pub(super) at: &'a dyn Fn(f64) -> Result<StepConditions<D>, AssemblyError>,
 }
 
@@ -50,7 +50,7 @@ enum Parameter {
     Friction,
 }
 
-/// What decides the factor of safety that a last step tells.
+/// The shares in the factor of safety of a last step.
 pub(super) fn shares<const D: usize>(
     step: &LastStep<'_, D>,
     workspace: &mut Workspace<D>,

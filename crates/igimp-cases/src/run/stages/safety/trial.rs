@@ -1,4 +1,4 @@
-//! One trial of a search: what acts at its end, its steps, and what is said of it.
+//! One trial of a search: its controls at its end, its steps, and its remarks.
 
 use igimp_model::ReductionPath;
 use igimp_results::ending::EndReason;
@@ -13,7 +13,7 @@ use crate::run::session::Session;
 use crate::run::state::{Controls, State};
 
 impl<const D: usize> Trials<'_, D> {
-    /// What acts at the end of a trial: what was found with strength reduced, and gravity in full
+    /// The controls at the end of a trial: those found with strength reduced, and gravity in full
     /// where none acted yet.
     pub(super) fn end(&self, srf: f64) -> Controls {
         let mut end = self.found.controls.clone();
