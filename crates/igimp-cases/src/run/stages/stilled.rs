@@ -8,7 +8,7 @@ use crate::run::session::Session;
 use crate::run::state::State;
 
 /// Kinetic energy above this share of the largest one is told of \[-\].
-const TOLD: f64 = 1e-3;
+const MOVES: f64 = 1e-3;
 
 /// The fall of a body, in cells, whose energy is that of round-off \[-\]: displacements of statics are known to no more digits.
 const ROUND_OFF: f64 = 1e-10;
@@ -58,7 +58,7 @@ fn lost<const D: usize>(session: &Session<'_, D>, state: &State<D>) -> Option<St
     let mass =
         particles.mass.iter().sum::<f64>() + rigid.iter().map(|body| body.motion.mass).sum::<f64>();
     let round_off = ROUND_OFF * mass * case.gravity * cell;
-    (most > round_off && share > TOLD).then(|| {
+    (most > round_off && share > MOVES).then(|| {
         format!(
             "the body moves as it begins, with {} % of the largest kinetic energy so far",
             short(100.0 * share)
