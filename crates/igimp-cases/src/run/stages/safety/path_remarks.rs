@@ -99,18 +99,18 @@ mod tests {
     #[test]
     fn a_factor_that_falls_is_not_said_to_rise() {
         let rising = path([1.01, 1.02, 1.035, 1.05]);
-        let remarks = of(&rising);
+        let lines = of(&rising);
         assert_eq!(limit::interval(&rising).0, Some(1.05));
-        assert!(remarks[0].contains("the factor still rises"), "{remarks:?}");
-        assert!(remarks[0].contains("four times the work, 1.0500 at 0.08 m"));
+        assert!(lines[0].contains("the factor still rises"), "{lines:?}");
+        assert!(lines[0].contains("four times the work, 1.0500 at 0.08 m"));
         // It falls by 1.5 % and rises by 0.2 % in the last doubling.
         let falling = path([1.02, 1.01, 1.005, 1.007]);
-        let remarks = of(&falling);
+        let lines = of(&falling);
         assert_eq!(limit::interval(&falling).0, Some(1.02));
-        assert!(!remarks[0].contains("rises"), "{remarks:?}");
+        assert!(!lines[0].contains("rises"), "{lines:?}");
         assert!(
-            remarks[0].contains("the value reported is the largest, 1.0200 at 0.01 m, and after four times the work it is 1.0070 at 0.08 m"),
-            "{remarks:?}"
+            lines[0].contains("the value reported is the largest, 1.0200 at 0.01 m, and after four times the work it is 1.0070 at 0.08 m"),
+            "{lines:?}"
         );
     }
 }
