@@ -1,4 +1,4 @@
-//! A case of either analysis from its parts: what the analyses do alike.
+//! A case of either analysis from its parts: the steps of all analyses.
 
 use std::path::Path;
 
@@ -21,7 +21,7 @@ use super::{AllNames, all, materials, title_block};
 use crate::build::Thing;
 use crate::build::context::Context;
 
-/// What everything else is held against.
+/// Grid, bodies and materials of a case.
 pub(super) struct GridAndBodies<const D: usize> {
     pub(super) frame: Option<Frame<D>>,
     pub(super) bodies: Vec<Option<BodyPart<D>>>,
@@ -39,20 +39,20 @@ impl<const D: usize> GridAndBodies<D> {
         (bodies, rigid): (Vec<Option<BodyPart<D>>>, &[RigidShape]),
         problems: &mut Problems,
     ) -> Self {
-        let own = Root::<D>::grid(tree).ok();
-        let extent = own.as_ref().and_then(|own| own.extent.as_ref().ok());
+        let table = Root::<D>::grid(tree).ok();
+        let extent = table.as_ref().and_then(|table| table.extent.as_ref().ok());
         let mut frame = extent.and_then(|extent| grid::frame(extent, problems));
         let materials = materials::materials(tree, &bodies, problems);
         let outlines = (&bodies[..], rigid);
-        let grid =
-            (own.as_ref()).and_then(|own| grid::grid(own, frame.as_ref(), outlines, problems));
+        let grid = (table.as_ref())
+            .and_then(|table| grid::grid(table, frame.as_ref(), outlines, problems));
         if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
             frame.axes.clone_from(&grid.axes);
         }
         let has_water = Root::<D>::water(tree).is_ok_and(|water| !water.is_empty());
         Self {
             frame,
-            method: own.and_then(|own| grid::method(own.method.as_ref().ok()?)),
+            method: table.and_then(|table| grid::method(table.method.as_ref().ok()?)),
             grid,
             materials,
             sequence: Sequence::new((stated, stages), has_water, names, &bodies),
@@ -61,7 +61,7 @@ impl<const D: usize> GridAndBodies<D> {
     }
 }
 
-/// What stands in the ground and on it.
+/// Supports, structures and water.
 pub(super) struct Surroundings<const D: usize> {
     pub(super) boundaries: Option<Boundaries<D>>,
     pub(super) rigid: Vec<Option<RigidPart<D>>>,
@@ -69,7 +69,7 @@ pub(super) struct Surroundings<const D: usize> {
     pub(super) reinforcement: Vec<Option<ReinforcementPart<D>>>,
 }
 
-/// The stages, with the checks of what they use.
+/// The stages, with the checks of their parts.
 pub(super) fn stages_of<const D: usize>(
     context: &Context<'_, D>,
     problems: &mut Problems,
@@ -86,7 +86,7 @@ fn each<T, U>(
     mut build: impl FnMut(&At<T>) -> Option<U>,
 ) -> Option<Vec<U>> {
     let list = list.ok()?.value;
-    let built = list.iter().map(|own| build(own.as_ref().ok()?));
+    let built = list.iter().map(|item| build(item.as_ref().ok()?));
     all(built.collect())
 }
 
@@ -105,7 +105,7 @@ pub(super) fn assemble<const D: usize>(
         soil,
         ..
     } = *context;
-    let solver = Root::<D>::solver(tree).map(|own| outputs::solver(&own, problems));
+    let solver = Root::<D>::solver(tree).map(|solver| outputs::solver(&solver, problems));
     let output = Root::<D>::output(tree);
     // A stage that was found wrong may be one.
     let is_motion = |stage: &Option<Stage>| {
@@ -113,30 +113,30 @@ pub(super) fn assemble<const D: usize>(
         matches!(kind, None | Some(StageKind::Dynamic(_)))
     };
     let moves = stages.iter().any(is_motion);
-    let monitors = each(Root::<D>::monitors(tree), |own| {
-        outputs::monitor(own, soil, moves, problems)
+    let monitors = each(Root::<D>::monitors(tree), |monitor| {
+        outputs::monitor(monitor, soil, moves, problems)
     });
     let about = outputs::About {
         names,
         stages: &stages,
         file,
         moves,
-        has_cuts: (output.iter()).any(|own| own.cuts.as_ref().is_some_and(|cuts| !cuts.is_empty())),
+        has_cuts: (output.iter()).any(|output| output.cuts.iter().any(|cuts| !cuts.is_empty())),
     };
-    let sections = each(Root::<D>::sections(tree), |own| {
-        outputs::section(own, &about, soil, problems)
+    let sections = each(Root::<D>::sections(tree), |section| {
+        outputs::section(section, &about, soil, problems)
     });
-    let curves = each(Root::<D>::curves(tree), |own| {
-        curves::curve(own, names, loads, file, problems)
+    let curves = each(Root::<D>::curves(tree), |curve| {
+        curves::curve(curve, names, loads, file, problems)
     });
     let is_whole = is_whole(tree);
-    let checks = each(Root::<D>::checks(tree), |own| {
-        checks::check(own, is_whole, names, loads, &stages, problems)
+    let checks = each(Root::<D>::checks(tree), |check| {
+        checks::check(check, is_whole, names, loads, &stages, problems)
     });
     let output = output
         .ok()
-        .and_then(|own| outputs::output(&own, context, moves, problems));
-    let meshes = Root::<D>::mesh_study(tree).map(|own| own.value.meshes);
+        .and_then(|output| outputs::output(&output, context, moves, problems));
+    let meshes = Root::<D>::mesh_study(tree).map(|study| study.value.meshes);
 
     let (case, meshes) = (Root::<D>::case(tree).ok()?, meshes.ok()?);
     let grid = Root::<D>::grid(tree).ok()?;

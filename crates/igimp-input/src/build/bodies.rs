@@ -34,19 +34,19 @@ use site::Site;
 /// Most corners of all bodies together.
 const MOST_CORNERS: usize = 5000;
 
-/// Analyses, by what bodies are made of.
+/// Analyses, by the regions of their bodies.
 pub(super) trait Fill<const D: usize> {
     /// The region of a body.
-    fn region(own: &At<Body>, problems: &mut Problems) -> Option<Arc<dyn Region<D>>>;
+    fn region(body: &At<Body>, problems: &mut Problems) -> Option<Arc<dyn Region<D>>>;
 }
 
 /// Plane strain: bodies are polygons.
 pub(super) struct Plane;
 
 impl Fill<2> for Plane {
-    fn region(own: &At<Body>, problems: &mut Problems) -> Option<Arc<dyn Region<2>>> {
-        let corners = stated(&own.polygon)?;
-        let polygon = corners_at(corners, polygon_place(own), &own.name, problems)?;
+    fn region(body: &At<Body>, problems: &mut Problems) -> Option<Arc<dyn Region<2>>> {
+        let corners = stated(&body.polygon)?;
+        let polygon = corners_at(corners, polygon_place(body), &body.name, problems)?;
         Some(Arc::new(polygon))
     }
 }
@@ -55,8 +55,8 @@ impl Fill<2> for Plane {
 pub(super) struct Space;
 
 impl Fill<3> for Space {
-    fn region(own: &At<Body>, problems: &mut Problems) -> Option<Arc<dyn Region<3>>> {
-        let solid = solids::solid(own, problems)?;
+    fn region(body: &At<Body>, problems: &mut Problems) -> Option<Arc<dyn Region<3>>> {
+        let solid = solids::solid(body, problems)?;
         Some(Arc::new(solid))
     }
 }
@@ -64,12 +64,12 @@ impl Fill<3> for Space {
 /// The bodies, as far as each is right by itself.
 pub(super) fn bodies<A: Fill<D>, const D: usize>(
     tree: &Node,
-    (own, stages): (&[Thing<Body>], &[Thing<Stage>]),
+    (tables, stages): (&[Thing<Body>], &[Thing<Stage>]),
     names: &AllNames,
     problems: &mut Problems,
 ) -> Vec<Option<BodyPart<D>>> {
-    let polygons = own.iter().flatten();
-    let polygons = polygons.filter_map(|own| stated(&own.polygon));
+    let polygons = tables.iter().flatten();
+    let polygons = polygons.filter_map(|body| stated(&body.polygon));
     let corners: usize = polygons.map(<[_]>::len).sum();
     if D == 2 && corners > MOST_CORNERS {
         problems
@@ -78,25 +78,25 @@ pub(super) fn bodies<A: Fill<D>, const D: usize>(
                 format!("the bodies have {corners} corners together"),
             )
             .help(format!("at most {MOST_CORNERS} are possible"));
-        return vec![None; own.len()];
+        return vec![None; tables.len()];
     }
     let later = placed(stages);
-    let part = |own: &Thing<Body>| {
-        let own = own.as_ref()?;
-        let who = format!("body `{}` uses", clip(&own.name, 40));
-        let material = own.material.as_ref().ok();
-        let material = material.and_then(|own| names.materials.find(own, &who, problems));
-        let region = A::region(own, problems);
-        let points = **own.points_per_cell.as_ref().ok()?;
+    let part = |body: &Thing<Body>| {
+        let body = body.as_ref()?;
+        let subject = format!("body `{}` uses", clip(&body.name, 40));
+        let material = body.material.as_ref().ok();
+        let material = material.and_then(|name| names.materials.find(name, &subject, problems));
+        let region = A::region(body, problems);
+        let points = **body.points_per_cell.as_ref().ok()?;
         Some(BodyPart {
-            from_start: !later.contains(&own.name.as_str()),
-            name: own.name.known()?,
+            from_start: !later.contains(&body.name.as_str()),
+            name: body.name.known()?,
             material: material?,
             per_direction: (1..=5).find(|count: &usize| count.pow(D as u32) >= points)?,
             region: region?,
         })
     };
-    own.iter().map(part).collect()
+    tables.iter().map(part).collect()
 }
 
 /// The polygon of a case in plane strain, if it was found right.
@@ -108,9 +108,9 @@ fn stated(polygon: &Result<Option<At<Polygon>>, Wrong>) -> Option<&[At<[f64; 2]>
 }
 
 /// Where the polygon of a body stands.
-pub(super) fn polygon_place(own: &At<Body>) -> Place {
-    let polygon = own.polygon.as_ref().ok().and_then(Option::as_ref);
-    polygon.map_or(own.place, |polygon| polygon.place)
+pub(super) fn polygon_place(body: &At<Body>) -> Place {
+    let polygon = body.polygon.as_ref().ok().and_then(Option::as_ref);
+    polygon.map_or(body.place, |polygon| polygon.place)
 }
 
 /// Corners, or where they come from.
@@ -118,14 +118,14 @@ pub(super) type Polygon = Either<Vec<At<[f64; 2]>>, Outline>;
 
 /// The corners of a polygon that is one.
 pub(super) fn corners(
-    own: &At<Polygon>,
+    polygon: &At<Polygon>,
     name: &str,
     problems: &mut Problems,
 ) -> Option<Vec<[f64; 2]>> {
-    let Either::First(corners) = &own.value else {
+    let Either::First(corners) = &polygon.value else {
         return None;
     };
-    corners_at(corners, own.place, name, problems)
+    corners_at(corners, polygon.place, name, problems)
 }
 
 fn corners_at(
@@ -134,7 +134,7 @@ fn corners_at(
     name: &str,
     problems: &mut Problems,
 ) -> Option<Vec<[f64; 2]>> {
-    let written: Vec<[f64; 2]> = corners.iter().map(|own| **own).collect();
+    let written: Vec<[f64; 2]> = corners.iter().map(|corner| **corner).collect();
     let largest = written
         .iter()
         .flatten()
@@ -174,13 +174,13 @@ fn corners_at(
 
 /// Checks the bodies against the domain and each other.
 pub(super) fn check(
-    (tree, own): (&Node, &[Thing<Body>]),
+    (tree, tables): (&Node, &[Thing<Body>]),
     names: &AllNames,
     (bodies, sequence): (&[Option<BodyPart<2>>], &Sequence),
     site: &Site,
     problems: &mut Problems,
 ) {
-    let place = |index: usize| own[index].as_ref().map(polygon_place);
+    let place = |index: usize| tables[index].as_ref().map(polygon_place);
     if let Some(frame) = &site.frame {
         let mut particles = 0.0;
         for (index, body) in bodies.iter().enumerate() {
@@ -260,7 +260,7 @@ pub(super) fn check(
 
 /// Warns of bodies that neither boundaries nor rigid bodies hold from below.
 pub(super) fn check_support(
-    own: &[Thing<Body>],
+    tables: &[Thing<Body>],
     bodies: &[Option<BodyPart<2>>],
     (boundaries, rigid): (Option<&Boundaries<2>>, &[Option<RigidPart<2>>]),
     site: &Site,
@@ -284,9 +284,9 @@ pub(super) fn check_support(
                 })
         });
         boxed
-            || outlines
-                .iter()
-                .any(|own| bounding_box(own).0[1] < lower[1] - reach && touch(own, polygon, reach))
+            || outlines.iter().any(|outline| {
+                bounding_box(outline).0[1] < lower[1] - reach && touch(outline, polygon, reach)
+            })
             || boundaries.sides[1][0] != Side::Free && lower[1] < frame.lower[1] + reach
             || boundaries.sides[0][0] == Side::Fixed && lower[0] < frame.lower[0] + reach
             || boundaries.sides[0][1] == Side::Fixed && upper[0] > frame.upper[0] - reach
@@ -307,7 +307,7 @@ pub(super) fn check_support(
             let lowest = bounding_box(body.polygon()).0[1];
             problems
                 .warning(
-                    own[k].as_ref().map(polygon_place),
+                    tables[k].as_ref().map(polygon_place),
                     format!("nothing holds body `{}` from below", body.name),
                 )
                 .help(format!(

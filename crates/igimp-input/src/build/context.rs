@@ -1,4 +1,4 @@
-//! What a stage is built from: everything that is there before the stages.
+//! The context of a stage: all that is built before the stages.
 
 use igimp_model::{BodyPart, Load, Material};
 use igimp_schema::diagnostic::Problems;
@@ -11,7 +11,7 @@ use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Soil;
 use crate::build::{AllNames, Site};
 
-/// What stages refer to.
+/// The parts that stages name.
 pub(crate) struct Context<'a, const D: usize> {
     pub(crate) tree: &'a Node,
     /// The stages as they are stated.
@@ -34,7 +34,7 @@ impl<const D: usize> Context<'_, D> {
                 .stages
                 .get(index)?
                 .as_ref()
-                .and_then(|own| own.start_from());
+                .and_then(|stage| stage.start_from());
             let named = named.and_then(|name| self.names.stages.position(name));
             named.filter(|&k| k < index).or(index.checked_sub(1))
         };
@@ -46,11 +46,11 @@ impl<const D: usize> Context<'_, D> {
     pub(crate) fn monitor(
         &self,
         monitor: Option<&At<String>>,
-        who: &str,
+        stage: &str,
         problems: &mut Problems,
     ) -> Result<Option<usize>, Wrong> {
-        let who = format!("stage `{who}` watches");
-        self.names.monitors.find_optional(monitor, &who, problems)
+        let monitors = &self.names.monitors;
+        monitors.find_optional(monitor, &format!("stage `{stage}` watches"), problems)
     }
 
     /// Whether a material is that of a body.
@@ -60,7 +60,7 @@ impl<const D: usize> Context<'_, D> {
             scene
                 .material
                 .iter()
-                .any(|own| own.is_none_or(|own| own == material))
+                .any(|entry| entry.is_none_or(|index| index == material))
         })
     }
 }

@@ -93,7 +93,7 @@ pub(super) fn derive(tree: &mut Node, file: &Path) {
     }
 }
 
-/// What materials do with the water in their pores.
+/// The drainage of materials that state none.
 pub(super) fn derive_drainage(tree: &mut Node) {
     let materials = tree.get_mut("materials").and_then(Node::entries_mut);
     for material in materials.into_iter().flatten() {
@@ -114,7 +114,7 @@ pub(super) fn derive_drainage(tree: &mut Node) {
 fn derive_output(tree: &mut Node, file: &Path) {
     let meshes = tree
         .get("mesh_study")
-        .and_then(|own| own.count_at("meshes"));
+        .and_then(|study| study.count_at("meshes"));
     if let Some(frames) = tree
         .get_mut("output")
         .and_then(|output| output.get_mut("paraview"))
@@ -214,7 +214,7 @@ fn label((dimensions, is_whole): (usize, bool), axis: &Node) -> Option<String> {
 
 /// Lines and small cuts of a grid that rigid bodies cut, and of others.
 fn derive_grid(tree: &mut Node, dimensions: usize) {
-    let has_bodies = tree.get("rigid").is_some_and(|own| !own.items().is_empty());
+    let has_bodies = !tree.items_at("rigid").is_empty();
     let (below, remedy) = if has_bodies {
         (BELOW_AT_BODIES, "extrapolate")
     } else {

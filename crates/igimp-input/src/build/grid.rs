@@ -33,7 +33,7 @@ const MOST_JUMP: f64 = 2.0;
 /// The keys of the directions.
 const DIRECTIONS: [&str; 3] = ["x", "y", "z"];
 
-/// Extent of the grid and its axes, for the checks of what lies on it \[m\].
+/// Extent of the grid and its axes, for checks of bodies and loads \[m\].
 #[derive(Clone, Debug)]
 pub(super) struct Frame<const D: usize> {
     /// Corner of the lowest coordinates.
@@ -55,7 +55,7 @@ impl<const D: usize> Frame<D> {
     }
 }
 
-/// What a table says of each axis.
+/// The values of a table by axis.
 fn by_axis<'a, T, const D: usize>(
     [x, y]: [&'a At<T>; 2],
     z: Option<&'a At<T>>,
@@ -77,7 +77,7 @@ pub(super) fn frame<const D: usize>(
 ) -> Option<Frame<D>> {
     let cell = match &*extent.cell {
         Either::First(one) => [*one; D],
-        Either::Second(own) => by_axis([&own.x, &own.y], own.z.as_ref())?.map(|own| **own),
+        Either::Second(size) => by_axis([&size.x, &size.y], size.z.as_ref())?.map(|s| **s),
     };
     let domain: [_; D] = by_axis(
         [&extent.domain.x, &extent.domain.y],
@@ -85,13 +85,13 @@ pub(super) fn frame<const D: usize>(
     )?;
     let (mut lower, mut upper) = ([0.0; D], [0.0; D]);
     let mut is_right = true;
-    for (axis, own) in domain.into_iter().enumerate() {
-        let [from, to] = **own;
+    for (axis, ends) in domain.into_iter().enumerate() {
+        let [from, to] = **ends;
         (lower[axis], upper[axis]) = (from, to);
         if from >= to || !(to - from).is_finite() {
             let key = DIRECTIONS[axis];
             problems
-                .error(own.place, format!("the domain in {key} has no extent"))
+                .error(ends.place, format!("the domain in {key} has no extent"))
                 .help("write the lower end first");
             is_right = false;
         }
@@ -112,7 +112,7 @@ pub(super) fn grid<const D: usize>(
     (bodies, rigid): (&[Option<BodyPart<D>>], &[RigidShape]),
     problems: &mut Problems,
 ) -> Option<GridSpec<D>> {
-    let own = grid.extent.as_ref().ok()?;
+    let table = grid.extent.as_ref().ok()?;
     let Frame { lower, upper, axes } = frame?;
     let cell: [f64; D] = std::array::from_fn(|axis| axes[axis].cell_at(lower[axis]));
     let extent: [f64; D] = std::array::from_fn(|axis| upper[axis] - lower[axis]);
@@ -120,7 +120,7 @@ pub(super) fn grid<const D: usize>(
         .map(|axis| (extent[axis] / cell[axis]).max(1.0))
         .product();
     if total.is_nan() || total > MOST {
-        too_many(own, &count(total), problems);
+        too_many(table.cell.place, &count(total), problems);
         return None;
     }
     let wishes = grid.wishes.as_ref().ok()?;
@@ -136,7 +136,7 @@ pub(super) fn grid<const D: usize>(
         layers: matches!(fit, Fit::Layers | Fit::All),
         round_off: 1e-9 * extent[D - 1].max(upper[D - 1].abs()),
     };
-    let domain = &own.domain;
+    let domain = &table.domain;
     let domain: [_; D] = by_axis([&domain.x, &domain.y], domain.z.as_ref())?;
     let lines: [_; D] = by_axis([&wishes.lines.x, &wishes.lines.y], wishes.lines.z.as_ref())?;
     let zones: [_; D] = by_axis([&wishes.zones.x, &wishes.zones.y], wishes.zones.z.as_ref())?;
@@ -162,7 +162,7 @@ pub(super) fn grid<const D: usize>(
             ends,
             domain: domain[axis].place,
             cell: cell[axis],
-            cell_place: own.cell.place,
+            cell_place: table.cell.place,
             growth: &wishes.growth,
         };
         match wish(&about, (lines[axis], zones[axis]), asked, problems)? {
@@ -180,15 +180,15 @@ pub(super) fn grid<const D: usize>(
     };
     let total: f64 = spec.cells().iter().map(|&cells| cells as f64).product();
     if total > MOST {
-        too_many(own, &count(total), problems);
+        too_many(table.cell.place, &count(total), problems);
         return None;
     }
     Some(spec)
 }
 
-fn too_many(own: &keys::Extent, cells: &str, problems: &mut Problems) {
+fn too_many(at: Place, cells: &str, problems: &mut Problems) {
     problems
-        .error(own.cell.place, format!("the grid would have {cells} cells"))
+        .error(at, format!("the grid would have {cells} cells"))
         .help(format!(
             "at most {} are possible: use larger cells or a smaller domain",
             count(MOST)
@@ -285,7 +285,7 @@ struct Direction<'a> {
     growth: &'a At<f64>,
 }
 
-/// What is wanted of an axis beyond equal cells; none within: nothing. None: something is wrong.
+/// Lines wanted of an axis beyond equal cells; none within: nothing. None: something is wrong.
 #[allow(
     clippy::option_option,
     reason = "wrong, nothing and something are three answers"
@@ -330,16 +330,16 @@ fn wish(
     }
     let mut zones = Vec::new();
     for zone in stretches {
-        let own = Zone {
+        let built = Zone {
             ends: [*zone.from, *zone.to],
             cell: *zone.cell,
         };
-        let wrong = wrong_zone(zone, own.ends.into_iter().all(is_inside), cell, round_off);
+        let wrong = wrong_zone(zone, built.ends.into_iter().all(is_inside), cell, round_off);
         if let Some((at, message, help)) = wrong {
             problems.error(at, message).help(help);
             is_right = false;
         } else {
-            zones.push(own);
+            zones.push(built);
         }
     }
     let mut levels = asked.on_lines;
@@ -362,7 +362,7 @@ fn wish(
     })
 }
 
-/// What is wrong with a zone of finer cells: place, message and remedy.
+/// The fault of a zone of finer cells: place, message and remedy.
 fn wrong_zone(
     zone: &keys::Zone,
     is_inside: bool,
@@ -399,26 +399,26 @@ fn wrong_zone(
 }
 
 /// The variant of the method.
-pub(super) fn method(own: &keys::Method) -> Option<Method> {
-    let cuts = &own.small_cuts;
-    let basis: Arc<dyn Basis> = match *own.basis {
+pub(super) fn method(table: &keys::Method) -> Option<Method> {
+    let cuts = &table.small_cuts;
+    let basis: Arc<dyn Basis> = match *table.basis {
         keys::Basis::Linear => Arc::new(Linear),
         keys::Basis::Gimp => Arc::new(Gimp),
     };
     Some(Method {
         section: Section::PlaneStrain,
         basis,
-        locking: match *own.locking {
+        locking: match *table.locking {
             keys::Locking::None => Locking::None,
             keys::Locking::BBar => Locking::BBar,
             keys::Locking::SharedStrain => Locking::SharedStrain,
         },
         geometry: Geometry::Moving,
-        kinematics: match *own.kinematics {
+        kinematics: match *table.kinematics {
             keys::Kinematics::Small => Kinematics::SmallStrain,
             keys::Kinematics::Finite => Kinematics::FiniteStrain,
         },
-        domain_update: match *own.domain_update {
+        domain_update: match *table.domain_update {
             keys::DomainUpdate::Fixed => DomainUpdate::Fixed,
             keys::DomainUpdate::DiagonalF => DomainUpdate::DiagonalF,
             keys::DomainUpdate::Stretch => DomainUpdate::DiagonalU,
@@ -440,17 +440,17 @@ pub(super) fn method(own: &keys::Method) -> Option<Method> {
 /// The geometry that the steps of a stage are computed on; types without the key move the particles.
 pub(super) fn geometry_of(form: &StageForm) -> Geometry {
     let stated = match form {
-        StageForm::Gravity(Ok(own)) => own.geometry.as_ref(),
-        StageForm::Load(Ok(own)) => own.geometry.as_ref().ok(),
-        StageForm::Displacement(Ok(own)) => own.geometry.as_ref().ok(),
-        StageForm::Rigid(Ok(own)) => own.geometry.as_ref().ok(),
-        StageForm::Construction(Ok(own)) => own.geometry.as_ref().ok(),
-        StageForm::Wait(Ok(own)) => own.geometry.as_ref().ok(),
-        StageForm::StrengthReduction(Ok(own)) => Some(&own.geometry),
-        StageForm::Dynamic(Ok(own)) => own.geometry.as_ref().ok(),
+        StageForm::Gravity(Ok(table)) => table.geometry.as_ref(),
+        StageForm::Load(Ok(table)) => table.geometry.as_ref().ok(),
+        StageForm::Displacement(Ok(table)) => table.geometry.as_ref().ok(),
+        StageForm::Rigid(Ok(table)) => table.geometry.as_ref().ok(),
+        StageForm::Construction(Ok(table)) => table.geometry.as_ref().ok(),
+        StageForm::Wait(Ok(table)) => table.geometry.as_ref().ok(),
+        StageForm::StrengthReduction(Ok(table)) => Some(&table.geometry),
+        StageForm::Dynamic(Ok(table)) => table.geometry.as_ref().ok(),
         _ => None,
     };
-    match stated.map(|own| **own) {
+    match stated.map(|key| **key) {
         Some(GeometryKey::Given) => Geometry::Given,
         Some(GeometryKey::Moving) | None => Geometry::Moving,
     }

@@ -11,7 +11,7 @@ use igimp_schema::text::number;
 
 use super::bodies::site::Site;
 
-/// What conditions of the water ask of the ground.
+/// The ground as conditions of the water see it.
 pub(super) trait Earth<const D: usize> {
     /// Whether bodies and grid are known.
     fn is_complete(&self) -> bool;
@@ -206,8 +206,8 @@ impl Surface for Line {
                 }
             }
         }
-        found.map(|own| {
-            own.map(|[x, by]| Above {
+        found.map(|above| {
+            above.map(|[x, by]| Above {
                 at: format!("x = {} m", number(x)),
                 by,
             })
@@ -235,7 +235,7 @@ impl Surface for Line {
                 }
             }
         }
-        // What lies on the line between its neighbours says nothing.
+        // A point on the line between its neighbours adds nothing.
         let mut k = 1;
         while k + 1 < points.len() {
             let level = table_level(&[points[k - 1], points[k + 1]], points[k][0]);
@@ -257,9 +257,9 @@ impl Surface for Line {
     }
 
     fn most_on_ground(&self, raster: &Raster) -> Option<(String, f64)> {
-        let ends = self.stretches.iter().flat_map(|own| {
+        let ends = self.stretches.iter().flat_map(|stretch| {
             let at = |share: f64| {
-                let [x, y] = [own.x, own.y].map(|[from, to]| from + share * (to - from));
+                let [x, y] = [stretch.x, stretch.y].map(|[from, to]| from + share * (to - from));
                 [x, y]
             };
             [0.0, 0.25, 0.5, 0.75, 1.0].map(at)

@@ -22,12 +22,12 @@ use super::things;
 use crate::build::Thing;
 use igimp_geometry::outline::cover;
 
-/// What loads ask of the soil that bears them.
+/// Soil that bears loads.
 pub(super) trait Bearing<const D: usize>: Soil<D> {
     /// A rigid footing on it.
     fn footing(
         &self,
-        own: &Result<Footing<D>, Wrong>,
+        table: &Result<Footing<D>, Wrong>,
         name: &str,
         problems: &mut Problems,
     ) -> Option<LoadKind<D>>;
@@ -35,7 +35,7 @@ pub(super) trait Bearing<const D: usize>: Soil<D> {
     /// A pressure on its surface, by name, and the scenes in which it acts.
     fn pressure(
         &self,
-        own: &Pressure<D>,
+        table: &Pressure<D>,
         about: (&str, &[&[bool]]),
         problems: &mut Problems,
     ) -> Option<LoadKind<D>>;
@@ -44,7 +44,7 @@ pub(super) trait Bearing<const D: usize>: Soil<D> {
     /// and the scenes in which it acts.
     fn patch(
         &self,
-        own: &Result<Patch, Wrong>,
+        table: &Result<Patch, Wrong>,
         about: (&str, Place, Place, &[&[bool]]),
         problems: &mut Problems,
     ) -> Option<LoadKind<D>>;
@@ -55,15 +55,15 @@ fn scenes_of<'a>(
     name: &str,
     (stages, sequence): (&[Thing<Stage>], &'a Sequence),
 ) -> Vec<&'a [bool]> {
-    let applies = |own: &At<Stage>| {
-        let is_off = match &*own.form {
-            StageForm::Load(Ok(own)) => own.factor.as_ref().is_ok_and(|factor| **factor == 0.0),
+    let applies = |stage: &At<Stage>| {
+        let is_off = match &*stage.form {
+            StageForm::Load(Ok(table)) => table.factor.as_ref().is_ok_and(|by| **by == 0.0),
             _ => false,
         };
-        !is_off && own.loads().iter().any(|load| load.value == name)
+        !is_off && stage.loads().iter().any(|load| load.value == name)
     };
     let applied = stages.iter().enumerate();
-    let applied = applied.filter(|(_, own)| own.as_ref().is_some_and(applies));
+    let applied = applied.filter(|(_, stage)| stage.as_ref().is_some_and(applies));
     applied
         .map(|(stage, _)| &*sequence.before(stage).present)
         .collect()
@@ -77,27 +77,27 @@ pub(super) fn loads<const D: usize>(
     problems: &mut Problems,
 ) -> Vec<Option<Load<D>>> {
     let mut has_footing = false;
-    let load = |own: Thing<keys::Load<D>>| {
-        let own = own?;
-        let name = own.name.as_str();
-        let scenes = scenes_of(name, course);
-        let kind = match &*own.form {
-            LoadForm::RigidFooting(own) => soil.footing(own, name, problems),
-            LoadForm::Pressure(own) => soil.pressure(own.as_ref().ok()?, (name, &scenes), problems),
+    let load = |load: Thing<keys::Load<D>>| {
+        let load = load?;
+        let name = load.name.as_str();
+        let scenes = &scenes_of(name, course);
+        let kind = match &*load.form {
+            LoadForm::RigidFooting(footing) => soil.footing(footing, name, problems),
+            LoadForm::Pressure(p) => soil.pressure(p.as_ref().ok()?, (name, scenes), problems),
             LoadForm::Patch(patch) => {
-                soil.patch(patch, (name, own.place, own.form.place, &scenes), problems)
+                soil.patch(patch, (name, load.place, load.form.place, scenes), problems)
             }
-            LoadForm::Point(own) => Some(at_point(own.as_ref().ok()?, name, soil, problems)),
+            LoadForm::Point(force) => Some(at_point(force.as_ref().ok()?, name, soil, problems)),
         }?;
         if let LoadKind::RigidFooting { .. } = kind
             && std::mem::replace(&mut has_footing, true)
         {
             problems
-                .error(own.form.place, "this is a second rigid footing")
+                .error(load.form.place, "this is a second rigid footing")
                 .help("the grid follows the footing, and it can follow only one");
         }
         Some(Load {
-            name: own.name.value.clone(),
+            name: load.name.value.clone(),
             kind,
         })
     };
@@ -108,25 +108,25 @@ pub(super) fn loads<const D: usize>(
 impl Bearing<2> for Site {
     fn footing(
         &self,
-        own: &Result<Footing<2>, Wrong>,
+        table: &Result<Footing<2>, Wrong>,
         name: &str,
         problems: &mut Problems,
     ) -> Option<LoadKind<2>> {
-        footing(own.as_ref().ok()?, name, self, problems)
+        footing(table.as_ref().ok()?, name, self, problems)
     }
 
     fn pressure(
         &self,
-        own: &Pressure<2>,
+        table: &Pressure<2>,
         about: (&str, &[&[bool]]),
         problems: &mut Problems,
     ) -> Option<LoadKind<2>> {
-        pressure(own, about, self, problems)
+        pressure(table, about, self, problems)
     }
 
     fn patch(
         &self,
-        _own: &Result<Patch, Wrong>,
+        _table: &Result<Patch, Wrong>,
         (_, _, form, _): (&str, Place, Place, &[&[bool]]),
         problems: &mut Problems,
     ) -> Option<LoadKind<2>> {
@@ -138,18 +138,18 @@ impl Bearing<2> for Site {
 }
 
 fn footing(
-    own: &Footing<2>,
+    footing: &Footing<2>,
     name: &str,
     site: &Site,
     problems: &mut Problems,
 ) -> Option<LoadKind<2>> {
-    let (a, b) = (*own.from, *own.to);
+    let (a, b) = (*footing.from, *footing.to);
     let (from, to) = if a[0] <= b[0] { (a, b) } else { (b, a) };
     let shown = clip(name, 40);
     if (from[1] - to[1]).abs() > site.round_off {
         problems
             .error(
-                own.to.place,
+                footing.to.place,
                 format!("the base of the footing `{shown}` is not level"),
             )
             .help(format!(
@@ -159,7 +159,8 @@ fn footing(
         return None;
     }
     if to[0] - from[0] <= site.round_off {
-        problems.error(own.to.place, format!("the footing `{shown}` has no width"));
+        let message = format!("the footing `{shown}` has no width");
+        problems.error(footing.to.place, message);
         return None;
     }
     if let Some(frame) = &site.frame {
@@ -171,28 +172,28 @@ fn footing(
         if is_outside {
             problems
                 .error(
-                    own.from.place,
+                    footing.from.place,
                     format!("the footing `{shown}` lies outside the grid domain"),
                 )
                 .help("extend [grid] domain");
             return None;
         }
-        on_grid(own, &shown, [from, to], site, problems);
+        on_grid(footing, &shown, [from, to], site, problems);
     }
     if site.is_complete {
-        on_ground(own, &shown, [from, to], site, problems);
+        on_ground(footing, &shown, [from, to], site, problems);
     }
     Some(LoadKind::RigidFooting {
         from,
         to,
-        rough: *own.interface == FootingInterface::Rough,
-        reaction_factor: *own.reaction_factor,
+        rough: *footing.interface == FootingInterface::Rough,
+        reaction_factor: *footing.reaction_factor,
     })
 }
 
 /// Checks that a footing stands on the tops of bodies all along.
 fn on_ground(
-    own: &Footing<2>,
+    footing: &Footing<2>,
     name: &str,
     [from, to]: [[f64; 2]; 2],
     site: &Site,
@@ -223,7 +224,7 @@ fn on_ground(
         .collect();
     levels.truncate(4);
     let problem = problems.error(
-        own.from.place,
+        footing.from.place,
         format!("the footing `{name}` does not stand on top of a body all along"),
     );
     if levels.is_empty() {
@@ -235,7 +236,7 @@ fn on_ground(
 
 /// Checks a footing against the lines of the grid.
 fn on_grid(
-    own: &Footing<2>,
+    footing: &Footing<2>,
     name: &str,
     [from, to]: [[f64; 2]; 2],
     site: &Site,
@@ -243,7 +244,7 @@ fn on_grid(
 ) {
     let Some(frame) = &site.frame else { return };
     let Frame { lower, upper, axes } = frame;
-    let place = own.from.place;
+    let place = footing.from.place;
     let row = axes[1].place(from[1]);
     if (row - row.round()).abs() > 1e-6 {
         let depth = from[1] - lower[1];
@@ -266,7 +267,7 @@ fn on_grid(
             number(from[1])
         ));
     }
-    for end in [&own.from, &own.to] {
+    for end in [&footing.from, &footing.to] {
         let [x, _] = **end;
         if x - lower[0] <= site.round_off || upper[0] - x <= site.round_off {
             continue;
@@ -323,19 +324,19 @@ fn better_cell(edge: f64, ends: [f64; 2], frame: &Frame<2>) -> Option<String> {
 }
 
 fn pressure(
-    own: &Pressure<2>,
+    load: &Pressure<2>,
     (name, scenes): (&str, &[&[bool]]),
     site: &Site,
     problems: &mut Problems,
 ) -> Option<LoadKind<2>> {
-    let (from, to) = (*own.from, *own.to);
-    let is_down = *own.direction == PressureDirection::Down;
+    let (from, to) = (*load.from, *load.to);
+    let is_down = *load.direction == PressureDirection::Down;
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = along[0].hypot(along[1]);
     let shown = clip(name, 40);
     if length <= site.round_off {
         problems.error(
-            own.to.place,
+            load.to.place,
             format!("the segment of the pressure `{shown}` has no length"),
         );
         return None;
@@ -343,14 +344,14 @@ fn pressure(
     let left = [-along[1] / length, along[0] / length];
     let mut inward = is_down.then_some([0.0, -1.0]);
     if site.is_complete {
-        let normal = soil_side(own, (&shown, scenes), left, site, problems)?;
+        let normal = soil_side(load, (&shown, scenes), left, site, problems)?;
         inward = inward.or(Some(normal));
     }
     let inward = inward?;
     Some(LoadKind::Pressure {
         from,
         to,
-        traction: inward.map(|component| component * *own.pressure + 0.0),
+        traction: inward.map(|component| component * *load.pressure + 0.0),
     })
 }
 
@@ -360,11 +361,11 @@ const SAMPLES: u32 = 21;
 /// How many places along a segment have soil on the left alone, on the right alone, and on both sides; of the bodies that are
 /// there, if they are stated.
 fn soil_beside(
-    own: &Pressure<2>,
+    load: &Pressure<2>,
     left: [f64; 2],
     (site, present): (&Site, Option<&[bool]>),
 ) -> [u32; 3] {
-    let (from, to) = (*own.from, *own.to);
+    let (from, to) = (*load.from, *load.to);
     let length = (to[0] - from[0]).hypot(to[1] - from[1]);
     let step = 1e-2 * site.cell().min(length);
     let mut found = [0; 3];
@@ -391,7 +392,7 @@ fn soil_beside(
 /// The normal of a segment that points into the soil of the stages in which it is loaded; reports a segment that is not on a
 /// surface there.
 fn soil_side(
-    own: &Pressure<2>,
+    load: &Pressure<2>,
     (name, scenes): (&str, &[&[bool]]),
     left: [f64; 2],
     site: &Site,
@@ -399,20 +400,20 @@ fn soil_side(
 ) -> Option<[f64; 2]> {
     let found = scenes
         .iter()
-        .map(|present| soil_beside(own, left, (site, Some(*present))));
+        .map(|present| soil_beside(load, left, (site, Some(*present))));
     // A load on soil that is not there is refused where the stage applies it.
-    let mut found: Vec<_> = found.filter(|own| *own != [0; 3]).collect();
+    let mut found: Vec<_> = found.filter(|counts| *counts != [0; 3]).collect();
     if found.is_empty() {
-        found.push(soil_beside(own, left, (site, None)));
+        found.push(soil_beside(load, left, (site, None)));
     }
-    let is_on = |side: usize| found.iter().all(|own| own[side] == SAMPLES);
+    let is_on = |side: usize| found.iter().all(|counts| counts[side] == SAMPLES);
     if is_on(0) {
         return Some(left);
     }
     if is_on(1) {
         return Some(left.map(|component| -component));
     }
-    let is_wrong = |own: &&[u32; 3]| own[0] < SAMPLES && own[1] < SAMPLES;
+    let is_wrong = |counts: &&[u32; 3]| counts[0] < SAMPLES && counts[1] < SAMPLES;
     let message = match found.iter().find(is_wrong) {
         Some([0, 0, 0]) => format!("no body lies along the segment of the pressure `{name}`"),
         Some([_, _, buried]) if *buried > 0 => {
@@ -426,23 +427,23 @@ fn soil_side(
         ),
     };
     problems
-        .error(own.from.place, message)
+        .error(load.from.place, message)
         .help("the segment follows the edge of a body, from one point of it to another");
     None
 }
 
 /// A force at a point of a body.
 fn at_point<const D: usize>(
-    own: &PointLoad<D>,
+    load: &PointLoad<D>,
     name: &str,
     soil: &impl Soil<D>,
     problems: &mut Problems,
 ) -> LoadKind<D> {
-    let (at, force) = (*own.at, *own.force);
+    let (at, force) = (*load.at, *load.force);
     if soil.is_known() && !soil.holds_point(&at, 1e-2 * soil.cell()) {
         problems
             .error(
-                own.at.place,
+                load.at.place,
                 format!(
                     "there is no body at {}, where `{}` acts",
                     point(at),

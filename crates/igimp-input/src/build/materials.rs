@@ -29,7 +29,7 @@ use water::{drainage, permeability, saturated};
 pub(super) use checks::{check_lengths, check_on_cells, check_rates};
 pub(super) use unused::check_unused;
 
-/// What may be said of a strength, of Young's modulus and of a unit weight that vary.
+/// Terms of a strength, of Young's modulus and of a unit weight that vary.
 const STRENGTH: Terms = Terms {
     may_vanish: true,
     may_be_nothing: false,
@@ -57,7 +57,7 @@ pub(super) fn materials<const D: usize>(
     bodies: &[Option<BodyPart<D>>],
     problems: &mut Problems,
 ) -> Vec<Option<Material>> {
-    let stated = Root::<D>::materials(tree).map_or_else(|Wrong| Vec::new(), |own| own.value.0);
+    let stated = Root::<D>::materials(tree).map_or_else(|Wrong| Vec::new(), |list| list.value.0);
     let outlines = bodies.iter().flatten();
     let layer = |body: &BodyPart<D>, unit_weight, profile| Layer {
         region: Arc::clone(&body.region),
@@ -67,14 +67,14 @@ pub(super) fn materials<const D: usize>(
     };
     let surface = Ground::of_layers(outlines.map(|body| layer(body, 0.0, None)));
     let weights: Vec<Option<Property>> = (stated.iter().enumerate())
-        .map(|(material, own)| {
+        .map(|(material, entry)| {
             let extent = Extent {
-                name: &own.name,
+                name: &entry.name,
                 material,
                 bodies,
                 ground: &surface,
             };
-            let common = own.value.as_ref().ok()?.common.as_ref().ok()?;
+            let common = entry.value.as_ref().ok()?.common.as_ref().ok()?;
             let weight = common.unit_weight.as_ref().ok()?;
             property(weight, "unit_weight", extent, UNIT_WEIGHT, problems)
         })
@@ -84,21 +84,21 @@ pub(super) fn materials<const D: usize>(
         Some(layer(body, weight.constant, weight.profile.clone()))
     });
     let ground = Ground::of_layers(with_weights);
-    let of_water = Root::<D>::case(tree).map(|own| *own.water_unit_weight);
+    let of_water = Root::<D>::case(tree).map(|case| *case.water_unit_weight);
     let ground = match of_water {
         Ok(unit_weight) => ground.with_water_of(unit_weight),
         Err(Wrong) => ground,
     };
     std::iter::zip(&stated, &weights)
         .enumerate()
-        .map(|(index, (own, weight))| {
+        .map(|(index, (entry, weight))| {
             let extent = Extent {
-                name: &own.name,
+                name: &entry.name,
                 material: index,
                 bodies,
                 ground: &ground,
             };
-            material(own, weight.as_ref(), extent, problems)
+            material(entry, weight.as_ref(), extent, problems)
         })
         .collect()
 }
@@ -109,30 +109,30 @@ fn material<const D: usize>(
     extent: Extent<'_, D>,
     problems: &mut Problems,
 ) -> Option<Material> {
-    let (name, own) = (&stated.name, stated.value.as_ref().ok()?);
-    let common = own.common.as_ref().ok()?;
+    let (name, table) = (&stated.name, stated.value.as_ref().ok()?);
+    let common = table.common.as_ref().ok()?;
     let before = problems.errors();
-    let linear = own.form.stiffness();
-    let young = linear.and_then(|own| own.young.as_ref().ok());
-    let young = young.and_then(|own| property(own, "young", extent, YOUNG, problems));
+    let linear = table.form.stiffness();
+    let young = linear.and_then(|linear| linear.young.as_ref().ok());
+    let young = young.and_then(|value| property(value, "young", extent, YOUNG, problems));
     let Resistance {
         poisson,
         strength,
         cohesive,
         friction,
         varied,
-    } = resistance(&own.form, extent, problems);
-    let profile = |own: Option<&Property>| -> Option<Profile> { own?.profile.clone() };
-    let friction_varies = friction.as_ref().is_some_and(|own| own.profile.is_some())
-        || (varied.iter()).any(|own| ["friction", "critical_ratio"].contains(&own.0));
+    } = resistance(&table.form, extent, problems);
+    let profile = |value: Option<&Property>| -> Option<Profile> { value?.profile.clone() };
+    let friction_varies = friction.as_ref().is_some_and(|phi| phi.profile.is_some())
+        || (varied.iter()).any(|entry| ["friction", "critical_ratio"].contains(&entry.0));
     let k0 = k0(common, strength, friction_varies, problems);
     if problems.errors() == before {
         if let (Some(stated), Some(young), Some(strength)) = (linear, &young, &cohesive) {
-            let key = own.form.undrained().map_or("cohesion", |_| "cu");
-            let place = stated.young.as_ref().ok().map(|own| own.place);
+            let key = table.form.undrained().map_or("cohesion", |_| "cu");
+            let place = stated.young.as_ref().ok().map(|value| value.place);
             plausible::check_stiffness(name, (young, place), (key, strength), problems);
         }
-        let varies = cohesive.as_ref().is_some_and(|own| own.profile.is_some()) || friction_varies;
+        let varies = cohesive.as_ref().is_some_and(|c| c.profile.is_some()) || friction_varies;
         if let (Some(strength), Some(weight), false) = (strength, unit_weight, varies) {
             check_at_rest(common, strength, weight, extent, problems);
         }
@@ -140,17 +140,17 @@ fn material<const D: usize>(
     let saturated = saturated(name, common, unit_weight, problems);
     let stiffness = match (linear, strength) {
         (Some(_), _) => (young.as_ref()).and_then(|young| Some([young.constant, poisson?])),
-        (None, strength) => strength.and_then(|own| own.stiffness()),
+        (None, strength) => strength.and_then(|law| law.stiffness()),
     };
-    let softening = softening::curves(name, &own.form, strength, problems);
+    let softening = softening::curves(name, &table.form, strength, problems);
     let of_soil = (stiffness, strength);
-    let drainage = drainage((common, &own.form), of_soil, &varied, problems);
+    let drainage = drainage((common, &table.form), of_soil, &varied, problems);
     let permeable = permeability(common, extent, problems).ok()?;
     let material = Material {
         saturated: saturated.ok()?,
         drainage: drainage?,
-        permeability: permeable.as_ref().map(|own| own.soil),
-        void_law: permeable.as_ref().and_then(|own| own.void_law),
+        permeability: permeable.as_ref().map(|flow| flow.soil),
+        void_law: permeable.as_ref().and_then(|flow| flow.void_law),
         given: None,
         name: name.clone(),
         unit_weight: unit_weight?.constant,
@@ -164,8 +164,8 @@ fn material<const D: usize>(
             friction: profile(friction.as_ref()),
             young: profile(young.as_ref()),
             unit_weight: profile(unit_weight),
-            permeability: permeable.and_then(|own| own.profile),
-            parameters: varied.into_iter().map(|own| (own.0, own.2)).collect(),
+            permeability: permeable.and_then(|flow| flow.profile),
+            parameters: varied.into_iter().map(|entry| (entry.0, entry.2)).collect(),
         },
     };
     if problems.errors() == before
@@ -198,28 +198,28 @@ fn resistance<const D: usize>(
     extent: Extent<'_, D>,
     problems: &mut Problems,
 ) -> Resistance {
-    let cu = model.undrained().and_then(|own| own.cu.as_ref().ok());
-    let cu = cu.and_then(|own| property(own, "cu", extent, UNDRAINED, problems));
+    let cu = model.undrained().and_then(|table| table.cu.as_ref().ok());
+    let cu = cu.and_then(|value| property(value, "cu", extent, UNDRAINED, problems));
     let [cohesive, friction] = match model.frictional() {
-        Some(own) => frictional::properties(own, extent, problems),
+        Some(table) => frictional::properties(table, extent, problems),
         None => [cu, None],
     };
     let both = [cohesive.as_ref(), friction.as_ref()];
-    let cu = both[0].map(|own| own.constant);
+    let cu = both[0].map(|value| value.constant);
     let mut read = Parameters {
         extent,
         problems,
         varied: Varied::new(),
     };
-    let poisson = model.stiffness().and_then(|own| own.poisson.as_ref().ok());
-    let poisson = poisson.and_then(|own| {
-        let own = read.read("poisson", own, NUMBER_OR_NONE, Some(POISSON))?;
-        if own.most > 0.499 && own.most < 0.5 {
+    let poisson = model.stiffness().and_then(|law| law.poisson.as_ref().ok());
+    let poisson = poisson.and_then(|value| {
+        let parameter = read.read("poisson", value, NUMBER_OR_NONE, Some(POISSON))?;
+        if parameter.most > 0.499 && parameter.most < 0.5 {
             (read.problems)
-                .warning(own.place, "Poisson's ratio is very close to 0.5")
+                .warning(parameter.place, "Poisson's ratio is very close to 0.5")
                 .help("the tangent is badly conditioned; 0.49 to 0.495 is close enough");
         }
-        Some(own.most)
+        Some(parameter.most)
     });
     let strength = match model {
         Model::Elastic(_) => Some(Strength::Elastic),
@@ -227,11 +227,11 @@ fn resistance<const D: usize>(
             cu.map(|undrained_strength| Strength::VonMises { undrained_strength })
         }
         Model::Tresca(_) => cu.map(|undrained_strength| Strength::Tresca { undrained_strength }),
-        Model::CamClay(Ok(own)) => cam_clay::strength(own, &mut read),
-        Model::HardeningSoil(Ok(own)) => hardening_soil::strength(own, &mut read),
-        Model::HoekBrown(Ok(own)) => hoek_brown::strength(own, &mut read),
-        Model::MohrCoulomb(Ok(own)) => frictional::mohr_coulomb(own, both, &mut read),
-        Model::DruckerPrager(Ok(own)) => frictional::drucker_prager(own, both, &mut read),
+        Model::CamClay(Ok(table)) => cam_clay::strength(table, &mut read),
+        Model::HardeningSoil(Ok(table)) => hardening_soil::strength(table, &mut read),
+        Model::HoekBrown(Ok(table)) => hoek_brown::strength(table, &mut read),
+        Model::MohrCoulomb(Ok(table)) => frictional::mohr_coulomb(table, both, &mut read),
+        Model::DruckerPrager(Ok(table)) => frictional::drucker_prager(table, both, &mut read),
         _ => None,
     };
     Resistance {
@@ -260,8 +260,8 @@ fn check_at_rest<const D: usize>(
         upper[D - 1] - lower[D - 1]
     };
     let bodies = extent.bodies.iter().flatten();
-    let own = bodies.filter(|body| body.material == extent.material);
-    let highest = own.map(height).fold(0.0, f64::max);
+    let bodies = bodies.filter(|body| body.material == extent.material);
+    let highest = bodies.map(height).fold(0.0, f64::max);
     let loaded = (strength, highest * weight.constant);
     plausible::check_k0(extent.name, &k0, loaded, problems);
 }
@@ -282,13 +282,13 @@ fn k0(
         (Either::Second(_), Some(_)) if friction_varies => {
             "k0 = \"jaky\" needs one friction angle, and friction varies here"
         }
-        (Either::Second(_), Some(Strength::ModifiedCamClay(own))) => {
+        (Either::Second(_), Some(Strength::ModifiedCamClay(law))) => {
             // sin φ of M in triaxial compression.
             return Ok(Some(
-                1.0 - 3.0 * own.critical_ratio / (6.0 + own.critical_ratio),
+                1.0 - 3.0 * law.critical_ratio / (6.0 + law.critical_ratio),
             ));
         }
-        (Either::Second(_), Some(own)) => match own.friction_angle() {
+        (Either::Second(_), Some(law)) => match law.friction_angle() {
             Some(friction_angle) => return Ok(Some(jaky(friction_angle))),
             None => "k0 = \"jaky\" needs a friction angle",
         },

@@ -39,7 +39,7 @@ use context::Context;
 use ground::layers::{Layers, check_stiffness};
 use stages::idle;
 
-/// The names in a file, by what they name.
+/// The names in a file, by their kinds.
 struct AllNames {
     materials: Names,
     bodies: Names,
@@ -100,7 +100,7 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
 /// The case by its analysis.
 fn case(tree: &Node, names: &AllNames, file: &Path, problems: &mut Problems) -> Option<AnyCase> {
     let analysis = CaseHead::analysis(tree.get("case")?);
-    match analysis.map_or(Analysis::PlaneStrain, |own| *own) {
+    match analysis.map_or(Analysis::PlaneStrain, |value| *value) {
         Analysis::Space => space::build(tree, names, file, problems).map(AnyCase::Space),
         Analysis::PlaneStrain => in_plane(tree, names, file, problems).map(AnyCase::Plane),
         Analysis::Axisymmetric => in_plane(tree, names, file, problems)
@@ -127,12 +127,12 @@ fn in_plane(
     file: &Path,
     problems: &mut Problems,
 ) -> Option<Case<2>> {
-    let own = things(Root::<2>::bodies(tree));
+    let tables = things(Root::<2>::bodies(tree));
     let stages = things(Root::<2>::stages(tree));
-    let parts = bodies::bodies::<bodies::Plane, _>(tree, (&own, &stages), names, problems);
+    let parts = bodies::bodies::<bodies::Plane, _>(tree, (&tables, &stages), names, problems);
     let outlines = rigid::plane::outlines(tree);
     let parts = (parts, outlines.as_slice());
-    let basics = GridAndBodies::new(tree, names, (&own, &stages), parts, problems);
+    let basics = GridAndBodies::new(tree, names, (&tables, &stages), parts, problems);
     let GridAndBodies {
         bodies,
         materials,
@@ -140,13 +140,13 @@ fn in_plane(
         ..
     } = &basics;
     let site = Site::new(basics.frame.clone(), bodies, sequence);
-    bodies::check((tree, &own), names, (bodies, sequence), &site, problems);
+    bodies::check((tree, &tables), names, (bodies, sequence), &site, problems);
     let boundaries = Root::boundaries(tree).ok();
     let boundaries =
-        boundaries.and_then(|own| boundaries::boundaries(&own, site.frame.as_ref(), problems));
+        boundaries.and_then(|table| boundaries::boundaries(&table, site.frame.as_ref(), problems));
     let layers = Layers {
         tree,
-        own: &own,
+        own: &tables,
         bodies,
         materials,
         site: &site,
@@ -164,7 +164,7 @@ fn in_plane(
     let frame = site.frame.as_ref();
     rigid::apart::check((tree, frame), &rigid, (&stages, sequence), problems);
     let held_by = (boundaries.as_ref(), rigid.as_slice());
-    bodies::check_support(&own, bodies, held_by, &site, problems);
+    bodies::check_support(&tables, bodies, held_by, &site, problems);
     let holds = Holds::new(boundaries.as_ref(), &rigid, (&loads, materials));
     let ground = (&bodies[..], sequence);
     sides::check((tree, frame), &stages, ground, &holds, problems);
@@ -204,7 +204,7 @@ fn in_plane(
     assemble::assemble((&context, file), &basics, upon, built, problems)
 }
 
-/// The stages on what is there, with the checks that look at several of them.
+/// The stages on all other parts, with the checks of several of them.
 fn stages_on<const D: usize>(
     context: &Context<'_, D>,
     rigid: &[Option<RigidPart<D>>],
@@ -222,7 +222,7 @@ fn stages_on<const D: usize>(
 
 /// The head of the report.
 fn title_block(case: &CaseHead) -> TitleBlock {
-    let words = |own: &Option<At<String>>| own.as_ref().map(|own| own.value.clone());
+    let words = |key: &Option<At<String>>| key.as_ref().map(|text| text.value.clone());
     TitleBlock {
         project: words(&case.project),
         client: words(&case.client),
@@ -250,7 +250,7 @@ fn gravity(tree: &Node) -> Option<f64> {
     Some(*gravity)
 }
 
-/// Remarks on gravity that no stage raises: whoever states none is told too, as it is there by default.
+/// Warns of gravity that no stage raises, also where none is stated, as it is there by default.
 fn acts(tree: &Node, problems: &mut Problems) {
     let stages = things(Root::<2>::stages(tree));
     let raises = |form: &StageForm| {
@@ -263,13 +263,13 @@ fn acts(tree: &Node, problems: &mut Problems) {
                 | StageForm::RunOut(_)
         )
     };
-    let all = tree.get("stages").map_or(0, |own| own.items().len());
+    let all = tree.get("stages").map_or(0, |list| list.items().len());
     if let Some(first) = stages.first().and_then(Option::as_ref)
         && stages.len() == all
-        && gravity(tree).is_some_and(|own| own > 0.0)
+        && gravity(tree).is_some_and(|value| value > 0.0)
         && stages
             .iter()
-            .all(|own| own.as_ref().is_some_and(|own| !raises(&own.form)))
+            .all(|stage| stage.as_ref().is_some_and(|stage| !raises(&stage.form)))
     {
         problems
             .warning(
@@ -298,7 +298,7 @@ fn header(tree: &Node, problems: &mut Problems) {
     if gravity(tree) == Some(0.0) {
         for stage in things(Root::<2>::stages(tree)).into_iter().flatten() {
             let common = stage.common.as_ref();
-            let consolidates = common.is_ok_and(|own| !matches!(own.consolidation, Ok(None)));
+            let consolidates = common.is_ok_and(|table| !matches!(table.consolidation, Ok(None)));
             let does_more = consolidates || !stage.installs().is_empty();
             if let (StageForm::Gravity(_) | StageForm::K0(_), false) = (&*stage.form, does_more) {
                 let kind = stage.form.name();

@@ -42,93 +42,93 @@ fn memory(stated: Option<&At<String>>, problems: &mut Problems) -> Option<Memory
 const LOOSE: f64 = 1e-3;
 
 /// Newton's method, step cutting, linear solver.
-pub(super) fn solver(own: &keys::Solver, problems: &mut Problems) -> SolverSettings {
-    let linear = match *own.linear {
+pub(super) fn solver(table: &keys::Solver, problems: &mut Problems) -> SolverSettings {
+    let linear = match *table.linear {
         LinearSolver::Auto => SolverKind::Auto,
         LinearSolver::Multigrid => SolverKind::Multigrid,
         LinearSolver::Single => SolverKind::Single,
     };
-    if *own.tolerance > LOOSE {
+    if *table.tolerance > LOOSE {
         problems
             .warning(
-                own.tolerance.place,
-                format!("tolerance = {} is loose", number(*own.tolerance)),
+                table.tolerance.place,
+                format!("tolerance = {} is loose", number(*table.tolerance)),
             )
             .help("forces out of balance carry a load that nothing stands for: 1e-6 to 1e-4 tells a factor of safety");
     }
     SolverSettings {
-        tolerance: *own.tolerance,
-        max_iterations: *own.max_iterations,
-        cuts: *own.step_cutting.times as u32,
-        cut_factor: *own.step_cutting.factor,
+        tolerance: *table.tolerance,
+        max_iterations: *table.max_iterations,
+        cuts: *table.step_cutting.times as u32,
+        cut_factor: *table.step_cutting.factor,
         linear,
-        memory: memory(own.memory.as_ref(), problems),
+        memory: memory(table.memory.as_ref(), problems),
     }
 }
 
 /// A monitor.
 pub(super) fn monitor<const D: usize>(
-    own: &keys::Monitor<D>,
+    monitor: &keys::Monitor<D>,
     soil: &dyn Soil<D>,
     moves: bool,
     problems: &mut Problems,
 ) -> Option<Monitor<D>> {
-    let place = *own.point;
+    let place = *monitor.point;
     if soil.is_known() && !soil.holds_point(&place, soil.round_off()) {
         problems
             .warning(
-                own.point.place,
+                monitor.point.place,
                 format!("the monitor at {} lies outside every body", point(place)),
             )
             .help("the material point nearest to it is watched");
     }
     Some(Monitor {
-        name: own.name.value.clone(),
+        name: monitor.name.value.clone(),
         point: place,
-        record: fields::<D>(&own.record, moves, problems)?,
+        record: fields::<D>(&monitor.record, moves, problems)?,
     })
 }
 
 /// A section.
 pub(super) fn section<const D: usize>(
-    own: &keys::Section<D>,
+    section: &keys::Section<D>,
     about: &About<'_>,
     soil: &dyn Soil<D>,
     problems: &mut Problems,
 ) -> Option<Section<D>> {
-    let (from, to) = (*own.from, *own.to);
+    let (from, to) = (*section.from, *section.to);
     let way: [f64; D] = std::array::from_fn(|axis| to[axis] - from[axis]);
     if length(&way) <= soil.round_off() {
-        problems.error(own.to.place, "this section has no length");
+        problems.error(section.to.place, "this section has no length");
     }
     let along = |t: f64| std::array::from_fn(|axis| from[axis] + t * way[axis]);
     let meets = (0..=50).any(|k| soil.holds_point(&along(f64::from(k) / 50.0), soil.round_off()));
     if soil.is_known() && !meets {
         problems
-            .warning(own.from.place, "this section meets no body")
+            .warning(section.from.place, "this section meets no body")
             .help("it will hold no values");
     }
-    if about.has_cuts && own.name.starts_with("cut-") {
+    if about.has_cuts && section.name.starts_with("cut-") {
         problems
             .error(
-                own.name.place,
+                section.name.place,
                 "tables of planes have names that begin with `cut-`",
             )
             .help("give the section another name");
     }
-    let record = fields::<D>(&own.record, about.moves, problems);
-    let references: Option<Vec<_>> = (own.references.iter())
+    let record = fields::<D>(&section.record, about.moves, problems);
+    let references: Option<Vec<_>> = (section.references.iter())
         .map(|reference| {
             section_reference::<D>(reference.as_ref().ok()?, record.as_deref(), about, problems)
         })
         .collect();
     Some(Section {
-        name: own.name.value.clone(),
+        name: section.name.value.clone(),
         from,
         to,
-        points: *own.points,
+        points: *section.points,
         record: record?,
-        average: match *own.average {
+        average: match *section.average {
             keys::Average::Cell => Average::Cell,
             keys::Average::None => Average::None,
         },
@@ -136,7 +136,7 @@ pub(super) fn section<const D: usize>(
     })
 }
 
-/// What references of sections are read with.
+/// The data for references of sections.
 pub(super) struct About<'a> {
     pub(super) names: &'a AllNames,
     pub(super) stages: &'a [Option<Stage>],
@@ -149,27 +149,27 @@ pub(super) struct About<'a> {
 
 /// A reference of a section that records these fields.
 fn section_reference<const D: usize>(
-    own: &At<keys::SectionReference>,
+    table: &At<keys::SectionReference>,
     record: Option<&[Field]>,
     about: &About<'_>,
     problems: &mut Problems,
 ) -> Option<SectionReference> {
-    let of = fields::<D>(std::slice::from_ref(&own.of), about.moves, problems)?.pop()?;
+    let of = fields::<D>(std::slice::from_ref(&table.of), about.moves, problems)?.pop()?;
     if record.is_some_and(|record| !record.contains(&of)) {
         let name = of.name();
         problems
             .error(
-                own.of.place,
+                table.of.place,
                 format!("the section does not record `{name}`"),
             )
             .help(format!("add \"{name}\" to its `record`"));
         return None;
     }
-    let who = "this reference looks at";
+    let subject = "this reference looks at";
     let stages = &about.names.stages;
-    let stage = stages.find_optional(own.stage.as_ref(), who, problems);
+    let stage = stages.find_optional(table.stage.as_ref(), subject, problems);
     let searches = |stage: &Stage| matches!(stage.kind, StageKind::StrengthReduction(_));
-    if let (Ok(Some(number)), Some(named)) = (stage, &own.stage)
+    if let (Ok(Some(number)), Some(named)) = (stage, &table.stage)
         && about.stages[number].as_ref().is_some_and(searches)
     {
         problems
@@ -181,13 +181,13 @@ fn section_reference<const D: usize>(
         return None;
     }
     let stated = curves::ReferenceKeys {
-        y: own.y.as_ref(),
-        at: own.at.as_ref(),
-        points: own.points.as_ref(),
-        file: own.file.as_ref(),
-        label: &own.label,
-        tolerance: own.tolerance.as_ref(),
-        place: own.place,
+        y: table.y.as_ref(),
+        at: table.at.as_ref(),
+        points: table.points.as_ref(),
+        file: table.file.as_ref(),
+        label: &table.label,
+        tolerance: table.tolerance.as_ref(),
+        place: table.place,
     };
     let reference = curves::reference(&stated, about.file, problems);
     Some(SectionReference {
@@ -198,28 +198,28 @@ fn section_reference<const D: usize>(
 }
 
 /// A plane in which fields are drawn.
-fn cut<const D: usize>(own: &keys::Cut, context: &Context<'_, D>, problems: &mut Problems) -> Cut {
-    let axis = match *own.across {
+fn cut<const D: usize>(cut: &keys::Cut, context: &Context<'_, D>, problems: &mut Problems) -> Cut {
+    let axis = match *cut.across {
         Across::X => 0,
         Across::Y => 1,
         Across::Z => 2,
     };
-    if axis < D && !meets_plane(context.bodies, context.sequence, (axis, *own.at)) {
+    if axis < D && !meets_plane(context.bodies, context.sequence, (axis, *cut.at)) {
         problems
-            .warning(own.at.place, "this plane meets no body")
+            .warning(cut.at.place, "this plane meets no body")
             .help("its table will be empty, and nothing is drawn there");
     }
-    Cut { axis, at: *own.at }
+    Cut { axis, at: *cut.at }
 }
 
-/// What is written, and where.
+/// The files written, and where.
 pub(super) fn output<const D: usize>(
-    own: &keys::Output,
+    table: &keys::Output,
     context: &Context<'_, D>,
     moves: bool,
     problems: &mut Problems,
 ) -> Option<Output> {
-    let folder = own.folder.as_ref()?;
+    let folder = table.folder.as_ref()?;
     if folder.trim().is_empty() || folder.chars().any(char::is_control) {
         problems
             .error(folder.place, "this is not the name of a folder")
@@ -228,19 +228,19 @@ pub(super) fn output<const D: usize>(
     }
     Some(Output {
         folder: PathBuf::from(&folder.value),
-        paraview: match **own.paraview.every.as_ref()? {
+        paraview: match **table.paraview.every.as_ref()? {
             Either::First(OutputTime::Never) => Every::Never,
             Either::First(OutputTime::Stage) => Every::Stage,
             Either::First(OutputTime::Film) => Every::Film,
             Either::Second(steps) => Every::Steps(steps),
         },
-        figures: fields::<D>(&own.figures, moves, problems)?,
-        cuts: (own.cuts.iter())
+        figures: fields::<D>(&table.figures, moves, problems)?,
+        cuts: (table.cuts.iter())
             .flat_map(|cuts| cuts.iter())
-            .map(|own| cut(own, context, problems))
+            .map(|plane| cut(plane, context, problems))
             .collect(),
-        report: *own.report,
-        checkpoint_every: *own.checkpoint.every,
-        checkpoint_keep: *own.checkpoint.keep,
+        report: *table.report,
+        checkpoint_every: *table.checkpoint.every,
+        checkpoint_keep: *table.checkpoint.keep,
     })
 }

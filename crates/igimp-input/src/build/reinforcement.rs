@@ -28,10 +28,10 @@ const MOST_PLACES: f64 = 100.0;
 /// A head this near to an edge of the soil lies on it, as a share of the cell \[-\].
 const NEAR: f64 = 0.05;
 
-/// What members ask of the soil that holds them.
+/// Soil that holds members.
 pub(super) trait Holding<const D: usize>: Soil<D> {
     /// Refuses a member that there is none of in this analysis.
-    fn refuses(&self, own: &Member<D>, problems: &mut Problems) -> bool;
+    fn refuses(&self, member: &Member<D>, problems: &mut Problems) -> bool;
 
     /// Corners of the plate at the head of a member.
     fn plate(&self, part: &ReinforcementPart<D>, width: f64) -> Vec<[f64; D]>;
@@ -45,13 +45,13 @@ pub(super) fn members<const D: usize>(
     problems: &mut Problems,
 ) -> Vec<Option<ReinforcementPart<D>>> {
     let all = things(Root::<D>::reinforcement(tree));
-    let member = |own: Thing<Member<D>>| {
-        let own = own?;
-        if soil.refuses(&own, problems) {
+    let member = |member: Thing<Member<D>>| {
+        let member = member?;
+        if soil.refuses(&member, problems) {
             return None;
         }
-        let (mut part, width) = part(&own, soil, stages, problems)?;
-        if let MemberForm::Geotextile(Ok(form)) = &*own.form {
+        let (mut part, width) = part(&member, soil, stages, problems)?;
+        if let MemberForm::Geotextile(Ok(form)) = &*member.form {
             let stated = [&form.head_capacity, &form.end_capacity].map(Option::is_some);
             for (k, ends) in ends_of(&part.line).into_iter().enumerate() {
                 if !stated[k] && goes_on(tree, ends, soil) {
@@ -61,7 +61,7 @@ pub(super) fn members<const D: usize>(
         }
         if width > 0.0 {
             let plate = soil.plate(&part, width);
-            if is_off_soil((&own, &part.line[0]), &plate, soil, problems) {
+            if is_off_soil((&member, &part.line[0]), &plate, soil, problems) {
                 return None;
             }
             part.plate = Some(plate);
@@ -72,7 +72,7 @@ pub(super) fn members<const D: usize>(
 }
 
 impl Holding<2> for Site {
-    fn refuses(&self, _own: &Member<2>, _problems: &mut Problems) -> bool {
+    fn refuses(&self, _member: &Member<2>, _problems: &mut Problems) -> bool {
         false
     }
 
@@ -97,40 +97,40 @@ struct MemberKeys<'a, const D: usize> {
 
 fn stated<const D: usize>(form: &MemberForm<D>) -> Option<MemberKeys<'_, D>> {
     Some(match form {
-        MemberForm::Anchor(own) => {
-            let own = own.as_ref().ok()?;
+        MemberForm::Anchor(anchor) => {
+            let anchor = anchor.as_ref().ok()?;
             MemberKeys {
                 kind: ReinforcementKind::Anchor,
-                line: vec![*own.ends.head, *own.ends.end],
-                last: own.ends.end.place,
-                head_capacity: own.head_capacity.as_ref(),
+                line: vec![*anchor.ends.head, *anchor.ends.end],
+                last: anchor.ends.end.place,
+                head_capacity: anchor.head_capacity.as_ref(),
                 end_capacity: None,
-                bonded_length: Some(&own.bonded_length),
-                prestress: own.prestress.as_ref(),
-                plate: *own.plate.width,
+                bonded_length: Some(&anchor.bonded_length),
+                prestress: anchor.prestress.as_ref(),
+                plate: *anchor.plate.width,
             }
         }
-        MemberForm::Nail(own) => {
-            let own = own.as_ref().ok()?;
+        MemberForm::Nail(nail) => {
+            let nail = nail.as_ref().ok()?;
             MemberKeys {
                 kind: ReinforcementKind::Nail,
-                line: vec![*own.ends.head, *own.ends.end],
-                last: own.ends.end.place,
-                head_capacity: Some(&own.head_capacity),
+                line: vec![*nail.ends.head, *nail.ends.end],
+                last: nail.ends.end.place,
+                head_capacity: Some(&nail.head_capacity),
                 end_capacity: None,
                 bonded_length: None,
                 prestress: None,
-                plate: *own.plate.width,
+                plate: *nail.plate.width,
             }
         }
-        MemberForm::Geotextile(own) => {
-            let own = own.as_ref().ok()?;
+        MemberForm::Geotextile(textile) => {
+            let textile = textile.as_ref().ok()?;
             MemberKeys {
                 kind: ReinforcementKind::Geotextile,
-                line: own.points.iter().map(|own| **own).collect(),
-                last: own.points.place,
-                head_capacity: own.head_capacity.as_ref(),
-                end_capacity: own.end_capacity.as_ref(),
+                line: textile.points.iter().map(|point| **point).collect(),
+                last: textile.points.place,
+                head_capacity: textile.head_capacity.as_ref(),
+                end_capacity: textile.end_capacity.as_ref(),
                 bonded_length: None,
                 prestress: None,
                 plate: 0.0,
@@ -141,16 +141,16 @@ fn stated<const D: usize>(form: &MemberForm<D>) -> Option<MemberKeys<'_, D>> {
 
 /// A member without its plate, and the width of that.
 fn part<const D: usize>(
-    own: &Member<D>,
+    member: &Member<D>,
     soil: &impl Soil<D>,
     stages: &[Thing<Stage>],
     problems: &mut Problems,
 ) -> Option<(ReinforcementPart<D>, f64)> {
-    let name = own.name.as_str();
+    let name = member.name.as_str();
     let shown = clip(name, 40);
-    let (stated, common) = (stated(&own.form)?, own.common.as_ref().ok()?);
+    let (stated, common) = (stated(&member.form)?, member.common.as_ref().ok()?);
     let kind = stated.kind;
-    let value = |own: Option<&At<f64>>| own.map(|own| **own);
+    let value = |key: Option<&At<f64>>| key.map(|x| **x);
     let at_head = match kind {
         ReinforcementKind::Geotextile => 0.0,
         ReinforcementKind::Anchor | ReinforcementKind::Nail => *common.capacity,
@@ -170,7 +170,7 @@ fn part<const D: usize>(
         plate: None,
         prestress: value(stated.prestress),
         reduces_bond: *common.reduce_bond,
-        from_start: !all_installed(stages).any(|own| own.value == name),
+        from_start: !all_installed(stages).any(|named| named.value == name),
     };
     let short = part
         .line
@@ -200,7 +200,7 @@ fn part<const D: usize>(
             length - bonded
         };
     }
-    let within = in_soil(own.name.place, &part, soil, problems);
+    let within = in_soil(member.name.place, &part, soil, problems);
     holds(&part, common.bond.place, stated.prestress, problems);
     within.then_some((part, stated.plate))
 }
@@ -229,7 +229,7 @@ fn goes_on<const D: usize>(tree: &Node, [end, next]: [[f64; D]; 2], soil: &impl 
 
 /// Refuses a plate of which a part is farther off any soil than the cells that carry it.
 fn is_off_soil<const D: usize>(
-    (own, head): (&Member<D>, &[f64; D]),
+    (member, head): (&Member<D>, &[f64; D]),
     plate: &[[f64; D]],
     soil: &impl Soil<D>,
     problems: &mut Problems,
@@ -259,10 +259,10 @@ fn is_off_soil<const D: usize>(
     };
     problems
         .error(
-            own.name.place,
+            member.name.place,
             format!(
                 "the plate of `{}`, about its head at {}, reaches {}, where there is no body",
-                clip(&own.name, 40),
+                clip(&member.name, 40),
                 point(*head),
                 point(*at)
             ),
@@ -273,7 +273,7 @@ fn is_off_soil<const D: usize>(
 
 /// Everything that stages install.
 fn all_installed(stages: &[Thing<Stage>]) -> impl Iterator<Item = &At<String>> {
-    stages.iter().flatten().flat_map(|own| own.installs())
+    stages.iter().flatten().flat_map(|stage| stage.installs())
 }
 
 /// Refuses a member with a head, or a bonded part, where no soil is.
@@ -348,7 +348,7 @@ fn plate(part: &ReinforcementPart<2>, width: f64, site: &Site) -> [[f64; 2]; 2] 
     [-half, half].map(|by| [head[0] + by * along[0], head[1] + by * along[1]])
 }
 
-/// Refuses what carries nothing, and a prestress that the member does not carry.
+/// Refuses a member that carries nothing, and a prestress that it cannot carry.
 fn holds<const D: usize>(
     part: &ReinforcementPart<D>,
     bond: Place,
@@ -403,7 +403,7 @@ pub(super) fn installs<const D: usize>(
     problems: &mut Problems,
 ) -> Option<Vec<usize>> {
     let context = about.context;
-    let who = format!("stage `{}` installs", about.name);
+    let subject = format!("stage `{}` installs", about.name);
     let values = about.stage.installs();
     if let Some(value) = values.first()
         && let StageForm::StrengthReduction(_) | StageForm::RunOut(_) = *about.stage.form
@@ -418,14 +418,14 @@ pub(super) fn installs<const D: usize>(
         return None;
     }
     let mut members = Vec::new();
-    for value in values {
-        let member = context.names.reinforcement.find(value, &who, problems)?;
-        let mut before = context.before(about.index).flat_map(|own| own.installs());
-        let earlier = before.any(|own| own.value == value.value);
+    for name in values {
+        let member = context.names.reinforcement.find(name, &subject, problems)?;
+        let mut before = context.before(about.index).flat_map(|past| past.installs());
+        let earlier = before.any(|other| other.value == name.value);
         if earlier || members.contains(&member) {
             problems
                 .error(
-                    value.place,
+                    name.place,
                     format!(
                         "the reinforcement `{}` is installed twice",
                         clip(context.names.reinforcement.name(member), 40)
@@ -448,13 +448,13 @@ pub(super) fn check_stressed<const D: usize>(
 ) {
     let all = things(Root::<D>::reinforcement(about.context.tree));
     let is_stressed = |&&member: &&usize| match all.get(member) {
-        Some(Some(own)) => {
-            matches!(&*own.form, MemberForm::Anchor(Ok(own)) if own.prestress.is_some())
+        Some(Some(table)) => {
+            matches!(&*table.form, MemberForm::Anchor(Ok(anchor)) if anchor.prestress.is_some())
         }
         _ => false,
     };
-    let early = (stop.displacement.as_ref().map(|own| own.key_place))
-        .or(stop.load_grows_less_than.as_ref().map(|own| own.key_place));
+    let early = (stop.displacement.as_ref().map(|key| key.key_place))
+        .or(stop.load_grows_less_than.as_ref().map(|key| key.key_place));
     if let (Some(place), Some(&member)) = (early, members.iter().find(is_stressed)) {
         let name = clip(about.context.names.reinforcement.name(member), 40);
         problems
@@ -481,8 +481,8 @@ pub(super) fn check_held<const D: usize>(
         return;
     }
     let all = things(Root::<D>::reinforcement(context.tree));
-    for (part, own) in std::iter::zip(members, &all) {
-        let (Some(part), Some(own)) = (part, own) else {
+    for (part, member) in std::iter::zip(members, &all) {
+        let (Some(part), Some(member)) = (part, member) else {
             continue;
         };
         let installs =
@@ -508,7 +508,7 @@ pub(super) fn check_held<const D: usize>(
         };
         problems
             .error(
-                own.name.place,
+                member.name.place,
                 format!(
                     "the {} `{}` is held at {}, where no soil is {when}",
                     part.kind.name(),
@@ -527,12 +527,12 @@ pub(super) fn check_searches(stages: &[Thing<Stage>], names: &AllNames, problems
         return;
     };
     for stage in stages.iter().flatten() {
-        if let StageForm::StrengthReduction(Ok(own)) = &*stage.form
-            && *own.path == ReductionPath::Gravity
+        if let StageForm::StrengthReduction(Ok(search)) = &*stage.form
+            && *search.path == ReductionPath::Gravity
         {
             problems
                 .error(
-                    own.path.place,
+                    search.path.place,
                     format!(
                         "this search raises gravity on undeformed bodies, in which nothing is installed, as \
                          `{}`",

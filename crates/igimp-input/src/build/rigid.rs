@@ -1,4 +1,4 @@
-//! Rigid bodies: what their sides are like, and whether the grid has a place for them.
+//! Rigid bodies: the interfaces of their sides, and their place in the grid.
 
 pub(crate) mod apart;
 mod narrow;
@@ -26,10 +26,10 @@ use crate::build::Thing;
 /// A body is at least so many cells thick.
 const LEAST_CELLS: f64 = 2.0;
 
-/// A shape, and what is told of it.
+/// A shape, its sides and thickness.
 pub(super) struct Basis<const D: usize> {
     pub(super) shape: Arc<dyn RigidForm<D>>,
-    /// The point that displacement and forces are told of \[m\].
+    /// The point of the printed displacement and forces \[m\].
     pub(super) reference: [f64; D],
     pub(super) sides: Sides,
     /// \[m\].
@@ -43,16 +43,16 @@ pub(super) struct Sides {
     pub(super) names: &'static [&'static str],
 }
 
-/// What rigid bodies ask of what is around them.
+/// The surroundings of rigid bodies.
 pub(super) trait Room<const D: usize> {
     /// The grid.
     fn frame(&self) -> Option<&Frame<D>>;
 
     /// The shape of a body.
-    fn basis(&self, own: &At<RigidBody<D>>, problems: &mut Problems) -> Option<Basis<D>>;
+    fn basis(&self, body: &At<RigidBody<D>>, problems: &mut Problems) -> Option<Basis<D>>;
 
     /// Refuses a body that has no place beside the soil.
-    fn check(&self, own: &RigidBody<D>, part: &RigidPart<D>, problems: &mut Problems);
+    fn check(&self, body: &RigidBody<D>, part: &RigidPart<D>, problems: &mut Problems);
 
     /// Whether the grid follows something else, and the help where it cannot follow two.
     fn followed(&self) -> (bool, &'static str);
@@ -66,11 +66,11 @@ pub(super) fn rigid<const D: usize>(
     problems: &mut Problems,
 ) -> Vec<Option<RigidPart<D>>> {
     let all = things(Root::<D>::rigid(tree));
-    let part = |own: &Thing<RigidBody<D>>| {
-        let own = own.as_ref()?;
-        let basis = room.basis(own, problems);
-        let part = part_of(own, basis, (room.frame(), materials), problems)?;
-        room.check(own, &part, problems);
+    let part = |body: &Thing<RigidBody<D>>| {
+        let body = body.as_ref()?;
+        let basis = room.basis(body, problems);
+        let part = part_of(body, basis, (room.frame(), materials), problems)?;
+        room.check(body, &part, problems);
         Some(part)
     };
     let parts = all.iter().map(part).collect();
@@ -80,12 +80,12 @@ pub(super) fn rigid<const D: usize>(
 
 /// The rigid body that a shape becomes.
 fn part_of<const D: usize>(
-    own: &RigidBody<D>,
+    body: &RigidBody<D>,
     basis: Option<Basis<D>>,
     (frame, materials): (Option<&Frame<D>>, &[Option<Material>]),
     problems: &mut Problems,
 ) -> Option<RigidPart<D>> {
-    let common = own.common.as_ref().ok()?;
+    let common = body.common.as_ref().ok()?;
     let whole = RigidInterface {
         shear: shear(&common.interface, materials, problems)?,
         tension: tension(
@@ -100,12 +100,12 @@ fn part_of<const D: usize>(
             .help("add weight = \"10 kN/m\", in space \"10 kN\"");
     }
     let basis = basis?;
-    let interfaces = all_sides(own, whole, &basis.sides, materials, problems);
+    let interfaces = all_sides(body, whole, &basis.sides, materials, problems);
     let part = RigidPart {
-        name: own.name.value.clone(),
+        name: body.name.value.clone(),
         reference: basis.reference,
         centre_of_mass: (common.centre_of_mass.as_ref())
-            .map_or_else(|| basis.shape.centroid(), |own| **own),
+            .map_or_else(|| basis.shape.centroid(), |point| **point),
         shape: basis.shape,
         interfaces: interfaces?,
         stiffness: *common.stiffness,
@@ -117,7 +117,7 @@ fn part_of<const D: usize>(
         most_penetration: *common.most_penetration,
     };
     if let Some(frame) = frame {
-        in_grid(own, common, (&part, basis.thickness), frame, problems);
+        in_grid(body, common, (&part, basis.thickness), frame, problems);
     }
     Some(part)
 }
@@ -128,7 +128,7 @@ fn tension(
     limit: Option<&At<f64>>,
     problems: &mut Problems,
 ) -> Option<Tension> {
-    let stated = stated.map(|own| **own);
+    let stated = stated.map(|value| **value);
     if let (Some(limit), Some(keys::Tension::Bonded)) = (limit, stated) {
         problems
             .error(
@@ -150,12 +150,12 @@ fn shear(
     materials: &[Option<Material>],
     problems: &mut Problems,
 ) -> Option<RigidShear> {
-    let own = match &**stated {
+    let limited = match &**stated {
         Either::First(Interface::Smooth) => return Some(RigidShear::Smooth),
         Either::First(Interface::Rough) => return Some(RigidShear::Rough),
-        Either::Second(own) => own,
+        Either::Second(limited) => limited,
     };
-    let friction = match (&own.friction, &own.angle) {
+    let friction = match (&limited.friction, &limited.angle) {
         (Some(_), Some(angle)) => {
             problems
                 .error(angle.place, "both `friction` and `angle` are given")
@@ -169,11 +169,11 @@ fn shear(
         (None, angle) => angle.as_ref().map_or(0.0, |angle| angle.tan()),
     };
     if !(0.0..=1e3).contains(&friction) {
-        let place = own.angle.as_ref().map_or(stated.place, |angle| angle.place);
+        let place = limited.angle.as_ref().map_or(stated.place, |key| key.place);
         problems.error(place, "an angle of friction is less than 90 deg");
         return None;
     }
-    let adhesion = match (&own.adhesion, &own.adhesion_share) {
+    let adhesion = match (&limited.adhesion, &limited.adhesion_share) {
         (Some(_), Some(share)) => {
             problems
                 .error(
@@ -194,7 +194,7 @@ fn shear(
                     .help("it is a share: 1 is all of the strength, 0.5 half of it");
             }
             for material in materials.iter().flatten() {
-                let what = match material.strength {
+                let lack = match material.strength {
                     Strength::Elastic => "is elastic and has no strength",
                     Strength::HoekBrown(_) => "is rock by Hoek and Brown and has no cohesion",
                     Strength::ModifiedCamClay(_) => "is modified Cam-clay and has no cohesion",
@@ -213,17 +213,17 @@ fn shear(
                 let name = clip(&material.name, 40);
                 problems.warning(
                     share.place,
-                    format!("the material `{name}` {what} to take a share of: no adhesion where it touches"),
+                    format!("the material `{name}` {lack} to take a share of: no adhesion where it touches"),
                 );
             }
             Adhesion::Share(**share)
         }
-        (stress, None) => Adhesion::Stress(stress.as_ref().map_or(0.0, |own| **own)),
+        (stress, None) => Adhesion::Stress(stress.as_ref().map_or(0.0, |value| **value)),
     };
     Some(RigidShear::Limited { friction, adhesion })
 }
 
-/// Coefficients of friction above this are told of \[-\]: 56 deg.
+/// Coefficients of friction above this are reported \[-\]: 56 deg.
 const MOST_FRICTION: f64 = 1.5;
 
 /// Warns of a coefficient of friction that may be meant to be an angle.
@@ -259,9 +259,9 @@ fn all_sides<const D: usize>(
 ) -> Option<Vec<RigidInterface>> {
     let Sides { count, names } = sides;
     let mut interfaces = vec![whole; *count];
-    for own in body.common.as_ref().ok()?.sides.iter() {
-        let own = own.as_ref().ok()?;
-        let side = match *own.side {
+    for table in body.common.as_ref().ok()?.sides.iter() {
+        let table = table.as_ref().ok()?;
+        let side = match *table.side {
             Either::First(number) => number.checked_sub(1),
             Either::Second(name) => names.iter().position(|known| *known == name.name()),
         };
@@ -276,17 +276,17 @@ fn all_sides<const D: usize>(
             };
             let kind = body.form.name();
             problems
-                .error(own.side.place, format!("a {kind} has no such side"))
+                .error(table.side.place, format!("a {kind} has no such side"))
                 .help(format!("sides here: {known}"));
             return None;
         };
-        let limit = own.tension_limit.as_ref();
+        let limit = table.tension_limit.as_ref();
         interfaces[side] = RigidInterface {
-            shear: match &own.interface {
+            shear: match &table.interface {
                 Some(stated) => shear(stated, materials, problems)?,
                 None => whole.shear,
             },
-            tension: tension(own.tension.as_ref(), limit, problems).unwrap_or(whole.tension),
+            tension: tension(table.tension.as_ref(), limit, problems).unwrap_or(whole.tension),
         };
     }
     Some(interfaces)
@@ -294,7 +294,7 @@ fn all_sides<const D: usize>(
 
 /// Refuses a body that lies outside the grid, or is too thin for it.
 fn in_grid<const D: usize>(
-    own: &RigidBody<D>,
+    body: &RigidBody<D>,
     common: &RigidCommon<D>,
     (part, thickness): (&RigidPart<D>, f64),
     frame: &Frame<D>,
@@ -305,7 +305,7 @@ fn in_grid<const D: usize>(
     if (0..D).any(|k| upper[k] <= frame.lower[k] || lower[k] >= frame.upper[k]) {
         problems
             .error(
-                own.name.place,
+                body.name.place,
                 format!("the rigid body `{name}` lies outside the grid domain"),
             )
             .help("soil is only within the domain: move the body, or extend [grid] domain");
@@ -313,12 +313,12 @@ fn in_grid<const D: usize>(
     }
     let axes = frame.axes.iter().enumerate();
     let cell = axes
-        .map(|(axis, own)| own.smallest_between(lower[axis], upper[axis]))
+        .map(|(axis, spec)| spec.smallest_between(lower[axis], upper[axis]))
         .fold(f64::INFINITY, f64::min);
     if thickness < LEAST_CELLS * cell * (1.0 - 1e-9) {
         problems
             .error(
-                own.name.place,
+                body.name.place,
                 format!(
                     "the rigid body `{name}` is {} m thick, thinner than two cells of {} m",
                     number(thickness),
@@ -348,7 +348,7 @@ fn in_grid<const D: usize>(
         Err(error) => {
             problems
                 .error(
-                    own.name.place,
+                    body.name.place,
                     format!("the rigid body `{name}` cannot be made: {error}"),
                 )
                 .help(if D == 2 {
@@ -389,12 +389,12 @@ fn follow_once<const D: usize>(
     (mut is_taken, help): (bool, &str),
     problems: &mut Problems,
 ) {
-    let common = bodies.iter().flatten().flat_map(|own| &own.common);
-    for own in common {
-        if *own.grid_follows && std::mem::replace(&mut is_taken, true) {
+    let common = bodies.iter().flatten().flat_map(|body| &body.common);
+    for table in common {
+        if *table.grid_follows && std::mem::replace(&mut is_taken, true) {
             problems
                 .error(
-                    own.grid_follows.place,
+                    table.grid_follows.place,
                     "the grid follows something else already",
                 )
                 .help(help);

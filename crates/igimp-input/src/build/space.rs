@@ -1,4 +1,4 @@
-//! A case in space from a completed tree: what plane strain has, without what is drawn in the plane.
+//! A case in space from a completed tree: plane strain without the parts drawn in the plane.
 
 use std::path::Path;
 
@@ -96,11 +96,11 @@ pub(super) fn build(
     file: &Path,
     problems: &mut Problems,
 ) -> Option<Case<3>> {
-    refuse_what_is_of_the_plane(tree, problems);
-    let own = things(Root::<3>::bodies(tree));
+    refuse_plane_only(tree, problems);
+    let tables = things(Root::<3>::bodies(tree));
     let stages = things(Root::<3>::stages(tree));
-    let parts = bodies::bodies::<bodies::Space, _>(tree, (&own, &stages), names, problems);
-    let basics = GridAndBodies::new(tree, names, (&own, &stages), (parts, &[]), problems);
+    let parts = bodies::bodies::<bodies::Space, _>(tree, (&tables, &stages), names, problems);
+    let basics = GridAndBodies::new(tree, names, (&tables, &stages), (parts, &[]), problems);
     let GridAndBodies {
         frame,
         bodies,
@@ -110,16 +110,16 @@ pub(super) fn build(
     } = &basics;
     let frame = frame.as_ref();
     let soil = Solids::new(bodies, frame);
-    check_bodies((tree, &own), frame, (bodies, sequence), &soil, problems);
+    check_bodies((tree, &tables), frame, (bodies, sequence), &soil, problems);
     let boundaries = Root::boundaries(tree).ok();
-    let boundaries = boundaries.and_then(|own| boundaries::boundaries(&own, frame, problems));
+    let boundaries = boundaries.and_then(|table| boundaries::boundaries(&table, frame, problems));
     let loads = loads::loads(tree, &soil, (&stages, sequence), problems);
     let rigid = rigid::rigid(tree, &rigid::space::Around(frame), materials, problems);
     rigid::apart::check((tree, frame), &rigid, (&stages, sequence), problems);
     let holds = Holds::new(boundaries.as_ref(), &rigid, (&loads, materials));
     let ground = (&bodies[..], sequence);
     sides::check((tree, frame), &stages, ground, &holds, problems);
-    check_in_space(&own, (bodies, sequence), &soil, problems);
+    check_in_space(&tables, (bodies, sequence), &soil, problems);
     rigid::stage::check_use(&things(Root::<3>::rigid(tree)), &stages, names, problems);
     let around = water::Around {
         own: &things(Root::<3>::water(tree)),
@@ -157,8 +157,8 @@ pub(super) fn build(
     assemble::assemble((&context, file), &basics, upon, built, problems)
 }
 
-/// Reports what case files can say of the plane only.
-fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
+/// Reports keys that belong to the plane only.
+fn refuse_plane_only(tree: &Node, problems: &mut Problems) {
     for load in things(Root::<3>::loads(tree)).into_iter().flatten() {
         if let LoadForm::RigidFooting(_) = *load.form {
             problems
@@ -182,13 +182,13 @@ fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
 
 /// Checks the bodies against the domain and each other.
 fn check_bodies(
-    (tree, own): (&Node, &[Thing<Body>]),
+    (tree, tables): (&Node, &[Thing<Body>]),
     frame: Option<&Frame<3>>,
     (bodies, sequence): (&[Option<BodyPart<3>>], &Sequence),
     soil: &Solids,
     problems: &mut Problems,
 ) {
-    let place = |index: usize| own[index].as_ref().map(|own| own.place);
+    let place = |index: usize| tables[index].as_ref().map(|body| body.place);
     let Some(frame) = frame else { return };
     let slack = soil.round_off;
     let (lower, upper) = (

@@ -1,4 +1,4 @@
-//! Stages: what each needs from loads, materials and the stages before it.
+//! Stages: the needs of each from loads, materials and the stages before it.
 
 mod at_rest;
 mod consolidation;
@@ -30,28 +30,28 @@ pub(super) fn stages<const D: usize>(
     problems: &mut Problems,
 ) -> Vec<Option<Stage>> {
     (context.stages.iter().enumerate())
-        .map(|(index, own)| stage(context, index, own.as_ref()?, problems))
+        .map(|(index, table)| stage(context, index, table.as_ref()?, problems))
         .collect()
 }
 
 fn stage<const D: usize>(
     context: &Context<'_, D>,
     index: usize,
-    own: &At<keys::Stage>,
+    table: &At<keys::Stage>,
     problems: &mut Problems,
 ) -> Option<Stage> {
-    let name = clip(&own.name, 40);
+    let name = clip(&table.name, 40);
     let about = About {
         context,
         index,
-        stage: own,
+        stage: table,
         name: &name,
     };
     let kind = kind(&about, problems);
-    let common = own.common.as_ref().ok()?;
+    let common = table.common.as_ref().ok()?;
     let start_from = start_from(&about, common, problems);
     let stop_when = common.stop_when.as_ref().ok();
-    let stop_when = stop_when.and_then(|own| stop_when_of(&about, own, problems));
+    let stop_when = stop_when.and_then(|stop| stop_when_of(&about, stop, problems));
     let install = super::reinforcement::installs(&about, problems);
     if let (Some(members), Ok(stop)) = (&install, &common.stop_when) {
         super::reinforcement::check_stressed(&about, members, stop, problems);
@@ -59,10 +59,10 @@ fn stage<const D: usize>(
     let consolidation = consolidation::consolidation(&about, common, problems);
     Some(Stage {
         drained: **common.drained.as_ref().ok()?,
-        name: own.name.known()?,
+        name: table.name.known()?,
         kind: kind?,
         steps: **common.steps.as_ref().ok()?,
-        geometry: geometry_of(&own.form),
+        geometry: geometry_of(&table.form),
         start_from: start_from.ok()?,
         reset_displacements: **common.reset_displacements.as_ref().ok()?,
         install: install?,
@@ -76,34 +76,34 @@ fn kind<const D: usize>(about: &About<'_, D>, problems: &mut Problems) -> Option
         at_rest::check(about, problems);
     }
     match &*about.stage.form {
-        StageForm::Gravity(own) => Some(gravity(own.as_ref().ok()?)),
+        StageForm::Gravity(form) => Some(gravity(form.as_ref().ok()?)),
         StageForm::K0(_) => {
             k0(about, problems);
             Some(StageKind::K0)
         }
-        StageForm::Load(own) => load(about, own.as_ref().ok()?, problems),
-        StageForm::Displacement(own) => displacement(about, own.as_ref().ok()?, problems),
+        StageForm::Load(form) => load(about, form.as_ref().ok()?, problems),
+        StageForm::Displacement(form) => displacement(about, form.as_ref().ok()?, problems),
         StageForm::Rigid(_) => super::rigid::stage::stage(about, problems),
-        StageForm::Construction(own) => construction::stage(about, own.as_ref().ok()?, problems),
+        StageForm::Construction(form) => construction::stage(about, form.as_ref().ok()?, problems),
         StageForm::Wait(_) => Some(StageKind::Wait),
-        StageForm::StrengthReduction(own) => {
-            strength_reduction(about, own.as_ref().ok()?, problems)
+        StageForm::StrengthReduction(form) => {
+            strength_reduction(about, form.as_ref().ok()?, problems)
                 .map(StageKind::StrengthReduction)
         }
-        StageForm::RunOut(own) => {
-            run_out(about, own.as_ref().ok()?, problems).map(StageKind::RunOut)
+        StageForm::RunOut(form) => {
+            run_out(about, form.as_ref().ok()?, problems).map(StageKind::RunOut)
         }
-        StageForm::Dynamic(own) => dynamic::stage(about, own.as_ref().ok()?, problems),
+        StageForm::Dynamic(form) => dynamic::stage(about, form.as_ref().ok()?, problems),
     }
 }
 
-fn gravity(own: &keys::Gravity) -> StageKind {
-    let share = |own: &Option<At<f64>>| own.as_ref().map(|own| **own);
+fn gravity(table: &keys::Gravity) -> StageKind {
+    let share = |key: &Option<At<f64>>| key.as_ref().map(|value| **value);
     StageKind::Gravity {
-        factor: *own.factor,
-        horizontal: share(&own.horizontal),
-        across: share(&own.across),
-        vertical: share(&own.vertical),
+        factor: *table.factor,
+        horizontal: share(&table.horizontal),
+        across: share(&table.across),
+        vertical: share(&table.vertical),
     }
 }
 
@@ -125,9 +125,9 @@ fn start_from<const D: usize>(
             .help("remove start_from");
         return Err(Wrong);
     }
-    let who = format!("stage `{}` starts from", about.name);
+    let subject = format!("stage `{}` starts from", about.name);
     let stages = &about.context.names.stages;
-    let from = stages.find(stated, &who, problems).ok_or(Wrong)?;
+    let from = stages.find(stated, &subject, problems).ok_or(Wrong)?;
     if from >= index {
         problems
             .error(stated.place, "start_from has to name an earlier stage")
@@ -142,28 +142,28 @@ fn start_from<const D: usize>(
 
 fn stop_when_of<const D: usize>(
     about: &About<'_, D>,
-    own: &keys::StopWhen,
+    stop: &keys::StopWhen,
     problems: &mut Problems,
 ) -> Option<StopWhen> {
     let form = &about.stage.form;
     let monitor = about
         .context
-        .monitor(own.monitor.as_ref(), about.name, problems);
+        .monitor(stop.monitor.as_ref(), about.name, problems);
     let monitor = monitor.ok()?;
     if let StageForm::Construction(_) = **form
-        && let Some(end) = first_end(own)
+        && let Some(end) = first_end(stop)
     {
         problems
             .error(end, "a construction stage has no early end")
             .help("what holds the ground as the stage begins must all be let go: remove stop_when")
             .help("a stage that finds no equilibrium says how far it came");
     }
-    if let (Some(monitor), None) = (&own.monitor, &own.displacement) {
+    if let (Some(monitor), None) = (&stop.monitor, &stop.displacement) {
         problems
             .error(monitor.place, "there is no displacement for this monitor")
             .help("add displacement = \"0.5 m\"");
     }
-    if let Some(growth) = &own.load_grows_less_than
+    if let Some(growth) = &stop.load_grows_less_than
         && !matches!(**form, StageForm::Displacement(_))
     {
         let kind = form.name();
@@ -179,7 +179,7 @@ fn stop_when_of<const D: usize>(
             });
     }
     if let StageForm::RunOut(_) | StageForm::Dynamic(_) = **form
-        && let equilibrium = &own.no_equilibrium
+        && let equilibrium = &stop.no_equilibrium
         && **equilibrium
     {
         let kind = form.name();
@@ -190,7 +190,7 @@ fn stop_when_of<const D: usize>(
             )
             .help("it is for stages of type gravity, load, displacement and rigid");
     }
-    if let (StageForm::StrengthReduction(_), Some(displacement)) = (&**form, &own.displacement) {
+    if let (StageForm::StrengthReduction(_), Some(displacement)) = (&**form, &stop.displacement) {
         problems
             .error(
                 displacement.place,
@@ -199,19 +199,19 @@ fn stop_when_of<const D: usize>(
             .help("write failure = { also = { displacement = \"0.5 m\" } }");
     }
     Some(StopWhen {
-        displacement: own.displacement.as_ref().map(|own| **own),
+        displacement: stop.displacement.as_ref().map(|value| **value),
         monitor,
-        no_equilibrium: *own.no_equilibrium,
-        load_grows_less_than: own.load_grows_less_than.as_ref().map(|own| **own),
+        no_equilibrium: *stop.no_equilibrium,
+        load_grows_less_than: stop.load_grows_less_than.as_ref().map(|value| **value),
     })
 }
 
 /// Where the first condition that ends a stage is written.
-fn first_end(own: &keys::StopWhen) -> Option<Place> {
-    let displacement = own.displacement.as_ref().map(|own| own.key_place);
-    let monitor = own.monitor.as_ref().map(|own| own.key_place);
-    let growth = own.load_grows_less_than.as_ref().map(|own| own.key_place);
-    let equilibrium = &own.no_equilibrium;
+fn first_end(stop: &keys::StopWhen) -> Option<Place> {
+    let displacement = stop.displacement.as_ref().map(|key| key.key_place);
+    let monitor = stop.monitor.as_ref().map(|key| key.key_place);
+    let growth = stop.load_grows_less_than.as_ref().map(|key| key.key_place);
+    let equilibrium = &stop.no_equilibrium;
     let equilibrium = (equilibrium.written && **equilibrium).then_some(equilibrium.key_place);
     displacement.or(monitor).or(growth).or(equilibrium)
 }
@@ -238,12 +238,12 @@ fn k0<const D: usize>(about: &About<'_, D>, problems: &mut Problems) {
         let needs = material.strength != Strength::Elastic && material.k0.is_none();
         let start = &context.sequence.start;
         let bodies = std::iter::zip(&start.present, &start.material);
-        let is_there = |(present, own): (&bool, &Option<usize>)| *present && *own == Some(index);
+        let is_there = |(present, soil): (&bool, &Option<usize>)| *present && *soil == Some(index);
         if needs && bodies.clone().any(is_there) {
             let at = stated.as_ref().ok().and_then(|stated| stated.0.get(index));
             problems
                 .error(
-                    at.map_or(place, |own| own.place),
+                    at.map_or(place, |entry| entry.place),
                     format!(
                         "the k0 stage needs k0 of the material `{}`",
                         clip(&material.name, 40)
@@ -261,11 +261,11 @@ fn k0<const D: usize>(about: &About<'_, D>, problems: &mut Problems) {
 
 fn load<const D: usize>(
     about: &About<'_, D>,
-    own: &keys::Loading,
+    loading: &keys::Loading,
     problems: &mut Problems,
 ) -> Option<StageKind> {
     let (context, name) = (about.context, about.name);
-    let (one, several) = (own.load.as_ref().ok()?, own.loads.as_ref().ok()?);
+    let (one, several) = (loading.load.as_ref().ok()?, loading.loads.as_ref().ok()?);
     let named: Vec<&At<String>> = match (one, several) {
         (Some(one), None) => vec![one],
         (None, Some(several)) => several.iter().collect(),
@@ -282,12 +282,12 @@ fn load<const D: usize>(
             return None;
         }
     };
-    let factor = own.factor.as_ref().map(|factor| **factor);
+    let factor = loading.factor.as_ref().map(|factor| **factor);
     let mut loads = Vec::new();
     let mut is_right = true;
     for value in named {
-        let who = format!("stage `{name}` applies");
-        let Some(load) = context.names.loads.find(value, &who, problems) else {
+        let subject = format!("stage `{name}` applies");
+        let Some(load) = context.names.loads.find(value, &subject, problems) else {
             is_right = false;
             continue;
         };
@@ -311,14 +311,14 @@ fn load<const D: usize>(
 
 fn displacement<const D: usize>(
     about: &About<'_, D>,
-    own: &keys::Displacement,
+    table: &keys::Displacement,
     problems: &mut Problems,
 ) -> Option<StageKind> {
     let context = about.context;
-    let who = format!("stage `{}` pushes", about.name);
-    let value = own.load.as_ref().ok()?;
-    let load = context.names.loads.find(value, &who, problems)?;
-    let settlement = own.settlement.as_ref().ok()?;
+    let subject = format!("stage `{}` pushes", about.name);
+    let value = table.load.as_ref().ok()?;
+    let load = context.names.loads.find(value, &subject, problems)?;
+    let settlement = table.settlement.as_ref().ok()?;
     construction::load_is_held(about, load, value.place, problems);
     let LoadKind::RigidFooting { from, .. } = context.loads.get(load)?.as_ref()?.kind else {
         let footings = context.loads.iter().flatten();
@@ -351,16 +351,16 @@ fn displacement<const D: usize>(
 /// Warns of materials and loads that nothing uses.
 pub(super) fn check_use<const D: usize>(context: &Context<'_, D>, problems: &mut Problems) {
     let materials =
-        Root::<D>::materials(context.tree).map_or_else(|_| Vec::new(), |own| own.value.0);
-    for (index, own) in materials.iter().enumerate() {
+        Root::<D>::materials(context.tree).map_or_else(|_| Vec::new(), |list| list.value.0);
+    for (index, material) in materials.iter().enumerate() {
         if !context.is_used(index) && !context.bodies.is_empty() {
-            let message = format!("no body uses the material `{}`", clip(&own.name, 40));
-            problems.warning(own.name_place, message);
+            let message = format!("no body uses the material `{}`", clip(&material.name, 40));
+            problems.warning(material.name_place, message);
         }
     }
     let stages = context.stages.iter().flatten();
     let used: Vec<&str> = stages
-        .flat_map(|own| own.loads())
+        .flat_map(|stage| stage.loads())
         .map(|name| name.as_str())
         .collect();
     // A name that is not defined may be a slip for one that is not used.

@@ -21,7 +21,7 @@ use super::materials::profiles::points;
 use super::{AllNames, gravity};
 use crate::build::Thing;
 
-/// What conditions of the water are held against.
+/// The parts of a case around its water.
 pub(super) struct Around<'a, const D: usize> {
     pub(super) tree: &'a Node,
     pub(super) names: &'a AllNames,
@@ -46,7 +46,7 @@ impl<const D: usize> Around<'_, D> {
 
 const FORMS: &str = "write one of level = \"24 m\", line = [[\"0 m\", \"24 m\"], [\"60 m\", \"20 m\"]], inside and outside, \
                      r_u = 0.25, u = { raster = \"u.csv\" }, seepage = { ... }, dry = true";
-const OWN_FORMS: &str = "write one of level = \"24 m\", line = [[\"0 m\", \"24 m\"], [\"60 m\", \"20 m\"]], r_u = 0.25, \
+const BODY_FORMS: &str = "write one of level = \"24 m\", line = [[\"0 m\", \"24 m\"], [\"60 m\", \"20 m\"]], r_u = 0.25, \
                          u = { raster = \"u.csv\" }, dry = true";
 
 /// The conditions.
@@ -56,12 +56,11 @@ pub(super) fn conditions<const D: usize>(
 ) -> Vec<Option<WaterCondition>> {
     let items = around.own.iter().enumerate();
     let conditions: Vec<_> = items
-        .map(|(index, own)| condition(around, index, own.as_ref()?, problems))
+        .map(|(index, water)| condition(around, index, water.as_ref()?, problems))
         .collect();
     let is_wet = |condition: &WaterCondition| {
-        let own = condition.bodies.iter().map(|(_, own)| own);
-        own.chain([&condition.source])
-            .any(|own| *own != PoreSource::Dry)
+        let mut sources = condition.bodies.iter().map(|(_, source)| source);
+        condition.source != PoreSource::Dry || sources.any(|source| *source != PoreSource::Dry)
     };
     if let (Some(0.0), Some(index)) = (
         gravity(around.tree),
@@ -69,7 +68,7 @@ pub(super) fn conditions<const D: usize>(
     ) {
         problems
             .error(
-                around.own[index].as_ref().map(|own| own.place),
+                around.own[index].as_ref().map(|water| water.place),
                 "there is water, but gravity is 0: water presses by its weight",
             )
             .help("set gravity in [case], or write dry = true");
@@ -80,57 +79,57 @@ pub(super) fn conditions<const D: usize>(
 fn condition<const D: usize>(
     around: &Around<'_, D>,
     index: usize,
-    own: &At<Water>,
+    water: &At<Water>,
     problems: &mut Problems,
 ) -> Option<WaterCondition> {
-    let name = clip(&own.name, 40);
-    let who = format!("the water `{name}`");
-    let levels = [own.inside.as_ref(), own.outside.as_ref()];
+    let name = clip(&water.name, 40);
+    let subject = format!("the water `{name}`");
+    let levels = [water.inside.as_ref(), water.outside.as_ref()];
     let form = form(
-        (&own.tables, &own.pressures, levels),
-        own.seepage.as_ref(),
-        (own.place, &who, FORMS),
+        (&water.tables, &water.pressures, levels),
+        water.seepage.as_ref(),
+        (water.place, &subject, FORMS),
         problems,
     );
     let source = match form {
         Some(Form::Seepage(stated)) => {
-            seepage::source(around, (own, index), stated, &who, problems)
+            seepage::source(around, (water, index), stated, &subject, problems)
         }
-        Some(Form::Drawdown) => drawdown(around, index, own, &who, problems),
-        Some(form) => source_of(&form, &who, problems),
+        Some(Form::Drawdown) => drawdown(around, index, water, &subject, problems),
+        Some(form) => source_of(&form, &subject, problems),
         None => None,
     };
     let mut bodies: Vec<(usize, PoreSource)> = Vec::new();
     let mut is_right = true;
-    for own in own.bodies.iter() {
-        let Ok(own) = own else {
+    for entry in water.bodies.iter() {
+        let Ok(entry) = entry else {
             is_right = false;
             continue;
         };
-        let asks = format!("{who} names");
-        let body = around.names.bodies.find(&own.body, &asks, problems);
+        let asks = format!("{subject} names");
+        let body = around.names.bodies.find(&entry.body, &asks, problems);
         let form = self::form(
-            (&own.tables, &own.pressures, [None; 2]),
+            (&entry.tables, &entry.pressures, [None; 2]),
             None,
-            (own.place, &who, OWN_FORMS),
+            (entry.place, &subject, BODY_FORMS),
             problems,
         );
-        let own_source = form.and_then(|form| source_of(&form, &who, problems));
-        let (Some(body), Some(own_source)) = (body, own_source) else {
+        let local = form.and_then(|form| source_of(&form, &subject, problems));
+        let (Some(body), Some(local)) = (body, local) else {
             is_right = false;
             continue;
         };
         if bodies.iter().any(|(other, _)| *other == body) {
-            problems.error(own.body.place, "this body is named twice");
+            problems.error(entry.body.place, "this body is named twice");
         }
-        bodies.push((body, own_source));
+        bodies.push((body, local));
     }
     is_right.then_some(())?;
     Some(WaterCondition {
-        name: own.name.known()?,
+        name: water.name.known()?,
         source: source?,
         bodies,
-        carried: *own.carried,
+        carried: *water.carried,
     })
 }
 
@@ -154,7 +153,7 @@ fn form<'a>(
         [Option<&At<f64>>; 2],
     ),
     seepage: Option<&'a At<Seepage>>,
-    (place, who, forms): (Place, &str, &str),
+    (place, subject, forms): (Place, &str, &str),
     problems: &mut Problems,
 ) -> Option<Form<'a>> {
     let WaterTables {
@@ -166,16 +165,16 @@ fn form<'a>(
     let dry = dry.as_ref().filter(|dry| dry.value);
     let drawn_down = match (inside, outside) {
         (Some(inside), _) => Some(("inside", inside.place)),
-        (None, outside) => outside.map(|own| ("outside", own.place)),
+        (None, outside) => outside.map(|outside| ("outside", outside.place)),
     };
     let stated = [
-        (level.as_ref()).map(|own| ("level", own.place, Form::Level(own))),
-        (line.as_ref()).map(|own| ("line", own.place, Form::Line(own))),
-        (surface.as_ref()).map(|own| ("surface", own.place, Form::Surface(own))),
-        (r_u.as_ref()).map(|own| ("r_u", own.place, Form::Ratio(own))),
-        (u.as_ref()).map(|own| ("u", own.place, Form::Points(own))),
-        seepage.map(|own| ("seepage", own.place, Form::Seepage(own))),
-        dry.map(|own| ("dry", own.place, Form::Dry)),
+        (level.as_ref()).map(|value| ("level", value.place, Form::Level(value))),
+        (line.as_ref()).map(|value| ("line", value.place, Form::Line(value))),
+        (surface.as_ref()).map(|value| ("surface", value.place, Form::Surface(value))),
+        (r_u.as_ref()).map(|value| ("r_u", value.place, Form::Ratio(value))),
+        (u.as_ref()).map(|value| ("u", value.place, Form::Points(value))),
+        seepage.map(|value| ("seepage", value.place, Form::Seepage(value))),
+        dry.map(|value| ("dry", value.place, Form::Dry)),
         drawn_down.map(|(key, place)| (key, place, Form::Drawdown)),
     ];
     let mut stated: Vec<_> = stated.into_iter().flatten().collect();
@@ -183,31 +182,32 @@ fn form<'a>(
         && stated.len() > 1
     {
         let keys: Vec<&str> = stated.iter().map(|(key, ..)| *key).collect();
-        let message = format!("{who} has several sources of pressure: {}", keys.join(", "));
+        let keys = keys.join(", ");
+        let message = format!("{subject} has several sources of pressure: {keys}");
         problems
             .error(last, message)
             .help("keep one of them; bodies = [{ body = \"clay\", level = \"20 m\" }] gives a body its own");
         return None;
     }
     if stated.is_empty() {
-        let message = format!("{who} does not say where its pressure comes from");
+        let message = format!("{subject} does not say where its pressure comes from");
         problems.error(place, message).help(forms);
     }
     stated.pop().map(|(.., form)| form)
 }
 
 /// The source that is stated.
-fn source_of(form: &Form<'_>, who: &str, problems: &mut Problems) -> Option<PoreSource> {
+fn source_of(form: &Form<'_>, subject: &str, problems: &mut Problems) -> Option<PoreSource> {
     Some(match form {
         Form::Level(level) => PoreSource::Table(vec![[0.0, ***level]]),
         Form::Line(line) => {
-            let points: Vec<_> = line.iter().map(|own| **own).collect();
+            let points: Vec<_> = line.iter().map(|point| **point).collect();
             if let Some(k) = (1..points.len()).find(|&k| points[k][0] <= points[k - 1][0]) {
                 problems
                     .error(
                         line[k].place,
                         format!(
-                            "the line of {who} does not go on to the right: x = {} m after {} m",
+                            "the line of {subject} does not go on to the right: x = {} m after {} m",
                             number(points[k][0]),
                             number(points[k - 1][0])
                         ),
@@ -217,13 +217,13 @@ fn source_of(form: &Form<'_>, who: &str, problems: &mut Problems) -> Option<Pore
             }
             PoreSource::Table(points)
         }
-        Form::Surface(own) => PoreSource::Surface(terrain(own, own.place, &who, problems)?),
-        Form::Ratio(own) => {
-            let ratio = ***own;
+        Form::Surface(top) => PoreSource::Surface(terrain(top, top.place, &subject, problems)?),
+        Form::Ratio(value) => {
+            let ratio = ***value;
             if !(0.0..=1.0).contains(&ratio) {
                 problems
                     .error(
-                        own.place,
+                        value.place,
                         format!(
                             "r_u is {}, but the pressure is a share of the weight above",
                             number(ratio)
@@ -236,7 +236,7 @@ fn source_of(form: &Form<'_>, who: &str, problems: &mut Problems) -> Option<Pore
             }
             PoreSource::Ratio(ratio)
         }
-        Form::Points(own) => PoreSource::Points(points(own, own.place, "u", problems).ok()?),
+        Form::Points(field) => PoreSource::Points(points(field, field.place, "u", problems).ok()?),
         Form::Dry | Form::Drawdown | Form::Seepage(_) => PoreSource::Dry,
     })
 }
@@ -245,17 +245,17 @@ fn source_of(form: &Form<'_>, who: &str, problems: &mut Problems) -> Option<Pore
 fn drawdown<const D: usize>(
     around: &Around<'_, D>,
     index: usize,
-    own: &At<Water>,
-    who: &str,
+    water: &At<Water>,
+    subject: &str,
     problems: &mut Problems,
 ) -> Option<PoreSource> {
-    let (Some(inside), Some(outside)) = (&own.inside, &own.outside) else {
-        let (has, lacks, stated) = match &own.inside {
-            Some(inside) => ("inside", "outside", inside),
-            None => ("outside", "inside", own.outside.as_ref()?),
+    let (Some(inside), Some(outside)) = (&water.inside, &water.outside) else {
+        let (has, lacks, place) = match &water.inside {
+            Some(inside) => ("inside", "outside", inside.place),
+            None => ("outside", "inside", water.outside.as_ref()?.place),
         };
         problems
-            .error(stated.place, format!("{who} has `{has}` without `{lacks}`"))
+            .error(place, format!("{subject} has `{has}` without `{lacks}`"))
             .help("inside is the level within the ground, outside that of the free water beside it")
             .help("for one level everywhere write level = \"24 m\"");
         return None;
@@ -264,7 +264,7 @@ fn drawdown<const D: usize>(
         problems
             .error(
                 outside.place,
-                format!("in {who} the water stands higher outside than inside"),
+                format!("in {subject} the water stands higher outside than inside"),
             )
             .help("inside and outside are for water that was drawn down; draw what flows in as line = [...]");
         return None;
@@ -281,7 +281,7 @@ fn drawdown<const D: usize>(
                 .error(
                     inside.place,
                     format!(
-                        "at {at} the ground drops upright, and the table of {who} with it from {} m to {} m",
+                        "at {at} the ground drops upright, and the table of {subject} with it from {} m to {} m",
                         number(high),
                         number(low)
                     ),

@@ -1,4 +1,4 @@
-//! A case of a body of revolution: one in the plane whose section is axisymmetric, and what it has not.
+//! A case of a body of revolution: one in the plane whose section is axisymmetric, and its limits.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use igimp_schema::tree::Node;
 /// Components of the motion of a rigid body in the plane, as their keys are called; the vertical one is free.
 const COMPONENTS: [(usize, &str); 2] = [(0, "x"), (2, "rotation")];
 
-/// The case with an axisymmetric section, held at its axis; reports what a body of revolution has not.
+/// The case with an axisymmetric section, held at its axis; reports parts that a body of revolution lacks.
 pub(crate) fn section(tree: &Node, mut case: Case<2>, problems: &mut Problems) -> Option<Case<2>> {
     let before = problems.errors();
     case.method.section = Section::Axisymmetric;
@@ -31,8 +31,8 @@ pub(crate) fn section(tree: &Node, mut case: Case<2>, problems: &mut Problems) -
     let mut flows = case
         .stages
         .iter()
-        .filter_map(|own| own.consolidation.as_ref());
-    if start <= 0.0 && flows.any(|own| own.open_sides.contains(&(0, false))) {
+        .filter_map(|stage| stage.consolidation.as_ref());
+    if start <= 0.0 && flows.any(|flow| flow.open_sides.contains(&(0, false))) {
         problems
             .error(
                 place_of(tree, "stages"),
@@ -41,10 +41,10 @@ pub(crate) fn section(tree: &Node, mut case: Case<2>, problems: &mut Problems) -
             .help("draw a drain as a box in `drains`, or as a hole whose side the grid begins at");
     }
     for condition in &mut case.water {
-        let of_bodies = condition.bodies.iter_mut().map(|own| &mut own.1);
+        let of_bodies = condition.bodies.iter_mut().map(|entry| &mut entry.1);
         for source in of_bodies.chain([&mut condition.source]) {
-            if let PoreSource::Seepage(own) = source {
-                Arc::make_mut(own).conditions.axisymmetric = true;
+            if let PoreSource::Seepage(flow) = source {
+                Arc::make_mut(flow).conditions.axisymmetric = true;
             }
         }
     }
@@ -104,14 +104,14 @@ fn refuse_parts(tree: &Node, case: &Case<2>, problems: &mut Problems) {
             .help("compute the body in space, analysis = \"3d\"");
     }
     for (index, material) in case.materials.iter().enumerate() {
-        let over_length = (material.softening.as_ref()).is_some_and(|own| own.nonlocal.is_some());
+        let over_length = (material.softening.as_ref()).is_some_and(|law| law.nonlocal.is_some());
         if over_length {
             let place = tree
                 .get("materials")
-                .and_then(|own| own.entries().get(index));
+                .and_then(|list| list.entries().get(index));
             problems
                 .error(
-                    place.map(|own| own.node.place),
+                    place.map(|entry| entry.node.place),
                     "softening over a length goes with plane strain",
                 )
                 .help("scale it by the width of its bands: remove `length`");
@@ -132,12 +132,12 @@ fn refuse_stage(kind: &StageKind, place: Option<Place>, problems: &mut Problems)
             "a horizontal force leaves no body of revolution",
             "compute a slice in plane strain, or the body in space",
         ),
-        StageKind::Rigid(moves) => moves.iter().for_each(|own| refuse_move(own, &mut refuse)),
-        StageKind::Dynamic(own) => {
-            own.bodies
+        StageKind::Rigid(moves) => moves.iter().for_each(|body| refuse_move(body, &mut refuse)),
+        StageKind::Dynamic(run) => {
+            run.bodies
                 .iter()
-                .for_each(|own| refuse_move(own, &mut refuse));
-            if own.ground_motion.is_some() || is_walled(&own.walls) {
+                .for_each(|body| refuse_move(body, &mut refuse));
+            if run.ground_motion.is_some() || is_walled(&run.walls) {
                 refuse(
                     "sides and ground move in time in plane strain and in space alone",
                     "remove the motion of the ground and of its sides, or compute the body in space",
@@ -149,9 +149,9 @@ fn refuse_stage(kind: &StageKind, place: Option<Place>, problems: &mut Problems)
 }
 
 /// Refuses a rigid body that does not go straight up or down.
-fn refuse_move(own: &RigidMove, refuse: &mut impl FnMut(&str, &str)) {
+fn refuse_move(body: &RigidMove, refuse: &mut impl FnMut(&str, &str)) {
     for (component, name) in COMPONENTS {
-        match own.drives[component] {
+        match body.drives[component] {
             None | Some(RigidDrive::By(0.0)) => {}
             Some(_) => refuse(
                 &format!("a body of revolution keeps its axis: {name} is held"),
@@ -163,12 +163,12 @@ fn refuse_move(own: &RigidMove, refuse: &mut impl FnMut(&str, &str)) {
 
 /// Where a table is stated.
 fn place_of(tree: &Node, key: &str) -> Option<Place> {
-    tree.get(key).map(|own| own.place)
+    tree.get(key).map(|table| table.place)
 }
 
 /// Where an item of a list is stated.
 fn item(tree: &Node, list: &str, index: usize) -> Option<Place> {
-    tree.items_at(list).get(index).map(|own| own.place)
+    tree.items_at(list).get(index).map(|entry| entry.place)
 }
 
 /// Whether anything lies beyond the sides of a grid in motion.

@@ -9,19 +9,19 @@ use super::Frame;
 
 /// The supports.
 pub(crate) fn boundaries<const D: usize>(
-    own: &keys::Boundaries<D>,
+    table: &keys::Boundaries<D>,
     frame: Option<&Frame<D>>,
     problems: &mut Problems,
 ) -> Option<Boundaries<D>> {
-    let boxes: Vec<_> = (own.boxes.iter())
+    let boxes: Vec<_> = (table.boxes.iter())
         .map(|part| fixed_box(part.as_ref().ok()?, frame, problems))
         .collect();
-    let across = own.front.as_ref().zip(own.back.as_ref());
+    let across = table.front.as_ref().zip(table.back.as_ref());
     let mut sides = [[Side::Free; 2]; D];
     for (axis, both) in sides.iter_mut().enumerate() {
         let (lower, upper) = match axis {
-            0 => (&own.left, &own.right),
-            _ if axis == D - 1 => (&own.bottom, &own.top),
+            0 => (&table.left, &table.right),
+            _ if axis == D - 1 => (&table.bottom, &table.top),
             _ => across?,
         };
         *both = [side(**lower), side(**upper)];
@@ -32,8 +32,8 @@ pub(crate) fn boundaries<const D: usize>(
     })
 }
 
-fn side(own: keys::Side) -> Side {
-    match own {
+fn side(side: keys::Side) -> Side {
+    match side {
         keys::Side::Roller => Side::Roller,
         keys::Side::Fixed => Side::Fixed,
         keys::Side::Free => Side::Free,
@@ -41,11 +41,11 @@ fn side(own: keys::Side) -> Side {
 }
 
 fn fixed_box<const D: usize>(
-    own: &At<keys::FixedBox<D>>,
+    row: &At<keys::FixedBox<D>>,
     frame: Option<&Frame<D>>,
     problems: &mut Problems,
 ) -> Option<FixedBox<D>> {
-    let (from, to) = (*own.from, *own.to);
+    let (from, to) = (*row.from, *row.to);
     let lower: [f64; D] = std::array::from_fn(|axis| from[axis].min(to[axis]));
     let upper: [f64; D] = std::array::from_fn(|axis| from[axis].max(to[axis]));
     if let Some(frame) = frame {
@@ -57,12 +57,12 @@ fn fixed_box<const D: usize>(
         });
         if !has_nodes {
             problems
-                .warning(own.place, "there is no node in this box: it holds nothing")
+                .warning(row.place, "there is no node in this box: it holds nothing")
                 .help("let it reach over a line of the grid");
         }
     }
     let mut fix = [false; D];
-    for axis in own.fix.iter() {
+    for axis in row.fix.iter() {
         let held = match **axis {
             FixedAxis::X => 0,
             FixedAxis::Y => 1,
@@ -81,7 +81,7 @@ fn fixed_box<const D: usize>(
         fix[held] = true;
     }
     Some(FixedBox {
-        name: own.name.value.clone(),
+        name: row.name.value.clone(),
         lower,
         upper,
         fix,

@@ -15,59 +15,59 @@ use crate::build::AllNames;
 
 /// A check; `is_whole` says whether forces are of whole bodies, not per metre run.
 pub(crate) fn check<const D: usize>(
-    own: &At<keys::Check>,
+    check: &At<keys::Check>,
     is_whole: bool,
     names: &AllNames,
     loads: &[Option<Load<D>>],
     stages: &[Option<Stage>],
     problems: &mut Problems,
 ) -> Option<CaseCheck> {
-    let name = clip(&own.name, 40);
-    let of = quantity(&own.of, names, loads, problems);
-    let divide_by = divisor(&own.divide_by, problems);
-    let who = format!("check `{name}` looks at");
+    let name = clip(&check.name, 40);
+    let of = quantity(&check.of, names, loads, problems);
+    let divide_by = divisor(&check.divide_by, problems);
+    let subject = format!("check `{name}` looks at");
     let stage = names
         .stages
-        .find_optional(own.stage.as_ref(), &who, problems);
+        .find_optional(check.stage.as_ref(), &subject, problems);
     let stage = match (stage, of) {
         (Ok(stage), Some(Quantity::FactorOfSafety)) => {
-            if *own.at == Moment::Peak {
+            if *check.at == Moment::Peak {
                 problems
-                    .error(own.at.place, "a factor of safety has no peak")
+                    .error(check.at.place, "a factor of safety has no peak")
                     .help("leave `at` out: it is known at the end of its stage");
             }
-            search(own, stage, stages, problems).map(Some)
+            search(check, stage, stages, problems).map(Some)
         }
         (stage, _) => stage,
     };
-    let (expected, band) = band(own, problems)?;
+    let (expected, band) = band(check, problems)?;
     of?;
-    units_are_those_of(own, unit_of(D, is_whole, &own.of), problems)?;
+    units_are_those_of(check, unit_of(D, is_whole, &check.of), problems)?;
     Some(CaseCheck {
-        name: own.name.value.clone(),
+        name: check.name.value.clone(),
         of: of?,
         divide_by: divide_by?,
         stage: stage.ok()?,
-        at: match *own.at {
+        at: match *check.at {
             Moment::Peak => CheckTime::Peak,
             Moment::End => CheckTime::End,
         },
-        value: match *own.value.value {
+        value: match *check.value.value {
             CheckedValue::Extrapolated => CheckValue::Extrapolated,
             CheckedValue::Computed => CheckValue::Computed,
         },
         expected,
         band,
-        unit: unit_of_band(own),
-        source: own.source.value.clone(),
+        unit: unit_of_band(check),
+        source: check.source.value.clone(),
     })
 }
 
-/// The unit in which what is accepted is written: that of the first of several.
-fn unit_of_band(own: &keys::Check) -> Option<ToldUnit> {
-    let between = own.between.as_ref().map(|own| own.value[0]);
-    let single = [&own.at_most, &own.at_least, &own.expected];
-    let single = single.into_iter().flatten().map(|own| own.value);
+/// The unit in which accepted values are written: that of the first of several.
+fn unit_of_band(check: &keys::Check) -> Option<ToldUnit> {
+    let between = check.between.as_ref().map(|bounds| bounds.value[0]);
+    let single = [&check.at_most, &check.at_least, &check.expected];
+    let single = single.into_iter().flatten().map(|bound| bound.value);
     let (name, in_si) = between.into_iter().chain(single).next()?.unit?;
     Some(ToldUnit {
         name: name.to_owned(),
@@ -77,22 +77,22 @@ fn unit_of_band(own: &keys::Check) -> Option<ToldUnit> {
 
 /// Refuses bounds that measure something else than the quantity, in an SI unit, over its divisors. A plain divisor may stand
 /// for any unit: a plain bound then does too.
-fn units_are_those_of(own: &At<keys::Check>, unit: &str, problems: &mut Problems) -> Option<()> {
-    let divisors = own.divide_by.iter().map(|own| own.value.dimension);
+fn units_are_those_of(check: &At<keys::Check>, unit: &str, problems: &mut Problems) -> Option<()> {
+    let divisors = check.divide_by.iter().map(|item| item.value.dimension);
     let measured = divisors.fold(Powers::of_unit(unit), |of, divisor| {
         of.over(Powers::of(divisor))
     });
-    let is_plain = |own: &At<Measured>| own.value.dimension.is_none();
-    let of_any_unit = own.divide_by.iter().any(is_plain);
-    let both = own
+    let is_plain = |divisor: &At<Measured>| divisor.value.dimension.is_none();
+    let of_any_unit = check.divide_by.iter().any(is_plain);
+    let both = check
         .between
         .iter()
-        .flat_map(|own| own.iter().map(|value| (*value, own.place)));
-    let single = [&own.expected, &own.at_most, &own.at_least];
+        .flat_map(|bounds| bounds.iter().map(|value| (*value, bounds.place)));
+    let single = [&check.expected, &check.at_most, &check.at_least];
     let single = single
         .into_iter()
         .flatten()
-        .map(|own| (own.value, own.place));
+        .map(|bound| (bound.value, bound.place));
     for (bound, place) in single.chain(both) {
         let stated = Powers::of(bound.dimension);
         if stated == measured || (bound.dimension.is_none() && of_any_unit) {
@@ -121,7 +121,7 @@ fn units_are_those_of(own: &At<keys::Check>, unit: &str, problems: &mut Problems
 
 /// The strength reduction whose factor of safety is meant.
 fn search(
-    own: &keys::Check,
+    check: &keys::Check,
     stage: Option<usize>,
     stages: &[Option<Stage>],
     problems: &mut Problems,
@@ -139,7 +139,7 @@ fn search(
         }
         problems
             .error(
-                own.stage.as_ref().map(|stage| stage.place),
+                check.stage.as_ref().map(|stage| stage.place),
                 "this stage does not search for a factor of safety",
             )
             .help("name a stage of type strength-reduction");
@@ -148,20 +148,20 @@ fn search(
     let last = (0..stages.len()).rev().find(searches);
     if last.is_none() {
         problems
-            .error(own.of.place, "no stage finds a factor of safety")
+            .error(check.of.place, "no stage finds a factor of safety")
             .help("add a stage of type strength-reduction");
     }
     last.ok_or(Wrong)
 }
 
-/// What is expected, and the band around it.
-fn band(own: &At<keys::Check>, problems: &mut Problems) -> Option<(f64, Band)> {
-    let expected = own.expected.as_ref().map(|own| own.value.value);
+/// The expected value, and its band.
+fn band(check: &At<keys::Check>, problems: &mut Problems) -> Option<(f64, Band)> {
+    let expected = check.expected.as_ref().map(|stated| stated.value.value);
     let bands = (
-        own.tolerance.as_ref(),
-        own.between.as_ref(),
-        own.at_most.as_ref(),
-        own.at_least.as_ref(),
+        check.tolerance.as_ref(),
+        check.between.as_ref(),
+        check.at_most.as_ref(),
+        check.at_least.as_ref(),
     );
     match bands {
         (Some(tolerance), None, None, None) => match expected {
@@ -186,7 +186,7 @@ fn band(own: &At<keys::Check>, problems: &mut Problems) -> Option<(f64, Band)> {
             }
         },
         (None, Some(between), None, None) => {
-            let [low, high] = between.map(|own| own.value);
+            let [low, high] = between.map(|bound| bound.value);
             if low > high {
                 problems
                     .error(between.place, "`between` is not in ascending order")
@@ -218,7 +218,7 @@ fn band(own: &At<keys::Check>, problems: &mut Problems) -> Option<(f64, Band)> {
                 format!("the check has several bands: {}", given.join(", "))
             };
             problems
-                .error(own.place, message)
+                .error(check.place, message)
                 .help("write one of tolerance = 0.05, between = [1.3, 1.4], at_most and at_least");
             None
         }

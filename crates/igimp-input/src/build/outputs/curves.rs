@@ -21,41 +21,41 @@ const OF_RUNS: &str = "safety-in-time";
 
 /// A curve; files of references are beside the case file.
 pub(crate) fn curve<const D: usize>(
-    own: &keys::Curve,
+    curve: &keys::Curve,
     names: &AllNames,
     loads: &[Option<Load<D>>],
     file: &Path,
     problems: &mut Problems,
 ) -> Option<Curve> {
-    if own.name.eq_ignore_ascii_case(OF_RUNS) {
+    if curve.name.eq_ignore_ascii_case(OF_RUNS) {
         problems
             .error(
-                own.name.place,
+                curve.name.place,
                 format!("a curve cannot be called `{OF_RUNS}`: so is the table of factors of safety in time"),
             )
             .help("give it another name");
     }
-    let mut axis = |own: &Found<keys::CurveAxis>| axis(own.as_ref().ok()?, names, loads, problems);
-    let (x, y) = (axis(&own.x), axis(&own.y));
-    let who = format!("curve `{}` records", clip(&own.name, 40));
+    let mut axis = |key: &Found<keys::CurveAxis>| axis(key.as_ref().ok()?, names, loads, problems);
+    let (x, y) = (axis(&curve.x), axis(&curve.y));
+    let subject = format!("curve `{}` records", clip(&curve.name, 40));
     let stage = names
         .stages
-        .find_optional(own.stage.as_ref(), &who, problems);
-    let reference = own.reference.as_ref().ok().map(|reference| {
-        let own = reference.as_ref()?;
+        .find_optional(curve.stage.as_ref(), &subject, problems);
+    let reference = curve.reference.as_ref().ok().map(|reference| {
+        let table = reference.as_ref()?;
         let stated = ReferenceKeys {
-            y: own.y.as_ref(),
-            at: own.at.as_ref(),
-            points: own.points.as_ref(),
-            file: own.file.as_ref(),
-            label: &own.label,
-            tolerance: own.tolerance.as_ref(),
-            place: own.place,
+            y: table.y.as_ref(),
+            at: table.at.as_ref(),
+            points: table.points.as_ref(),
+            file: table.file.as_ref(),
+            label: &table.label,
+            tolerance: table.tolerance.as_ref(),
+            place: table.place,
         };
         Some(self::reference(&stated, file, problems))
     });
     Some(Curve {
-        name: own.name.value.clone(),
+        name: curve.name.value.clone(),
         x: x?,
         y: y?,
         stage: stage.ok()?,
@@ -67,25 +67,25 @@ pub(crate) fn curve<const D: usize>(
 }
 
 fn axis<const D: usize>(
-    own: &keys::CurveAxis,
+    axis: &keys::CurveAxis,
     names: &AllNames,
     loads: &[Option<Load<D>>],
     problems: &mut Problems,
 ) -> Option<CurveAxis> {
-    let found = quantity(&own.of, names, loads, problems);
+    let found = quantity(&axis.of, names, loads, problems);
     if found == Some(Quantity::FactorOfSafety) {
         problems
             .error(
-                own.of.place,
+                axis.of.place,
                 "a factor of safety is one number, not a curve",
             )
             .help("hold it against a value in [[checks]]");
     }
-    let divide_by = divisor(&own.divide_by, problems);
+    let divide_by = divisor(&axis.divide_by, problems);
     Some(CurveAxis {
         of: found?,
         divide_by: divide_by?,
-        label: own.label.as_ref()?.value.clone(),
+        label: axis.label.as_ref()?.value.clone(),
     })
 }
 
@@ -102,28 +102,28 @@ pub(crate) struct ReferenceKeys<'a> {
 
 /// A reference for a curve, or for a field along a section.
 pub(crate) fn reference(
-    own: &ReferenceKeys<'_>,
+    stated: &ReferenceKeys<'_>,
     file: &Path,
     problems: &mut Problems,
 ) -> Option<Reference> {
-    let values = match (own.y, own.points, own.file) {
+    let values = match (stated.y, stated.points, stated.file) {
         (Some(y), None, None) => ReferenceValues::Level {
             y: **y,
-            at: own.at.map(|at| **at),
+            at: stated.at.map(|at| **at),
         },
         (None, Some(points), None) => {
-            only_of_y(own.at, problems)?;
-            ReferenceValues::Points(points.iter().map(|own| **own).collect())
+            only_of_y(stated.at, problems)?;
+            ReferenceValues::Points(points.iter().map(|point| **point).collect())
         }
         (None, None, Some(name)) => {
-            only_of_y(own.at, problems)?;
+            only_of_y(stated.at, problems)?;
             ReferenceValues::Points(points_of(name, file, problems)?)
         }
         _ => {
             let forms = [
-                own.y.map(|_| "y"),
-                own.points.map(|_| "points"),
-                own.file.map(|_| "file"),
+                stated.y.map(|_| "y"),
+                stated.points.map(|_| "points"),
+                stated.file.map(|_| "file"),
             ];
             let forms: Vec<&str> = forms.into_iter().flatten().collect();
             let message = if forms.is_empty() {
@@ -131,16 +131,16 @@ pub(crate) fn reference(
             } else {
                 format!("the reference has several forms: {}", forms.join(", "))
             };
-            problems.error(own.place, message).help(
+            problems.error(stated.place, message).help(
                 "write one of y = 5.14, points = [[0, 0], [1, 2]] and file = \"measured.csv\"",
             );
             return None;
         }
     };
     Some(Reference {
-        label: own.label.value.clone(),
+        label: stated.label.value.clone(),
         values,
-        tolerance: own.tolerance.map(|own| **own),
+        tolerance: stated.tolerance.map(|value| **value),
     })
 }
 

@@ -10,7 +10,7 @@ use igimp_schema::tree::read::At;
 
 use crate::build::AllNames;
 
-/// What the names of quantities of rigid bodies begin with.
+/// Prefix of the names of quantities of rigid bodies.
 const RIGID_PREFIX: &str = "rigid.";
 
 /// Quantities of a rigid body, and in how many dimensions they are; none: in any.
@@ -53,7 +53,7 @@ fn of_rigid(dimensions: usize, name: &str) -> Option<(RigidQuantity, &'static st
     found.map(|(_, quantity, unit, _)| (*quantity, *unit))
 }
 
-/// What the names of quantities of reinforcement begin with.
+/// Prefix of the names of quantities of reinforcement.
 const REINFORCEMENT_PREFIX: &str = "reinforcement.";
 
 /// Quantities of a member of reinforcement.
@@ -63,14 +63,14 @@ const REINFORCEMENT: [(&str, ReinforcementQuantity, &str); 3] = [
     ("at_limit", ReinforcementQuantity::AtLimit, "-"),
 ];
 
-/// What the names of discharges begin with.
+/// Prefix of the names of discharges.
 const SEEPAGE_PREFIX: &str = "seepage.";
 
-/// The discharges of a file: of each flow that is computed all that leaves, and what passes its sections.
+/// The discharges of a file: of each computed flow its outflow, and that through its sections.
 pub(crate) fn discharges(tree: &Node) -> Vec<(String, Quantity)> {
     let mut found = Vec::new();
-    for (water, own) in tree.items_at("water").iter().enumerate() {
-        let (Some(name), Some(seepage)) = (own.text_at("name"), own.get("seepage")) else {
+    for (water, table) in tree.items_at("water").iter().enumerate() {
+        let (Some(name), Some(seepage)) = (table.text_at("name"), table.get("seepage")) else {
             continue;
         };
         found.push((
@@ -111,18 +111,18 @@ pub(crate) fn fields<const D: usize>(
     problems: &mut Problems,
 ) -> Option<Vec<Field>> {
     let mut fields = Vec::with_capacity(named.len());
-    for own in named {
-        let field = **own;
+    for item in named {
+        let field = **item;
         if !field.exists_in(D) {
             let message = format!("there is no {} in plane strain", field.name());
             problems
-                .error(own.place, message)
+                .error(item.place, message)
                 .help("it is a field of cases with analysis = \"3d\"");
             return None;
         }
         if field.is_of_motion() && !moves {
             let message = format!("nothing here has a field {}", field.name());
-            problems.error(own.place, message).help(
+            problems.error(item.place, message).help(
                 "it is a field of cases with a stage of type \"dynamic\", whose soil moves in time",
             );
             return None;
@@ -181,21 +181,21 @@ pub(crate) fn quantity<const D: usize>(
     if let Some((_, discharge)) = names.discharges.iter().find(|(known, _)| known == name) {
         return Some(*discharge);
     }
-    if let Some((owner, what)) = name.rsplit_once('.') {
+    if let Some((owner, last)) = name.rsplit_once('.') {
         let body = owner.strip_prefix(RIGID_PREFIX);
         let body = body.and_then(|body| names.rigid.position(body));
-        if let (Some(body), Some((quantity, _))) = (body, of_rigid(D, what)) {
+        if let (Some(body), Some((quantity, _))) = (body, of_rigid(D, last)) {
             return Some(Quantity::Rigid(body, quantity));
         }
         let member = owner.strip_prefix(REINFORCEMENT_PREFIX);
         let member = member.and_then(|member| names.reinforcement.position(member));
-        let of_member = REINFORCEMENT.iter().find(|(known, ..)| *known == what);
+        let of_member = REINFORCEMENT.iter().find(|(known, ..)| *known == last);
         if let (Some(member), Some((_, quantity, _))) = (member, of_member) {
             return Some(Quantity::Reinforcement(member, *quantity));
         }
         let monitor = names.monitors.position(owner);
         let there = |field: &Field| field.exists_in(D);
-        if let (Some(monitor), Some(field)) = (monitor, Field::of_name(what).filter(there)) {
+        if let (Some(monitor), Some(field)) = (monitor, Field::of_name(last).filter(there)) {
             return Some(Quantity::Monitor(monitor, field));
         }
         if let Some(load) = names.loads.position(owner) {
@@ -203,7 +203,7 @@ pub(crate) fn quantity<const D: usize>(
                 .get(load)
                 .and_then(Option::as_ref)
                 .map(|load| matches!(load.kind, LoadKind::RigidFooting { .. }));
-            match (what, is_footing) {
+            match (last, is_footing) {
                 ("factor", Some(false)) => return Some(Quantity::LoadFactor(load)),
                 ("settlement", Some(true)) => return Some(Quantity::Settlement(load)),
                 ("reaction", Some(true)) => return Some(Quantity::Reaction(load)),
@@ -246,11 +246,11 @@ fn known<const D: usize>(names: &AllNames, loads: &[Option<Load<D>>]) -> Vec<Str
         let of_body = RIGID
             .iter()
             .filter(|(.., only)| only.is_none_or(|only| only == D));
-        known.extend(of_body.map(|(what, ..)| format!("{RIGID_PREFIX}{body}.{what}")));
+        known.extend(of_body.map(|(name, ..)| format!("{RIGID_PREFIX}{body}.{name}")));
     }
     for member in names.reinforcement.known() {
         let of_member = REINFORCEMENT.iter();
-        known.extend(of_member.map(|(what, ..)| format!("{REINFORCEMENT_PREFIX}{member}.{what}")));
+        known.extend(of_member.map(|(name, ..)| format!("{REINFORCEMENT_PREFIX}{member}.{name}")));
     }
     known.extend(names.discharges.iter().map(|(name, _)| name.clone()));
     known.extend(GLOBAL.iter().map(|(name, ..)| (*name).to_owned()));

@@ -19,7 +19,7 @@ pub(crate) fn check<const D: usize>(
 ) {
     let place = meshes.place;
     if case.mesh_study.meshes < 2 {
-        // A grid that is too large as it is was told of before.
+        // A grid that is too large as it is was reported before.
         let grid = Root::<D>::grid(tree).ok();
         if let Some(Ok(refine)) = grid.map(|grid| grid.value.refine)
             && *refine > 1
@@ -70,18 +70,18 @@ pub(crate) fn check<const D: usize>(
     }
 }
 
-/// Warns of checks that want what one mesh does not give.
+/// Warns of checks that need more than one mesh.
 fn one_mesh_only<const D: usize>(tree: &Node, problems: &mut Problems) {
     let checks = Root::<D>::checks(tree).map_or_else(|_| Vec::new(), |checks| checks.value);
-    for own in checks.into_iter().flatten() {
-        if *own.value.value == CheckedValue::Extrapolated {
+    for check in checks.into_iter().flatten() {
+        if *check.value.value == CheckedValue::Extrapolated {
             problems
                 .warning(
-                    own.value.value.place,
+                    check.value.value.place,
                     format!(
                         "check `{}` asks for an extrapolated value, and there is one mesh: the value \
                          of this mesh is held against it",
-                        clip(&own.name, 40)
+                        clip(&check.name, 40)
                     ),
                 )
                 .help("write mesh_study = { meshes = 2 }, or run with --meshes 2");

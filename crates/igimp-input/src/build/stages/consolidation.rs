@@ -23,7 +23,7 @@ pub(super) fn consolidation<const D: usize>(
     problems: &mut Problems,
 ) -> Result<Option<Consolidation>, Wrong> {
     let form = &about.stage.form;
-    let Some(own) = common.consolidation.as_ref().map_err(|_| Wrong)? else {
+    let Some(table) = common.consolidation.as_ref().map_err(|_| Wrong)? else {
         if let StageForm::Wait(_) = **form {
             let message = format!("stage `{}` waits and says not how long", about.name);
             problems
@@ -52,35 +52,35 @@ pub(super) fn consolidation<const D: usize>(
     if let Some(why) = refused {
         problems
             .error(
-                own.place,
+                table.place,
                 format!("stage `{}` cannot consolidate: {why}", about.name),
             )
             .help("let water flow in a stage of type wait before it or after it");
         return Err(Wrong);
     }
-    let goes_with_time = |own: &igimp_model::Material| {
-        matches!(own.drainage, Drainage::Undrained { flows: true, .. }) || own.goes_with_rate()
+    let goes_with_time = |soil: &igimp_model::Material| {
+        matches!(soil.drainage, Drainage::Undrained { flows: true, .. }) || soil.goes_with_rate()
     };
     let materials = &about.context.materials;
     if materials.iter().all(Option::is_some) && !materials.iter().flatten().any(goes_with_time) {
         problems
-            .error(own.place, "no material is coupled: no water flows")
+            .error(table.place, "no material is coupled: no water flows")
             .help("write drainage = \"coupled\" and a permeability in the soil that consolidates, or a `rate` in soil whose strength goes with it");
         return Err(Wrong);
     }
     let stated = Consolidation {
-        duration: *own.duration,
-        open_faces: *own.open_faces,
-        open_sides: open_sides(about, own, problems)?,
-        drains: drains(about, own, problems)?,
-        longest_step: own.longest_step.as_ref().map(|own| **own),
+        duration: *table.duration,
+        open_faces: *table.open_faces,
+        open_sides: open_sides(about, table, problems)?,
+        drains: drains(about, table, problems)?,
+        longest_step: table.longest_step.as_ref().map(|step| **step),
     };
     if let StageForm::Wait(_) = **form
         && !has_outlet(about, &stated)
     {
         problems
             .warning(
-                own.open_faces.place,
+                table.open_faces.place,
                 "water leaves nowhere in this stage: excess pressure evens out and stays",
             )
             .help("name open_sides or drains, or let open_faces be true");
@@ -89,27 +89,27 @@ pub(super) fn consolidation<const D: usize>(
 }
 
 /// Whether water that flows may leave, as far as that is known: drained soil takes it too.
-fn has_outlet<const D: usize>(about: &About<'_, D>, own: &Consolidation) -> bool {
+fn has_outlet<const D: usize>(about: &About<'_, D>, flow: &Consolidation) -> bool {
     let mut used = (about.context.materials.iter().enumerate())
         .filter(|&(index, _)| about.context.is_used(index))
-        .map(|(_, material)| material.as_ref().map(|own| own.drainage));
+        .map(|(_, material)| material.as_ref().map(|soil| soil.drainage));
     let takes_or_is_still =
-        |drainage: Option<Drainage>| drainage.is_none_or(|own| own == Drainage::Drained);
-    own.open_faces
-        || !own.open_sides.is_empty()
-        || !own.drains.is_empty()
+        |drainage: Option<Drainage>| drainage.is_none_or(|kind| kind == Drainage::Drained);
+    flow.open_faces
+        || !flow.open_sides.is_empty()
+        || !flow.drains.is_empty()
         || used.any(takes_or_is_still)
 }
 
 /// The sides of the grid where water leaves.
 fn open_sides<const D: usize>(
     about: &About<'_, D>,
-    own: &keys::Consolidation,
+    table: &keys::Consolidation,
     problems: &mut Problems,
 ) -> Result<Vec<(usize, bool)>, Wrong> {
     let context = about.context;
     let mut sides = Vec::new();
-    for wall in own.open_sides.iter() {
+    for wall in table.open_sides.iter() {
         let side = side::<D>(wall, problems)?;
         let ends = context.soil.ends();
         if ends.is_some_and(|ends| !meets_side(context.bodies, context.sequence, side, ends)) {
@@ -132,12 +132,12 @@ fn open_sides<const D: usize>(
 /// The boxes of the ground where water leaves.
 fn drains<const D: usize>(
     about: &About<'_, D>,
-    own: &keys::Consolidation,
+    table: &keys::Consolidation,
     problems: &mut Problems,
 ) -> Result<Vec<[[f64; 3]; 2]>, Wrong> {
     let context = about.context;
     let mut drains = Vec::new();
-    for drain in own.drains.iter() {
+    for drain in table.drains.iter() {
         let keys::Drain { from, to } = &drain.as_ref().map_err(|_| Wrong)?.value;
         let within = extent::<D>(from, to, problems)?;
         let is_flat = (0..D).any(|axis| within.lower[axis] >= within.upper[axis]);
@@ -180,7 +180,7 @@ fn side_within_cells<const D: usize>(
     let thin = WITHIN * context.soil.cell();
     let sides = (0..D).flat_map(|axis| [(axis, false), (axis, true)]);
     let mut sides = sides.filter(|&(axis, is_upper)| {
-        // What lies just beyond the side, along it: soil that does not drain.
+        // The strip just beyond the side, along it: soil that does not drain.
         let mut beyond = [lower, upper];
         beyond[usize::from(!is_upper)][axis] = if is_upper {
             upper[axis]

@@ -1,4 +1,4 @@
-//! Construction stages: what they may do to what is there.
+//! Construction stages: the changes that they may make.
 
 use igimp_model::{Construction, Drainage, LoadKind, StageKind};
 use igimp_schema::diagnostic::Problems;
@@ -24,18 +24,18 @@ pub(crate) fn stage<const D: usize>(
     let place = bodies(about, stated.placed(), "places", problems);
     let remove = bodies(about, stated.removed(), "removes", problems);
     let materials = materials(about, stated.changes(), problems);
-    let who = format!("stage `{name}` calls for");
+    let subject = format!("stage `{name}` calls for");
     let water = stated.water.as_ref().map_err(|_| Wrong);
     let waters = &about.context.names.water;
-    let water = water.and_then(|own| waters.find_optional(own.as_ref(), &who, problems));
-    let own = Construction {
+    let water = water.and_then(|key| waters.find_optional(key.as_ref(), &subject, problems));
+    let built = Construction {
         place: place?,
         remove: remove?,
         materials: materials?,
         water: water.ok()?,
         dissipate: **stated.dissipate.as_ref().ok()?,
     };
-    if own == Construction::default() && stated.place.is_ok() {
+    if built == Construction::default() && stated.place.is_ok() {
         problems
             .error(
                 about.stage.form.place,
@@ -44,10 +44,10 @@ pub(crate) fn stage<const D: usize>(
             .help("write place, remove, materials, water or dissipate");
     }
     if problems.errors() == errors {
-        comes_and_goes(about, stated, &own, problems);
-        loads_stay_held(about, stated, &own, problems);
+        comes_and_goes(about, stated, &built, problems);
+        loads_stay_held(about, stated, &built, problems);
     }
-    Some(StageKind::Construction(own))
+    Some(StageKind::Construction(built))
 }
 
 /// The bodies that a list names.
@@ -57,11 +57,11 @@ fn bodies<const D: usize>(
     does: &str,
     problems: &mut Problems,
 ) -> Option<Vec<usize>> {
-    let who = format!("stage `{}` {does}", about.name);
+    let subject = format!("stage `{}` {does}", about.name);
     let mut found = Vec::new();
     let mut is_right = true;
     for value in list {
-        let Some(body) = about.context.names.bodies.find(value, &who, problems) else {
+        let Some(body) = about.context.names.bodies.find(value, &subject, problems) else {
             is_right = false;
             continue;
         };
@@ -73,7 +73,7 @@ fn bodies<const D: usize>(
     is_right.then_some(found)
 }
 
-/// Bodies and what they become.
+/// Bodies and their new materials.
 fn materials<const D: usize>(
     about: &About<'_, D>,
     changes: &[Result<At<keys::MaterialChange>, Wrong>],
@@ -87,10 +87,10 @@ fn materials<const D: usize>(
             is_right = false;
             continue;
         };
-        let who = format!("stage `{name}` changes");
-        let body = names.bodies.find(&change.body, &who, problems);
-        let who = format!("stage `{name}` uses");
-        let material = names.materials.find(&change.material, &who, problems);
+        let subject = format!("stage `{name}` changes");
+        let body = names.bodies.find(&change.body, &subject, problems);
+        let subject = format!("stage `{name}` uses");
+        let material = names.materials.find(&change.material, &subject, problems);
         let (Some(body), Some(material)) = (body, material) else {
             is_right = false;
             continue;
@@ -103,11 +103,11 @@ fn materials<const D: usize>(
     is_right.then_some(found)
 }
 
-/// Refuses to place what is there, and to take away or change what is not.
+/// Refuses to place bodies that are there, and to take away or change others.
 fn comes_and_goes<const D: usize>(
     about: &About<'_, D>,
     stated: &keys::Construction,
-    own: &Construction,
+    built: &Construction,
     problems: &mut Problems,
 ) {
     let (context, index) = (about.context, about.index);
@@ -121,8 +121,8 @@ fn comes_and_goes<const D: usize>(
         let mut placed = placed(context.stages).into_iter();
         placed.any(|name| name == context.names.bodies.name(body))
     };
-    for (value, &body) in std::iter::zip(stated.placed(), &own.place) {
-        if own.remove.contains(&body) {
+    for (value, &body) in std::iter::zip(stated.placed(), &built.place) {
+        if built.remove.contains(&body) {
             problems
                 .error(
                     value.place,
@@ -151,15 +151,15 @@ fn comes_and_goes<const D: usize>(
             problem.help("a body that some stage places is not there before that stage");
         }
     };
-    for (value, &body) in std::iter::zip(stated.removed(), &own.remove) {
-        if !before.present[body] && !own.place.contains(&body) {
+    for (value, &body) in std::iter::zip(stated.removed(), &built.remove) {
+        if !before.present[body] && !built.place.contains(&body) {
             missing(value, body, problems);
         }
     }
     let changes = stated.changes().iter().flatten();
-    for (change, &(body, material)) in std::iter::zip(changes, &own.materials) {
+    for (change, &(body, material)) in std::iter::zip(changes, &built.materials) {
         let value = &change.body;
-        if own.remove.contains(&body) {
+        if built.remove.contains(&body) {
             problems.error(
                 value.place,
                 format!(
@@ -167,7 +167,7 @@ fn comes_and_goes<const D: usize>(
                     shown(body)
                 ),
             );
-        } else if !before.present[body] && !own.place.contains(&body) {
+        } else if !before.present[body] && !built.place.contains(&body) {
             missing(value, body, problems);
         } else if before.material[body] == Some(material) {
             problems.warning(
@@ -176,7 +176,7 @@ fn comes_and_goes<const D: usize>(
             );
         }
     }
-    if !own.remove.is_empty() && !context.sequence.ends[index].present.contains(&true) {
+    if !built.remove.is_empty() && !context.sequence.ends[index].present.contains(&true) {
         problems
             .error(
                 stated.remove.as_ref().ok().map(|list| list.place),
@@ -190,7 +190,7 @@ fn comes_and_goes<const D: usize>(
 fn loads_stay_held<const D: usize>(
     about: &About<'_, D>,
     stated: &keys::Construction,
-    own: &Construction,
+    built: &Construction,
     problems: &mut Problems,
 ) {
     let (context, index) = (about.context, about.index);
@@ -198,11 +198,11 @@ fn loads_stay_held<const D: usize>(
         let Some(kind) = kind.as_ref().filter(|_| acts(context, index, load)) else {
             continue;
         };
-        let lost = own.remove.iter().position(|&body| {
+        let lost = built.remove.iter().position(|&body| {
             context.soil.bears(body, &kind.kind) && !stays_held(context, index, &kind.kind)
         });
         if let Some(lost) = lost {
-            let body = clip(context.names.bodies.name(own.remove[lost]), 40);
+            let body = clip(context.names.bodies.name(built.remove[lost]), 40);
             let is_footing = matches!(kind.kind, LoadKind::RigidFooting { .. });
             problems
                 .error(
@@ -231,13 +231,13 @@ fn stays_held<const D: usize>(context: &Context<'_, D>, index: usize, load: &Loa
 fn acts<const D: usize>(context: &Context<'_, D>, index: usize, load: usize) -> bool {
     let mut at = context.sequence.from(index);
     while let Some(stage) = at {
-        if let Some(own) = &context.stages[stage] {
-            let mut named = own.loads().into_iter();
+        if let Some(table) = &context.stages[stage] {
+            let mut named = table.loads().into_iter();
             if named.any(|name| context.names.loads.position(name) == Some(load)) {
-                let StageForm::Load(Ok(own)) = &*own.form else {
+                let StageForm::Load(Ok(loading)) = &*table.form else {
                     return true;
                 };
-                return own.factor.as_ref().map(|factor| **factor) != Ok(0.0);
+                return loading.factor.as_ref().map(|factor| **factor) != Ok(0.0);
             }
         }
         at = context.sequence.from(stage);
@@ -253,18 +253,18 @@ pub(crate) fn load_is_held<const D: usize>(
     problems: &mut Problems,
 ) {
     let (context, index) = (about.context, about.index);
-    let Some(own) = context.loads.get(load).and_then(Option::as_ref) else {
+    let Some(loading) = context.loads.get(load).and_then(Option::as_ref) else {
         return;
     };
     let bodies = context.sequence.start.present.len();
-    let is_somewhere = (0..bodies).any(|body| context.soil.bears(body, &own.kind));
-    if context.soil.is_known() && is_somewhere && !stays_held(context, index, &own.kind) {
+    let is_somewhere = (0..bodies).any(|body| context.soil.bears(body, &loading.kind));
+    if context.soil.is_known() && is_somewhere && !stays_held(context, index, &loading.kind) {
         problems
             .error(
                 place,
                 format!(
                     "`{}` acts on soil that is not there in this stage",
-                    clip(&own.name, 40)
+                    clip(&loading.name, 40)
                 ),
             )
             .help("place the body before, in a stage of type construction");
@@ -288,8 +288,8 @@ pub(crate) fn check<const D: usize>(context: &Context<'_, D>, problems: &mut Pro
     let bodies = std::iter::zip(&start.present, &start.material);
     let mut there = bodies.filter_map(|(present, material)| material.filter(|_| *present));
     let is_undrained = |material: usize| {
-        let own = context.materials.get(material).and_then(Option::as_ref);
-        own.is_some_and(|own| matches!(own.drainage, Drainage::Undrained { .. }))
+        let soil = context.materials.get(material).and_then(Option::as_ref);
+        soil.is_some_and(|soil| matches!(soil.drainage, Drainage::Undrained { .. }))
     };
     if let Some(Some(first)) = context.stages.first()
         && let StageForm::Gravity(_) = *first.form
@@ -304,15 +304,15 @@ pub(crate) fn check<const D: usize>(context: &Context<'_, D>, problems: &mut Pro
             )
             .help("for ground that has stood for long write drained = true in this stage");
     }
-    let changes = |own: &keys::Construction| {
-        let lists = [own.placed(), own.removed()];
-        !own.changes().is_empty() || lists.iter().any(|list| !list.is_empty())
+    let changes = |table: &keys::Construction| {
+        let lists = [table.placed(), table.removed()];
+        !table.changes().is_empty() || lists.iter().any(|list| !list.is_empty())
     };
     let mut built = context
         .stages
         .iter()
         .flatten()
-        .filter_map(|own| own.construction());
+        .filter_map(|stage| stage.construction());
     if let Ok(grid) = Root::<D>::grid(context.tree)
         && let Ok(mixed) = &grid.mixed_cells
         && **mixed == MixedCells::Mean

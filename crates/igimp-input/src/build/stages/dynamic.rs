@@ -16,30 +16,30 @@ use crate::build::rigid::stage::moves;
 /// Motion in time.
 pub(crate) fn stage<const D: usize>(
     about: &About<'_, D>,
-    own: &keys::Dynamic,
+    table: &keys::Dynamic,
     problems: &mut Problems,
 ) -> Option<StageKind> {
     let bodies = moves(about, problems);
     has_mass(about, bodies.as_deref().unwrap_or_default(), problems);
-    let reduction = match own.reduction.as_ref().ok()? {
+    let reduction = match table.reduction.as_ref().ok()? {
         None => {
-            keeps_strength(own, problems)?;
+            keeps_strength(table, problems)?;
             None
         }
         Some(stated) => Some((
-            materials(about, &own.materials, problems)?,
+            materials(about, &table.materials, problems)?,
             reduction_of(about, stated, problems)?,
         )),
     };
-    let walls = walls(about, own, problems);
-    let ground_motion = match &own.ground_motion {
+    let walls = walls(about, table, problems);
+    let ground_motion = match &table.ground_motion {
         None => None,
         Some(stated) => {
             let motion = motion(about, stated, problems)?;
             if motion
                 .times
                 .first()
-                .is_some_and(|begins| *begins >= *own.duration)
+                .is_some_and(|begins| *begins >= *table.duration)
             {
                 problems
                     .warning(
@@ -52,34 +52,34 @@ pub(crate) fn stage<const D: usize>(
             Some(motion)
         }
     };
-    has_inertia(about, own, problems);
-    let rayleigh = match &own.rayleigh {
+    has_inertia(about, table, problems);
+    let rayleigh = match &table.rayleigh {
         None => None,
         Some(stated) => Some(rayleigh(stated, problems)?),
     };
-    let newmark_from = newmark_from(about, own, problems).ok()?;
+    let newmark_from = newmark_from(about, table, problems).ok()?;
     Some(StageKind::Dynamic(Dynamic {
         walls: walls?,
         ground_motion,
         rayleigh,
         newmark_from,
-        duration: *own.duration,
-        scheme: match *own.scheme {
+        duration: *table.duration,
+        scheme: match *table.scheme {
             keys::Scheme::BackwardEuler => TimeScheme::BackwardEuler,
             keys::Scheme::Newmark => TimeScheme::Newmark,
             keys::Scheme::GeneralisedAlpha => TimeScheme::GeneralisedAlpha,
         },
-        lumped_share: *own.lumped_share,
-        tied_below: *own.tied_below,
-        longest_step: own.longest_step.as_ref().map(|own| **own),
+        lumped_share: *table.lumped_share,
+        tied_below: *table.tied_below,
+        longest_step: table.longest_step.as_ref().map(|step| **step),
         reduction,
         bodies: bodies?,
-        at_rest: own.at_rest.as_ref().map(|own| **own),
+        at_rest: table.at_rest.as_ref().map(|value| **value),
     }))
 }
 
 /// Remarks on soil without weight, which moves without inertia.
-fn has_inertia<const D: usize>(about: &About<'_, D>, own: &keys::Dynamic, problems: &mut Problems) {
+fn has_inertia<const D: usize>(about: &About<'_, D>, run: &keys::Dynamic, problems: &mut Problems) {
     for (index, material) in about.context.materials.iter().enumerate() {
         if let Some(material) = material
             && material.unit_weight <= 0.0
@@ -88,7 +88,7 @@ fn has_inertia<const D: usize>(about: &About<'_, D>, own: &keys::Dynamic, proble
             let name = clip(&material.name, 40);
             problems
                 .warning(
-                    own.duration.place,
+                    run.duration.place,
                     format!("the material `{name}` has no weight, and so no mass: it moves without inertia"),
                 )
                 .help("state its unit_weight: its density is that over gravity");
@@ -97,8 +97,8 @@ fn has_inertia<const D: usize>(about: &About<'_, D>, own: &keys::Dynamic, proble
 }
 
 /// Refuses materials whose strength is to be reduced where nothing says by how much.
-fn keeps_strength(own: &keys::Dynamic, problems: &mut Problems) -> Option<()> {
-    match own.materials.as_ref().ok()? {
+fn keeps_strength(table: &keys::Dynamic, problems: &mut Problems) -> Option<()> {
+    match table.materials.as_ref().ok()? {
         Some(named) if named.written => {
             problems
                 .error(
@@ -117,12 +117,12 @@ fn has_mass<const D: usize>(about: &About<'_, D>, moved: &[RigidMove], problems:
     let Ok(bodies) = Root::<D>::rigid(about.context.tree) else {
         return;
     };
-    let loaded = moved.iter().filter(|own| {
-        let mut drives = own.drives.iter().flatten();
+    let loaded = moved.iter().filter(|motion| {
+        let mut drives = motion.drives.iter().flatten();
         drives.any(|drive| matches!(drive, RigidDrive::Force(_)))
     });
-    for own in loaded {
-        let Some(Ok(body)) = bodies.get(own.body) else {
+    for motion in loaded {
+        let Some(Ok(body)) = bodies.get(motion.body) else {
             continue;
         };
         let Ok(common) = &body.common else {

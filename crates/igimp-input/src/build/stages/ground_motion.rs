@@ -1,4 +1,4 @@
-//! Earthquakes: walls, the motion of the ground, and what a sliding block does by it.
+//! Earthquakes: walls, the motion of the ground, and a block that slides on it.
 
 use igimp_assembly::Rayleigh;
 use igimp_model::{Base, GroundMotion, StageWalls};
@@ -17,16 +17,16 @@ use crate::build::context::About;
 /// A record of velocity whose first value is no larger share of its largest one begins at rest \[-\].
 const AT_REST: f64 = 1e-2;
 
-/// What lies beyond the walls.
+/// The ground beyond the walls.
 pub(super) fn walls<const D: usize>(
     about: &About<'_, D>,
-    own: &Dynamic,
+    table: &Dynamic,
     problems: &mut Problems,
 ) -> Option<StageWalls> {
     let mut absorbing = Vec::new();
-    for wall in own.absorbing.iter() {
+    for wall in table.absorbing.iter() {
         let known = side::<D>(wall, problems).ok()?;
-        if *own.tied_sides && known.0 == 0 {
+        if *table.tied_sides && known.0 == 0 {
             problems
                 .error(
                     wall.place,
@@ -39,19 +39,19 @@ pub(super) fn walls<const D: usize>(
             absorbing.push(known);
         }
     }
-    let free_field = beside_free_field::<D>(own, &absorbing, problems)?;
-    let motion = own.ground_motion.as_ref();
+    let free_field = beside_free_field::<D>(table, &absorbing, problems)?;
+    let motion = table.ground_motion.as_ref();
     let below = (D - 1, false);
-    is_free_below::<D>(own, problems)?;
-    reaches_sides(about, own, problems)?;
-    if motion.is_some_and(|own| *own.base == BaseKind::Compliant) && !absorbing.contains(&below) {
+    is_free_below::<D>(table, problems)?;
+    reaches_sides(about, table, problems)?;
+    if motion.is_some_and(|m| *m.base == BaseKind::Compliant) && !absorbing.contains(&below) {
         absorbing.push(below);
     }
-    let mut sides = own.absorbing.iter().chain(own.free_field.iter());
+    let mut sides = table.absorbing.iter().chain(table.free_field.iter());
     let first = sides.next().map(|wall| wall.place);
-    let tied = own.tied_sides.then_some(own.tied_sides.place);
+    let tied = table.tied_sides.then_some(table.tied_sides.place);
     if about.index == 0
-        && let Some(place) = first.or(tied).or(motion.map(|own| own.place))
+        && let Some(place) = first.or(tied).or(motion.map(|motion| motion.place))
     {
         problems
             .error(
@@ -62,11 +62,11 @@ pub(super) fn walls<const D: usize>(
         return None;
     }
     // A file with every default written down states the usual ones.
-    let are_usual = own.wall_springs.total_cmp(&1.0).is_eq();
+    let are_usual = table.wall_springs.total_cmp(&1.0).is_eq();
     if !are_usual && absorbing.is_empty() && free_field.is_empty() {
         problems
             .error(
-                own.wall_springs.place,
+                table.wall_springs.place,
                 "springs stand beside dashpots, and no side has any",
             )
             .help("name sides in absorbing or free_field, or remove wall_springs");
@@ -74,22 +74,22 @@ pub(super) fn walls<const D: usize>(
     }
     let walls = StageWalls {
         absorbing,
-        springs: *own.wall_springs,
-        tied: *own.tied_sides,
+        springs: *table.wall_springs,
+        tied: *table.tied_sides,
         free_field,
     };
-    warn_of_rigid_walls((about, own), &walls, problems);
+    warn_of_rigid_walls((about, table), &walls, problems);
     Some(walls)
 }
 
 /// Warns of sides across the motion of the ground that hold the soil: they go along with the base as rigid walls.
 fn warn_of_rigid_walls<const D: usize>(
-    (about, own): (&About<'_, D>, &Dynamic),
+    (about, table): (&About<'_, D>, &Dynamic),
     walls: &StageWalls,
     problems: &mut Problems,
 ) {
     let (Some(motion), Ok(sides)) = (
-        own.ground_motion.as_ref(),
+        table.ground_motion.as_ref(),
         Root::<D>::boundaries(about.context.tree),
     ) else {
         return;
@@ -128,12 +128,12 @@ fn warn_of_rigid_walls<const D: usize>(
 }
 
 /// Refuses dashpots at a bottom that moves by a record, whatever the soil does.
-fn is_free_below<const D: usize>(own: &Dynamic, problems: &mut Problems) -> Option<()> {
+fn is_free_below<const D: usize>(table: &Dynamic, problems: &mut Problems) -> Option<()> {
     let is_rigid = |motion: &At<keys::GroundMotion>| *motion.base == BaseKind::Rigid;
-    if !own.ground_motion.as_ref().is_some_and(is_rigid) {
+    if !table.ground_motion.as_ref().is_some_and(is_rigid) {
         return Some(());
     }
-    let bottom = own.absorbing.iter().find(|wall| ***wall == Wall::Bottom);
+    let bottom = table.absorbing.iter().find(|wall| ***wall == Wall::Bottom);
     let Some(wall) = bottom else {
         return Some(());
     };
@@ -149,7 +149,7 @@ fn is_free_below<const D: usize>(own: &Dynamic, problems: &mut Problems) -> Opti
 /// Refuses walls at sides of the grid that no body reaches.
 fn reaches_sides<const D: usize>(
     about: &About<'_, D>,
-    own: &Dynamic,
+    table: &Dynamic,
     problems: &mut Problems,
 ) -> Option<()> {
     let context = about.context;
@@ -157,7 +157,7 @@ fn reaches_sides<const D: usize>(
         return Some(());
     };
     let is_reached = |side| meets_side(context.bodies, context.sequence, side, ends);
-    for wall in own.absorbing.iter().chain(own.free_field.iter()) {
+    for wall in table.absorbing.iter().chain(table.free_field.iter()) {
         if !is_reached(side::<D>(wall, problems).ok()?) {
             let message = format!(
                 "no body reaches the side {}: nothing stands there",
@@ -173,13 +173,13 @@ fn reaches_sides<const D: usize>(
     let missing = missing
         .into_iter()
         .find(|&(_, upper)| !is_reached((0, upper)));
-    if let (true, Some((wall, _))) = (*own.tied_sides, missing) {
+    if let (true, Some((wall, _))) = (*table.tied_sides, missing) {
         let message = format!(
             "no body reaches the side {}: it moves with nothing",
             wall.name()
         );
         problems
-            .error(own.tied_sides.place, message)
+            .error(table.tied_sides.place, message)
             .help("let domain end where the ground does on the left and on the right, or remove tied_sides");
         return None;
     }
@@ -188,12 +188,12 @@ fn reaches_sides<const D: usize>(
 
 /// The sides beside which soil moves in free field.
 fn beside_free_field<const D: usize>(
-    own: &Dynamic,
+    table: &Dynamic,
     absorbing: &[(usize, bool)],
     problems: &mut Problems,
 ) -> Option<Vec<(usize, bool)>> {
     let mut sides = Vec::new();
-    for wall in own.free_field.iter() {
+    for wall in table.free_field.iter() {
         let known = side::<D>(wall, problems).ok()?;
         let (message, help) = if D == 3 {
             (
@@ -205,7 +205,7 @@ fn beside_free_field<const D: usize>(
                 "soil in free field stands beside the left or the right side",
                 "write base = \"compliant\" for rock below",
             )
-        } else if *own.tied_sides {
+        } else if *table.tied_sides {
             (
                 "this side moves with the other, and is to have soil in free field beside it",
                 "keep tied_sides for level ground, free_field for all other",
@@ -230,12 +230,13 @@ fn beside_free_field<const D: usize>(
 /// The motion of the ground.
 pub(super) fn motion<const D: usize>(
     about: &About<'_, D>,
-    own: &At<keys::GroundMotion>,
+    record: &At<keys::GroundMotion>,
     problems: &mut Problems,
 ) -> Option<GroundMotion> {
-    let (Some(time), Some(values), Some(unit)) = (&own.time, &own.values, &own.unit) else {
+    let (Some(time), Some(values), Some(unit)) = (&record.time, &record.values, &record.unit)
+    else {
         problems
-            .error(own.place, "the motion of the ground has no samples")
+            .error(record.place, "the motion of the ground has no samples")
             .help("write file = \"record.csv\", or unit, time and values");
         return None;
     };
@@ -253,18 +254,18 @@ pub(super) fn motion<const D: usize>(
             .help("times of a record ascend, each once");
         return None;
     }
-    let axis = match *own.axis {
+    let axis = match *record.axis {
         MotionAxis::X => Some(0),
         MotionAxis::Y => Some(1),
         MotionAxis::Z => (D == 3).then_some(2),
     };
     let Some(axis) = axis else {
         problems
-            .error(own.axis.place, "there is no axis z in plane strain")
+            .error(record.axis.place, "there is no axis z in plane strain")
             .help("write x or y");
         return None;
     };
-    let base = match *own.base {
+    let base = match *record.base {
         BaseKind::Rigid => Base::Rigid,
         BaseKind::Compliant => Base::Compliant,
     };
@@ -275,7 +276,7 @@ pub(super) fn motion<const D: usize>(
     {
         problems
             .error(
-                own.place,
+                record.place,
                 "the bottom of the grid does not take the soil along",
             )
             .help("write bottom = \"fixed\" in [boundaries], or base = \"compliant\" here");
@@ -283,9 +284,9 @@ pub(super) fn motion<const D: usize>(
     }
     let (size, is_velocity) = unit.in_si();
     Some(GroundMotion {
-        times: time.iter().map(|own| **own).collect(),
+        times: time.iter().map(|t| **t).collect(),
         values: (values.iter())
-            .map(|value| size * *own.scale * **value)
+            .map(|value| size * *record.scale * **value)
             .collect(),
         is_velocity,
         axis,
@@ -295,11 +296,11 @@ pub(super) fn motion<const D: usize>(
 
 /// Remarks on a record of velocity that does not begin at zero: acceleration is its slope, and knows no first value.
 pub(super) fn begins_at_rest(
-    own: &At<keys::GroundMotion>,
+    record: &At<keys::GroundMotion>,
     motion: &GroundMotion,
     problems: &mut Problems,
 ) {
-    let (Some(first), Some(values)) = (motion.values.first(), &own.values) else {
+    let (Some(first), Some(values)) = (motion.values.first(), &record.values) else {
         return;
     };
     let largest = motion.values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
@@ -317,25 +318,25 @@ pub(super) fn begins_at_rest(
 }
 
 /// Damping of soil.
-pub(super) fn rayleigh(own: &keys::Rayleigh, problems: &mut Problems) -> Option<Rayleigh> {
-    let periods = own.periods.value;
+pub(super) fn rayleigh(damping: &keys::Rayleigh, problems: &mut Problems) -> Option<Rayleigh> {
+    let periods = damping.periods.value;
     if (periods[0] - periods[1]).abs() < 1e-9 * periods[0] {
         problems
-            .error(own.periods.place, "the two periods are the same")
+            .error(damping.periods.place, "the two periods are the same")
             .help("name two periods between which the motion has most of its energy");
         return None;
     }
-    if *own.ratio > 1.0 {
+    if *damping.ratio > 1.0 {
         let message = format!(
             "a damping ratio of {} is so many times the critical one: nothing swings",
-            short(*own.ratio)
+            short(*damping.ratio)
         );
         problems
-            .warning(own.ratio.place, message)
+            .warning(damping.ratio.place, message)
             .help("it is a share: 0.05 are 5 %; soil has 0.01 to 0.05 beside its plastic work");
     }
     Some(Rayleigh::at(
-        [*own.ratio; 2],
+        [*damping.ratio; 2],
         periods.map(|period| 1.0 / period),
     ))
 }
@@ -343,16 +344,16 @@ pub(super) fn rayleigh(own: &keys::Rayleigh, problems: &mut Problems) -> Option<
 /// The stage whose yield acceleration a sliding block goes by.
 pub(super) fn newmark_from<const D: usize>(
     about: &About<'_, D>,
-    own: &Dynamic,
+    table: &Dynamic,
     problems: &mut Problems,
 ) -> Result<Option<usize>, ()> {
-    let Some(named) = &own.newmark_from else {
+    let Some(named) = &table.newmark_from else {
         return Ok(None);
     };
-    let who = format!("stage `{}` takes the yield acceleration from", about.name);
+    let subject = format!("stage `{}` takes the yield acceleration from", about.name);
     let stages = &about.context.names.stages;
-    let index = stages.find(named, &who, problems).ok_or(())?;
-    let Some(motion) = &own.ground_motion else {
+    let index = stages.find(named, &subject, problems).ok_or(())?;
+    let Some(motion) = &table.ground_motion else {
         problems
             .error(named.place, "a block slides on ground that moves")
             .help("add ground_motion, or remove newmark_from");
@@ -369,7 +370,7 @@ pub(super) fn newmark_from<const D: usize>(
     }
     let stage = about.context.stages.get(index).and_then(Option::as_ref);
     let pushes = stage.is_some_and(|stage| match &*stage.form {
-        StageForm::Gravity(Ok(own)) => own.horizontal.as_ref().is_some_and(|own| **own != 0.0),
+        StageForm::Gravity(Ok(form)) => form.horizontal.as_ref().is_some_and(|k| **k != 0.0),
         _ => false,
     });
     if index >= about.index || !pushes {

@@ -22,7 +22,7 @@ pub(crate) fn check<const D: usize>(
             continue;
         };
         let does_more = stage.consolidation.is_some() || !stage.install.is_empty() || stage.drained;
-        let told = match &stage.kind {
+        let remark = match &stage.kind {
             StageKind::Load { loads, factor } if !does_more && !stage.reset_displacements => {
                 idle_load(context, built, stage, (loads, *factor))
             }
@@ -32,7 +32,7 @@ pub(crate) fn check<const D: usize>(
             }
             _ => None,
         };
-        if let Some((text, help)) = told {
+        if let Some((text, help)) = remark {
             let name = clip(&stage.name, 40);
             problems
                 .warning(stated.form.place, format!("stage `{name}` {text}"))
@@ -44,7 +44,7 @@ pub(crate) fn check<const D: usize>(
 /// The stages that a stage follows, the latest first.
 fn before<'a>(built: &'a [Option<Stage>], stage: &Stage) -> impl Iterator<Item = &'a Stage> {
     let of = |from: Option<usize>| built.get(from?)?.as_ref();
-    std::iter::successors(of(stage.start_from), move |own| of(own.start_from))
+    std::iter::successors(of(stage.start_from), move |stage| of(stage.start_from))
 }
 
 /// A stage that applies loads as they act already.
@@ -55,7 +55,7 @@ fn idle_load<const D: usize>(
     (loads, factor): (&[usize], f64),
 ) -> Option<(String, String)> {
     let acts = |load: usize| {
-        let found = before(built, stage).find_map(|own| match &own.kind {
+        let found = before(built, stage).find_map(|past| match &past.kind {
             StageKind::Load { loads, factor } if loads.contains(&load) => Some(*factor),
             _ => None,
         });
@@ -70,17 +70,17 @@ fn idle_load<const D: usize>(
         return None;
     }
     let name = clip(&name.name, 40);
-    let told = if factor == 0.0 {
+    let text = if factor == 0.0 {
         format!("applies nothing: load `{name}` has factor = 0, and did not act before")
     } else {
         let factor = number(factor);
         format!("changes nothing: load `{name}` acts with a factor of {factor} already")
     };
     let help = "a factor is that of the load as stated and adds to none before: factor = 2 makes it twice the load";
-    Some((told, help.to_owned()))
+    Some((text, help.to_owned()))
 }
 
-/// A stage that raises gravity to what it is.
+/// A stage that leaves gravity as it is.
 fn idle_gravity(built: &[Option<Stage>], stage: &Stage) -> Option<(String, String)> {
     let StageKind::Gravity {
         factor,
@@ -91,17 +91,17 @@ fn idle_gravity(built: &[Option<Stage>], stage: &Stage) -> Option<(String, Strin
     else {
         return None;
     };
-    let earlier = before(built, stage).find(|own| {
+    let earlier = before(built, stage).find(|past| {
         matches!(
-            own.kind,
+            past.kind,
             StageKind::Gravity { .. } | StageKind::K0 | StageKind::Construction(_)
         )
     });
     let Some(earlier) = earlier else {
         let shares = [horizontal, across, vertical].into_iter().flatten();
-        let told = "raises no weight: factor = 0, and none acted before".to_owned();
+        let text = "raises no weight: factor = 0, and none acted before".to_owned();
         let help = "factor = 1, the default, is the whole weight".to_owned();
-        return (factor == 0.0 && shares.sum::<f64>() == 0.0).then_some((told, help));
+        return (factor == 0.0 && shares.sum::<f64>() == 0.0).then_some((text, help));
     };
     let StageKind::Gravity {
         factor: acts,
@@ -112,8 +112,8 @@ fn idle_gravity(built: &[Option<Stage>], stage: &Stage) -> Option<(String, Strin
     else {
         return None;
     };
-    let keeps = |own: Option<f64>, before: Option<f64>| {
-        own.is_none_or(|own| (own - before.unwrap_or(0.0)).abs() <= 1e-12)
+    let keeps = |share: Option<f64>, before: Option<f64>| {
+        share.is_none_or(|share| (share - before.unwrap_or(0.0)).abs() <= 1e-12)
     };
     let is_same = (factor - acts).abs() <= 1e-12
         && keeps(horizontal, along)
@@ -121,12 +121,12 @@ fn idle_gravity(built: &[Option<Stage>], stage: &Stage) -> Option<(String, Strin
         && keeps(vertical, up);
     let may_be_meant = stage.reset_displacements || stage.geometry != earlier.geometry;
     (is_same && !may_be_meant).then(|| {
-        let told = format!(
+        let text = format!(
             "changes nothing: gravity acts as in stage `{}` already",
             clip(&earlier.name, 40)
         );
         let help = "a factor is that of the whole weight and adds to none before".to_owned();
-        (told, help)
+        (text, help)
     })
 }
 
@@ -138,15 +138,15 @@ fn idle_motion<const D: usize>(
     let StageKind::Rigid(moves) = &stage.kind else {
         return None;
     };
-    let mut drives = moves.iter().flat_map(|own| own.drives).flatten().peekable();
-    let stands = |own: RigidDrive| matches!(own, RigidDrive::By(by) if by == 0.0);
+    let mut drives = moves.iter().flat_map(|m| m.drives).flatten().peekable();
+    let stands = |drive: RigidDrive| matches!(drive, RigidDrive::By(by) if by == 0.0);
     if drives.peek().is_none() || !drives.all(stands) {
         return None;
     }
     let name = clip(&rigid.get(moves[0].body)?.as_ref()?.name, 40);
-    let told = format!("moves the rigid body `{name}` by nothing");
+    let text = format!("moves the rigid body `{name}` by nothing");
     let help = "its resistance is that of a body at rest; displacements are those of the stage, not of the end";
-    Some((told, help.to_owned()))
+    Some((text, help.to_owned()))
 }
 
 /// A stage that lifts a body which only rests on soil and was never pushed before.
@@ -159,22 +159,22 @@ fn lifted<const D: usize>(
         return None;
     };
     let is_moved = |body: usize| {
-        before(built, stage).any(|own| match &own.kind {
-            StageKind::Rigid(moves) => moves.iter().any(|own| own.body == body),
+        before(built, stage).any(|past| match &past.kind {
+            StageKind::Rigid(moves) => moves.iter().any(|motion| motion.body == body),
             _ => false,
         })
     };
     let parts = || context.bodies.iter().flatten();
-    let own = moves.iter().find(|own| {
-        let rises = matches!(own.drives[D - 1], Some(RigidDrive::By(by)) if by > 0.0);
-        let part = rigid.get(own.body).and_then(Option::as_ref);
-        rises && !is_moved(own.body) && part.is_some_and(|part| rests_on(part, parts(), context))
+    let motion = moves.iter().find(|motion| {
+        let rises = matches!(motion.drives[D - 1], Some(RigidDrive::By(by)) if by > 0.0);
+        let part = rigid.get(motion.body).and_then(Option::as_ref);
+        rises && !is_moved(motion.body) && part.is_some_and(|part| rests_on(part, parts(), context))
     })?;
-    let name = clip(&rigid[own.body].as_ref()?.name, 40);
+    let name = clip(&rigid[motion.body].as_ref()?.name, 40);
     let key = ["y", "z"][D - 2];
-    let told = format!("lifts the rigid body `{name}` off the soil that it rests on");
+    let text = format!("lifts the rigid body `{name}` off the soil that it rests on");
     let help = format!("{key} points up: {key} = \"-0.1 m\" pushes it down");
-    Some((told, help))
+    Some((text, help))
 }
 
 /// Whether no soil lies beside or above the lowest level of a body.
@@ -189,8 +189,8 @@ fn rests_on<'a, const D: usize>(
         .map(|share| std::array::from_fn(|k| lower[k] + share * (upper[k] - lower[k])))
         .to_vec();
     context.soil.is_known()
-        && bodies.all(|own| {
-            let mut tops = places.iter().filter_map(|place| own.region.top(place));
+        && bodies.all(|body| {
+            let mut tops = places.iter().filter_map(|place| body.region.top(place));
             tops.all(|top| top <= lower[D - 1] + near)
         })
 }

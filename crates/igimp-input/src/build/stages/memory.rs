@@ -1,4 +1,4 @@
-//! Bodies that come to another material: what the new law does not remember.
+//! Bodies that come to another material: memory that the new law lacks.
 
 use igimp_material::InternalVariable;
 use igimp_model::{Case, Material, ParameterValue, Profile, StageKind};
@@ -10,13 +10,13 @@ use igimp_schema::tree::Node;
 
 use crate::build::things;
 
-/// Warns of what soil remembers by one law and not by the one that a stage gives it, and of a ratio of overconsolidation that soil
-/// which remembers its preconsolidation does not take over.
+/// Warns of internal variables that a new law of soil does not keep. Warns too of a ratio of overconsolidation that soil with a
+/// preconsolidation pressure does not take over.
 pub(crate) fn check<const D: usize>(tree: &Node, case: &Case<D>, problems: &mut Problems) {
     let cell = case.grid.largest_cell()[D - 1];
     let stated = things(Root::<D>::stages(tree));
-    for (own, stated) in std::iter::zip(&case.stages, stated) {
-        let (StageKind::Construction(kind), Some(stated)) = (&own.kind, stated) else {
+    for (stage, stated) in std::iter::zip(&case.stages, stated) {
+        let (StageKind::Construction(kind), Some(stated)) = (&stage.kind, stated) else {
             continue;
         };
         let Some(changes) = stated.construction().map(Construction::changes) else {
@@ -27,16 +27,16 @@ pub(crate) fn check<const D: usize>(tree: &Node, case: &Case<D>, problems: &mut 
             if kind.place.contains(&body) {
                 continue;
             }
-            let before = &case.materials[case.material_after(own.start_from, body)];
+            let before = &case.materials[case.material_after(stage.start_from, body)];
             let after = &case.materials[material];
             let shown = clip(&case.bodies[body].name, 40);
-            let [from, to] = [before, after].map(|own| clip(&own.name, 40));
+            let [from, to] = [before, after].map(|soil| clip(&soil.name, 40));
             let lost = forgotten((before, after), cell);
             if !lost.is_empty() {
                 let are = if lost.len() == 1 { "is" } else { "are" };
                 let message = format!(
                     "stage `{}` makes `{shown}` of `{to}`: {} that it has by `{from}` {are} lost",
-                    clip(&own.name, 40),
+                    clip(&stage.name, 40),
                     lost.join(" and "),
                 );
                 problems
@@ -57,23 +57,23 @@ pub(crate) fn check<const D: usize>(tree: &Node, case: &Case<D>, problems: &mut 
     }
 }
 
-/// What soil remembers by the law of one material and not by that of another.
+/// Internal variables of the law of one material that another does not keep.
 fn forgotten((before, after): (&Material, &Material), cell: f64) -> Vec<String> {
     let (Ok(before), Ok(after)) = (before.law_on(cell), after.law_on(cell)) else {
         return Vec::new();
     };
-    let is_kept = |own: &InternalVariable| {
+    let is_kept = |variable: &InternalVariable| {
         let mut known = after.internal_variables().iter();
-        own.follows_stress || known.any(|other| own.is_remembered_as(other))
+        variable.follows_stress || known.any(|other| variable.is_remembered_as(other))
     };
     (before.internal_variables().iter())
-        .filter(|own| !is_kept(own))
-        .map(|own| format!("the {}", own.name))
+        .filter(|variable| !is_kept(variable))
+        .map(|variable| format!("the {}", variable.name))
         .collect()
 }
 
 /// The ratio of overconsolidation of a law that has one, and how it varies.
 fn ocr_of(material: &Material) -> Option<(ParameterValue, Option<&Profile>)> {
-    let own = (material.strength.parameters().into_iter()).find(|own| own.key == "ocr")?;
-    Some((own.value, material.profiles.of_parameter("ocr")))
+    let ocr = (material.strength.parameters().into_iter()).find(|entry| entry.key == "ocr")?;
+    Some((ocr.value, material.profiles.of_parameter("ocr")))
 }

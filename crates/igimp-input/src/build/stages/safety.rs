@@ -37,8 +37,8 @@ pub(super) fn materials<const D: usize>(
     let mut indices = Vec::new();
     let mut is_right = true;
     for value in list.iter() {
-        let who = format!("stage `{name}` reduces");
-        let Some(index) = context.names.materials.find(value, &who, problems) else {
+        let subject = format!("stage `{name}` reduces");
+        let Some(index) = context.names.materials.find(value, &subject, problems) else {
             is_right = false;
             continue;
         };
@@ -74,23 +74,23 @@ pub(super) fn materials<const D: usize>(
 /// A search for the factor of safety.
 pub(crate) fn strength_reduction<const D: usize>(
     about: &About<'_, D>,
-    own: &keys::StrengthReduction,
+    table: &keys::StrengthReduction,
     problems: &mut Problems,
 ) -> Option<StrengthReduction> {
     let context = about.context;
     // Searches at several times were put in its place where these are known.
-    if let Some(water) = &own.in_time {
+    if let Some(water) = &table.in_time {
         let message = format!("the water `{}` has no times to search at", clip(water, 40));
         problems.error(water.place, message).help(
             "name a condition of computed seepage with start_from and times = [\"1 d\", \"10 d\"]",
         );
         return None;
     }
-    let materials = materials(about, &own.materials, problems);
+    let materials = materials(about, &table.materials, problems);
     if let Some(found) = &materials {
-        are_there(about, (own, found), problems);
+        are_there(about, (table, found), problems);
     }
-    let path = match *own.path {
+    let path = match *table.path {
         keys::ReductionPath::Gravity => ReductionPath::Gravity,
         keys::ReductionPath::Reduce => ReductionPath::Reduce,
     };
@@ -106,37 +106,37 @@ pub(crate) fn strength_reduction<const D: usize>(
     if path == ReductionPath::Gravity && has_rigid {
         problems
             .error(
-                own.path.place,
+                table.path.place,
                 "gravity is raised on undeformed bodies, where rigid bodies stand elsewhere",
             )
             .help("write path = \"reduce\"");
     }
-    let bracket = *own.bracket;
+    let bracket = *table.bracket;
     if bracket[0] >= bracket[1] {
         problems
-            .error(own.bracket.place, "the bracket is not in ascending order")
+            .error(table.bracket.place, "the bracket is not in ascending order")
             .help("a factor thought stable first, like [1.0, 2.0]");
     }
-    let (failure_displacement, monitor) = match &own.failure.also {
+    let (failure_displacement, monitor) = match &table.failure.also {
         None => (None, None),
         Some(also) => {
             let monitor = context.monitor(also.monitor.as_ref(), about.name, problems);
             (Some(*also.displacement), monitor.ok()?)
         }
     };
-    let search = match **own.search.as_ref()? {
+    let search = match **table.search.as_ref()? {
         keys::Search::Continuation => SearchMethod::Continuation,
         keys::Search::Trials => SearchMethod::Trials,
     };
     if search == SearchMethod::Continuation {
-        on_given_geometry(own, problems);
+        on_given_geometry(table, problems);
     }
     Some(StrengthReduction {
         search,
         materials: materials?,
-        factors: plain(&own.factors),
+        factors: plain(&table.factors),
         bracket,
-        tolerance: *own.tolerance,
+        tolerance: *table.tolerance,
         path,
         failure_displacement,
         monitor,
@@ -146,7 +146,7 @@ pub(crate) fn strength_reduction<const D: usize>(
 /// Refuses to reduce the strength of materials of which no body is there: it decides nothing.
 fn are_there<const D: usize>(
     about: &About<'_, D>,
-    (own, found): (&keys::StrengthReduction, &[usize]),
+    (table, found): (&keys::StrengthReduction, &[usize]),
     problems: &mut Problems,
 ) {
     let context = about.context;
@@ -156,11 +156,11 @@ fn are_there<const D: usize>(
     if bodies().any(|(_, material)| material.is_none()) {
         return;
     }
-    let is_there = |material: &usize| bodies().any(|(_, own)| *own == Some(*material));
+    let is_there = |material: &usize| bodies().any(|(_, entry)| *entry == Some(*material));
     if found.iter().any(is_there) {
         return;
     }
-    let Ok(Some(list)) = &own.materials else {
+    let Ok(Some(list)) = &table.materials else {
         return;
     };
     let place = if list.written {
@@ -177,20 +177,20 @@ fn are_there<const D: usize>(
         .help("name materials of bodies that are there, or place the body before, in a stage of type construction");
 }
 
-/// Refuses what a path of equilibria has no place for.
-fn on_given_geometry(own: &keys::StrengthReduction, problems: &mut Problems) {
-    if *own.geometry == keys::Geometry::Moving {
+/// Refuses keys that a path of equilibria does not take.
+fn on_given_geometry(table: &keys::StrengthReduction, problems: &mut Problems) {
+    if *table.geometry == keys::Geometry::Moving {
         problems
             .error(
-                own.geometry.place,
+                table.geometry.place,
                 "a path of equilibria is followed on the given geometry",
             )
             .help("write geometry = \"given\", or search = \"trials\"");
     }
-    if !own.factors.is_empty() {
+    if !table.factors.is_empty() {
         problems
             .error(
-                own.factors.place,
+                table.factors.place,
                 "a path of equilibria has factors of its own",
             )
             .help("leave `factors` out, or write search = \"trials\"");
@@ -200,10 +200,10 @@ fn on_given_geometry(own: &keys::StrengthReduction, problems: &mut Problems) {
 /// A run-out.
 pub(crate) fn run_out<const D: usize>(
     about: &About<'_, D>,
-    own: &keys::RunOut,
+    table: &keys::RunOut,
     problems: &mut Problems,
 ) -> Option<RunOut> {
-    let materials = materials(about, &own.materials, problems);
+    let materials = materials(about, &table.materials, problems);
     if about.index == 0 {
         problems
             .error(
@@ -212,28 +212,28 @@ pub(crate) fn run_out<const D: usize>(
             )
             .help("put a stage of type gravity before it");
     }
-    let reduction = own.reduction.as_ref().ok();
-    let reduction = reduction.and_then(|own| reduction_of(about, own, problems));
+    let reduction = table.reduction.as_ref().ok();
+    let reduction = reduction.and_then(|key| reduction_of(about, key, problems));
     Some(RunOut {
         materials: materials?,
         reduction: reduction?,
-        move_per_step: *own.move_per_step,
-        at_rest: *own.at_rest,
+        move_per_step: *table.move_per_step,
+        at_rest: *table.at_rest,
     })
 }
 
 /// By how much strength is reduced.
 pub(super) fn reduction_of<const D: usize>(
     about: &About<'_, D>,
-    own: &At<keys::Reduction>,
+    stated: &At<keys::Reduction>,
     problems: &mut Problems,
 ) -> Option<Reduction> {
-    match (&own.times_fos, &own.factor) {
+    match (&stated.times_fos, &stated.factor) {
         (Some(times), None) => {
             let stages = about.context.stages;
             let is_search = |stage: usize| {
-                let own = stages[stage].as_ref();
-                own.is_some_and(|own| matches!(*own.form, StageForm::StrengthReduction(_)))
+                let stage = stages[stage].as_ref();
+                stage.is_some_and(|stage| matches!(*stage.form, StageForm::StrengthReduction(_)))
             };
             let from = |stage: usize| about.context.sequence.from(stage);
             let is_before = (0..about.index).any(is_search);
@@ -263,7 +263,7 @@ pub(super) fn reduction_of<const D: usize>(
                 "the reduction has no value"
             };
             problems
-                .error(own.place, message)
+                .error(stated.place, message)
                 .help("write { times_fos = 1.05 } or { factor = 1.5 }");
             None
         }
