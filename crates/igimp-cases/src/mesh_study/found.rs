@@ -1,11 +1,11 @@
 //! The results of the runs of a study, side by side.
 
 use igimp_model::{Case, CheckValue, Curve, Driven, Quantity, StageKind, meshes};
+use igimp_results::mesh_study::known::{of_check, of_stage};
 use igimp_results::mesh_study::{Computed, Convergence, ResultKind, StudyResult, estimate};
 use igimp_results::summary::{CheckRow, StageOutcome, StageSummary, Standing, Summary};
 use igimp_text::short;
 
-use super::known::{of_check, of_stage};
 use crate::fallen;
 
 /// A value of a run.

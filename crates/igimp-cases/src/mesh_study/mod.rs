@@ -7,7 +7,6 @@
 mod found;
 #[cfg(test)]
 mod found_tests;
-mod known;
 
 pub use found::study;
 pub(crate) use found::{check_rows, remarks};

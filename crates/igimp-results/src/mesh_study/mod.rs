@@ -2,12 +2,14 @@
 //!
 //! | | |
 //! |---|---|
+//! | [`known`] | prior knowledge of how results converge, by the case |
 //! | [`extrapolation`] | from values on two or three meshes to an extrapolated value and its uncertainty; numbers only |
 //! | [`order`] | which orders of convergence are possible, and which the values on three meshes leave; numbers only |
 
 pub mod extrapolation;
 #[cfg(test)]
 mod extrapolation_tests;
+pub mod known;
 pub mod order;
 
 use std::path::Path;

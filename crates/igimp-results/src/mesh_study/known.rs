@@ -1,10 +1,12 @@
 //! Prior knowledge of how the results of a case converge: by their kind, and by the structures in the case.
 
 use igimp_model::{Case, Driven, LoadKind, Material, Quantity, Stage, StageKind};
-use igimp_results::mesh_study::{Convergence, ResultKind};
+
+use super::order::Convergence;
+use super::ResultKind;
 
 /// The result that a stage is made for, if it is made for one: its name, kind and convergence.
-pub(super) fn of_stage<const D: usize>(
+pub fn of_stage<const D: usize>(
     case: &Case<D>,
     number: usize,
 ) -> Option<(String, ResultKind, Convergence)> {
@@ -56,7 +58,7 @@ fn of_limit<const D: usize>(case: &Case<D>, number: usize, driven: Driven) -> Co
 }
 
 /// How a check converges.
-pub(super) fn of_check<const D: usize>(case: &Case<D>, name: &str) -> Convergence {
+pub fn of_check<const D: usize>(case: &Case<D>, name: &str) -> Convergence {
     let check = case.checks.iter().find(|check| check.name == name);
     match check.map(|check| (check.of, check.stage)) {
         Some((Quantity::FactorOfSafety, _)) => of_loads(case),
