@@ -265,7 +265,9 @@ fn the_case_decides_on_orders() {
     let slowest = |name: &str| {
         let case = case(name, &[]);
         let stage = case.stages.len() - 1;
-        igimp_results::mesh_study::known::of_stage(&case, stage).unwrap().2
+        igimp_results::mesh_study::known::of_stage(&case, stage)
+            .unwrap()
+            .2
     };
     assert_eq!(slowest("vertical_cut"), Convergence::SOIL);
     assert_eq!(slowest("nailed_cut"), Convergence::CONTACT);

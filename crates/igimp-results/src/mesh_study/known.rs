@@ -2,8 +2,8 @@
 
 use igimp_model::{Case, Driven, LoadKind, Material, Quantity, Stage, StageKind};
 
-use super::order::Convergence;
 use super::ResultKind;
+use super::order::Convergence;
 
 /// The result that a stage is made for, if it is made for one: its name, kind and convergence.
 pub fn of_stage<const D: usize>(
