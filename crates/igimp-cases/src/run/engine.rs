@@ -327,8 +327,8 @@ impl<const D: usize> Stages<D> {
         // A search leaves the body as it was found.
         if summary.safety.is_none() && summary.outcome != StageOutcome::Interrupted {
             summary.pore_water = pores::summary(case, &state.body.particles);
-            let remark = summary.pore_water.as_ref();
-            if let Some(text) = remark.and_then(|water| pores::remark(&stage.name, water)) {
+            let water = summary.pore_water.as_ref();
+            if let Some(text) = water.and_then(|water| pores::remark(&stage.name, water)) {
                 session.warn(text);
             }
         }

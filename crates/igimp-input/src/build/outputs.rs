@@ -98,12 +98,11 @@ pub(super) fn section<const D: usize>(
 ) -> Option<Section<D>> {
     let (from, to) = (*section.from, *section.to);
     let way: [f64; D] = std::array::from_fn(|axis| to[axis] - from[axis]);
-    if length(&way) <= soil.round_off() {
-        problems.error(section.to.place, "this section has no length");
-    }
     let along = |t: f64| std::array::from_fn(|axis| from[axis] + t * way[axis]);
     let meets = (0..=50).any(|k| soil.holds_point(&along(f64::from(k) / 50.0), soil.round_off()));
-    if soil.is_known() && !meets {
+    if length(&way) <= soil.round_off() {
+        problems.error(section.to.place, "this section has no length");
+    } else if soil.is_known() && !meets {
         problems
             .warning(section.from.place, "this section meets no body")
             .help("it will hold no values");

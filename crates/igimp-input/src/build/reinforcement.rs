@@ -214,17 +214,19 @@ fn ends_of<const D: usize>(line: &[[f64; D]]) -> [[[f64; D]; 2]; 2] {
 /// Whether a line that leaves an end towards a place ends there on a side of the grid that is a roller: a plane of symmetry, on whose
 /// other side it goes on.
 fn goes_on<const D: usize>(tree: &Node, [end, next]: [[f64; D]; 2], soil: &impl Soil<D>) -> bool {
-    let (Ok(sides), Some([lower, upper])) = (Root::<D>::boundaries(tree), soil.ends()) else {
+    let stated = Root::<D>::boundaries(tree).ok();
+    let sides = stated.as_ref().and_then(|table| table.by_axis());
+    let (Some(sides), Some(faces)) = (sides, soil.ends()) else {
         return false;
     };
     let near = ON_SIDE * soil.cell();
-    let on = |side: &At<Side>, axis: usize, at: f64| {
-        **side == Side::Roller && (end[axis] - at).abs() <= near && (next[axis] - at).abs() > near
+    let is_at =
+        |x: &[f64; D], axis: usize, upper: usize| (x[axis] - faces[upper][axis]).abs() <= near;
+    let ends_on = |axis: usize, upper: usize| {
+        let is_roller = **sides[axis][upper] == Side::Roller;
+        is_roller && is_at(&end, axis, upper) && !is_at(&next, axis, upper)
     };
-    on(&sides.left, 0, lower[0])
-        || on(&sides.right, 0, upper[0])
-        || on(&sides.bottom, D - 1, lower[D - 1])
-        || on(&sides.top, D - 1, upper[D - 1])
+    (0..D).any(|axis| [0, 1].into_iter().any(|upper| ends_on(axis, upper)))
 }
 
 /// Refuses a plate of which a part is farther off any soil than the cells that carry it.

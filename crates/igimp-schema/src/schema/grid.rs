@@ -2,6 +2,7 @@
 
 use super::MOST_THINGS;
 use super::declare::{choices, table};
+use crate::tree::read::At;
 
 table! {
     GRID: Grid, "Fixed background grid, and the variant of the method.";
@@ -123,7 +124,7 @@ choices! {
     DomainUpdate;
     Fixed "fixed", "half-lengths stay as seeded";
     DiagonalF "diagonal-f", "diagonal of the deformation gradient F";
-    Stretch "stretch", "diagonal of the stretch U, free of rotation";
+    Stretch "stretch", "diagonal of the stretch U, free of rotation, within a factor of two of root-j";
     RootJ "root-j", "square root of det F";
     Moments "moments", "second moments of the deformed domain, as in run-outs and in motion";
 }
@@ -166,6 +167,20 @@ table! {
     bottom: choice(Side), default "\"fixed\"", "side of the lowest y, in space of the lowest z";
     top: choice(Side), default "\"free\"", "side of the highest y, in space of the highest z";
     boxes: each(table(BOX: FixedBox<D>), 0, MOST_THINGS), default "[]", "boxes in which nodes are held";
+}
+
+impl<const D: usize> Boundaries<D> {
+    /// The lower and the upper side by axis.
+    pub fn by_axis(&self) -> Option<[[&At<Side>; 2]; D]> {
+        let mut sides = [[&self.left, &self.right]; D];
+        if let (Some(front), Some(back), 3) = (&self.front, &self.back, D) {
+            sides[1] = [front, back];
+        } else if D == 3 {
+            return None;
+        }
+        sides[D - 1] = [&self.bottom, &self.top];
+        Some(sides)
+    }
 }
 
 choices! {

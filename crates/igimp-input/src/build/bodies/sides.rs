@@ -83,7 +83,8 @@ pub(crate) fn check<const D: usize>(
     let (Some(frame), Some(boundaries), 0) = (frame, holds.boundaries, problems.errors()) else {
         return;
     };
-    let Ok(own) = Root::<D>::boundaries(tree) else {
+    let stated = Root::<D>::boundaries(tree).ok();
+    let Some(sides) = stated.as_ref().and_then(|table| table.by_axis()) else {
         return;
     };
     // Where a stage lets bodies go, a free face may be meant.
@@ -94,12 +95,7 @@ pub(crate) fn check<const D: usize>(
     let Some(parts) = ever(bodies, sequence).map(Iterator::collect::<Vec<_>>) else {
         return;
     };
-    let across = own.front.as_ref().zip(own.back.as_ref());
-    let sides = [Some((&own.left, &own.right)), across];
-    for (axis, stated) in sides.into_iter().take(D - 1).enumerate() {
-        let Some((lower, upper)) = stated else {
-            continue;
-        };
+    for (axis, [lower, upper]) in sides.into_iter().take(D - 1).enumerate() {
         for (stated, is_upper) in [(lower, false), (upper, true)] {
             let is_free = boundaries.sides[axis][usize::from(is_upper)] == Side::Free;
             let is_meant = lets_go && !stated.written;

@@ -16,16 +16,9 @@ pub(crate) fn boundaries<const D: usize>(
     let boxes: Vec<_> = (table.boxes.iter())
         .map(|part| fixed_box(part.as_ref().ok()?, frame, problems))
         .collect();
-    let across = table.front.as_ref().zip(table.back.as_ref());
-    let mut sides = [[Side::Free; 2]; D];
-    for (axis, both) in sides.iter_mut().enumerate() {
-        let (lower, upper) = match axis {
-            0 => (&table.left, &table.right),
-            _ if axis == D - 1 => (&table.bottom, &table.top),
-            _ => across?,
-        };
-        *both = [side(**lower), side(**upper)];
-    }
+    let sides = table
+        .by_axis()?
+        .map(|both| both.map(|stated| side(**stated)));
     Some(Boundaries {
         sides,
         boxes: boxes.into_iter().collect::<Option<_>>()?,
