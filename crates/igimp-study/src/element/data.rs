@@ -87,7 +87,7 @@ impl DataError {
     }
 }
 
-/// What a column holds.
+/// The content of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Column {
     /// The place on the way, times a factor.
