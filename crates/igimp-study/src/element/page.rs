@@ -82,10 +82,7 @@ fn values(tested: &Tested) -> Section {
     let along = table::abscissa(drive);
     let quantity = |m: Measure| {
         let cells = shown.map(|state| short(m.printed(m.of(state, &states[0], drive))));
-        [m.header().to_owned()]
-            .into_iter()
-            .chain(cells)
-            .collect()
+        [m.header().to_owned()].into_iter().chain(cells).collect()
     };
     let mut rows: Vec<Vec<String>> = measures(drive, along).map(quantity).collect();
     let row = |name: &str, cells: [f64; 3]| {
@@ -171,10 +168,7 @@ fn measured(tested: &Tested) -> Option<Section> {
     let data = &compared.data;
     let rows = data.columns.iter().enumerate().map(|(place, m)| {
         let cells = compared.off_in_words(place);
-        [m.name().to_owned()]
-            .into_iter()
-            .chain(cells)
-            .collect()
+        [m.name().to_owned()].into_iter().chain(cells).collect()
     });
     let numbers = [
         "Values",

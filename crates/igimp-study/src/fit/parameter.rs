@@ -225,7 +225,9 @@ impl Range {
     /// The bounds that were stated.
     pub(super) fn stated(parameter: &Parameter) -> Self {
         Self {
-            ends: parameter.limits().unwrap_or([f64::NEG_INFINITY, f64::INFINITY]),
+            ends: parameter
+                .limits()
+                .unwrap_or([f64::NEG_INFINITY, f64::INFINITY]),
             is_wall: [false; 2],
         }
     }
