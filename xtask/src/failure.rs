@@ -24,8 +24,8 @@ impl Failure {
     }
 
     /// A program or file failed: what was being done, and what was said.
-    pub(crate) fn input_output(what: impl fmt::Display, cause: impl fmt::Display) -> Self {
-        Self::new(INPUT_OUTPUT, format!("{what}: {cause}"))
+    pub(crate) fn input_output(action: impl fmt::Display, cause: impl fmt::Display) -> Self {
+        Self::new(INPUT_OUTPUT, format!("{action}: {cause}"))
     }
 }
 

@@ -9,9 +9,9 @@ use crate::failure::Failure;
 
 /// The root of the workspace: the folder above this crate's.
 pub(crate) fn root() -> PathBuf {
-    let own = env::var_os("CARGO_MANIFEST_DIR")
+    let folder = env::var_os("CARGO_MANIFEST_DIR")
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
-    own.parent().map_or(own.clone(), Path::to_path_buf)
+    folder.parent().map_or(folder.clone(), Path::to_path_buf)
 }
 
 /// A program to be run in the root.

@@ -131,11 +131,14 @@ pub fn chosen<'a>(
     let found = match (materials, name) {
         ([only], None) => Ok(only),
         (_, None) => Err("the file has several materials".to_owned()),
-        (_, Some(name)) => (materials.iter().find(|own| own.name == name))
+        (_, Some(name)) => (materials.iter().find(|material| material.name == name))
             .ok_or_else(|| format!("the file has no material \"{name}\"")),
     };
     found.map_err(|problem| {
-        let names: Vec<&str> = materials.iter().map(|own| own.name.as_str()).collect();
+        let names: Vec<&str> = materials
+            .iter()
+            .map(|material| material.name.as_str())
+            .collect();
         let names = format!("its materials are {}", names.join(", "));
         NotChosen { problem, names }
     })
@@ -157,7 +160,7 @@ pub fn test(material: &Material, request: &Request) -> Result<Tested, TestError>
         ways,
         compared,
     } = driven;
-    let what = match &request.drive {
+    let kind = match &request.drive {
         Drive::Standard(standard, _) => name_of(*standard).replace('-', " "),
         Drive::Path(_) => "path".to_owned(),
     };
@@ -173,7 +176,7 @@ pub fn test(material: &Material, request: &Request) -> Result<Tested, TestError>
         compared,
         warnings: String::new(),
         request: request.clone(),
-        title: format!("{}: {}, {what}", material.name, law_name(material)),
+        title: format!("{}: {}, {kind}", material.name, law_name(material)),
         material: material.clone(),
         is_by_stress,
     };
@@ -392,7 +395,7 @@ mod tests {
         let materials = MaterialsFile::parse("soils.toml", SOILS, &[])
             .unwrap()
             .materials;
-        let mut told = 0;
+        let mut count = 0;
         for material in &materials {
             for standard in StandardTest::ALL {
                 for kinematics in [Kinematics::Finite, Kinematics::Small] {
@@ -408,24 +411,28 @@ mod tests {
                     let tested = test(material, &request).unwrap();
                     assert!(tested.run.failure.is_none(), "{}", tested.text);
                     let end = tested.run.states.last().unwrap();
-                    let own = closed_form::strength(material, standard, &request, end);
-                    let Some(own) = own else { continue };
+                    let form = closed_form::strength(material, standard, &request, end);
+                    let Some(form) = form else { continue };
                     let measured = if standard.is_shear() {
                         end.sigma[0][1]
                     } else {
                         end.q()
                     };
-                    assert!((measured / own.value - 1.0).abs() < 1e-3, "{}", tested.text);
+                    assert!(
+                        (measured / form.value - 1.0).abs() < 1e-3,
+                        "{}",
+                        tested.text
+                    );
                     assert!(
                         tested.text.contains("closed form at failure"),
                         "{}",
                         tested.text
                     );
-                    told += 1;
+                    count += 1;
                 }
             }
         }
-        assert_eq!(told, 30);
+        assert_eq!(count, 30);
     }
 
     fn sheared(drive: f64) -> Request {
@@ -476,14 +483,14 @@ mod tests {
         assert!(test(sand, &sheared(0.1)).is_ok());
     }
 
-    /// GOAL: a duration without effect is told, and one with effect is not; so is strength that snaps back where a test ends early.
+    /// GOAL: a duration without effect is count, and one with effect is not; so is strength that snaps back where a test ends early.
     /// ORACLE: the laws; soil with these curves is followed where all strains but one are driven.
     #[test]
     fn a_duration_without_effect_and_brittle_soil_are_told() {
         let clay = "igimp = 1\n[materials.clay]\nmodel = \"tresca\"\nunit_weight = \"18 kN/m3\"\nyoung = \"30 MPa\"\n\
             poisson = 0.49\ncu = \"50 kPa\"\n";
         let rate = format!("{clay}rate = {{ per_log_cycle = 0.1, reference = \"1 %/h\" }}\n");
-        let told = |text: &str| -> String {
+        let printed = |text: &str| -> String {
             let file = MaterialsFile::parse("clay.toml", text, &[]).unwrap();
             let request = Request {
                 duration: 10.0,
@@ -491,14 +498,14 @@ mod tests {
             };
             test(&file.materials[0], &request).unwrap().text
         };
-        assert!(told(clay).contains("the duration has no effect"));
-        assert!(!told(&rate).contains("no effect"), "{}", told(&rate));
+        assert!(printed(clay).contains("the duration has no effect"));
+        assert!(!printed(&rate).contains("no effect"), "{}", printed(&rate));
         let brittle = "igimp = 1\n[materials.sand]\nmodel = \"mohr-coulomb\"\nunit_weight = \"18 kN/m3\"\nyoung = \"20 MPa\"\n\
             poisson = 0.3\ncohesion = \"20 kPa\"\nfriction = \"30 deg\"\nsoftening = { cohesion = { residual = 0.1, strain = 0.002 } }\n";
         let sand = &MaterialsFile::parse("sand.toml", brittle, &[])
             .unwrap()
             .materials[0];
-        for (standard, is_told) in [
+        for (standard, is_brittle) in [
             (StandardTest::TriaxialDrained, true),
             (StandardTest::SimpleShearDrained, false),
         ] {
@@ -507,9 +514,14 @@ mod tests {
                 steps: 200,
                 ..sheared(0.05)
             };
-            let own = test(sand, &request).unwrap();
-            assert_eq!(own.run.failure.is_some(), is_told, "{}", own.text);
-            assert_eq!(own.text.contains("can snap back"), is_told, "{}", own.text);
+            let tested = test(sand, &request).unwrap();
+            assert_eq!(tested.run.failure.is_some(), is_brittle, "{}", tested.text);
+            assert_eq!(
+                tested.text.contains("can snap back"),
+                is_brittle,
+                "{}",
+                tested.text
+            );
         }
     }
 
@@ -547,9 +559,9 @@ mod tests {
             std::fs::write(&path, text).unwrap();
             read_path(&path)
         };
-        let own = read("stress_xx [kPa],strain_yy [%],strain_xy [-]\n50,2,0.1\n").unwrap();
-        assert_eq!(own.controls, [Stress, Strain, AsXx, Strain]);
-        assert_eq!(own.legs, [[-50e3, -0.02, 0.0, 0.1]]);
+        let parsed = read("stress_xx [kPa],strain_yy [%],strain_xy [-]\n50,2,0.1\n").unwrap();
+        assert_eq!(parsed.controls, [Stress, Strain, AsXx, Strain]);
+        assert_eq!(parsed.legs, [[-50e3, -0.02, 0.0, 0.1]]);
         let refused = |text: &str| read(text).unwrap_err().to_string();
         assert_eq!(
             refused("strain_xx [%]\n1\n"),

@@ -17,8 +17,8 @@ pub(crate) fn read(benchmark: &Path, estimates: &Path) -> Result<Row, Failure> {
         })
     };
     parse(&text(benchmark)?, &text(estimates)?).map_err(|missing| {
-        let what = format!("{} and {}", benchmark.display(), estimates.display());
-        Failure::input_output(what, missing)
+        let files = format!("{} and {}", benchmark.display(), estimates.display());
+        Failure::input_output(files, missing)
     })
 }
 
@@ -26,7 +26,7 @@ pub(crate) fn read(benchmark: &Path, estimates: &Path) -> Result<Row, Failure> {
 fn parse(benchmark: &str, estimates: &str) -> Result<Row, String> {
     let json = |text: &str| serde_json::from_str(text).map_err(|error| error.to_string());
     let (benchmark, estimates): (Value, Value) = (json(benchmark)?, json(estimates)?);
-    let missing = |what: &str| format!("`{what}` is missing");
+    let missing = |key: &str| format!("`{key}` is missing");
     let string = |key: &str| {
         let value = benchmark[key].as_str().map(str::to_owned);
         value.ok_or_else(|| missing(key))

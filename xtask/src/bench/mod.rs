@@ -143,8 +143,8 @@ fn print(report: &Report<'_>) {
 fn read_saved(saved: &Path, name: &str) -> Result<Vec<Row>, Failure> {
     let path = saved.join(format!("{name}.csv"));
     let text = fs::read_to_string(&path).map_err(|error| {
-        let what = format!("cannot read {} (`--save {name}` writes it)", path.display());
-        Failure::input_output(what, error)
+        let action = format!("cannot read {} (`--save {name}` writes it)", path.display());
+        Failure::input_output(action, error)
     })?;
     row::parse(&text).map_err(|error| Failure::input_output(path.display(), error))
 }

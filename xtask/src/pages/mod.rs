@@ -54,7 +54,7 @@ pub(crate) fn typeset(folder: &Path) -> Result<(Pages, usize), Failure> {
     if formulas > 0 {
         copy_font(&folder.join(font))?;
     }
-    told(&problems)?;
+    refuse(&problems)?;
     Ok((pages, formulas))
 }
 
@@ -64,10 +64,10 @@ pub(crate) fn typeset(folder: &Path) -> Result<(Pages, usize), Failure> {
 ///
 /// Links that lead nowhere and files fetched from the network, all of them.
 pub(crate) fn check_links(folder: &Path, pages: &Pages) -> Result<(), Failure> {
-    told(&check::problems(pages, |path| folder.join(path).exists()))
+    refuse(&check::problems(pages, |path| folder.join(path).exists()))
 }
 
-fn told(problems: &[String]) -> Result<(), Failure> {
+fn refuse(problems: &[String]) -> Result<(), Failure> {
     if problems.is_empty() {
         return Ok(());
     }
@@ -87,8 +87,8 @@ fn copy_font(to: &Path) -> Result<(), Failure> {
         .map_err(|error| cannot("copy", &from, error))
 }
 
-fn cannot(what: &str, path: &Path, error: std::io::Error) -> Failure {
-    Failure::input_output(format!("cannot {what} {}", path.display()), error)
+fn cannot(verb: &str, path: &Path, error: std::io::Error) -> Failure {
+    Failure::input_output(format!("cannot {verb} {}", path.display()), error)
 }
 
 fn html_files(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Failure> {

@@ -167,12 +167,14 @@ fn anchors(text: &str) -> Vec<String> {
         let Some(title) = line.strip_prefix('#') else {
             continue;
         };
-        let own = slug(title.trim_start_matches('#').trim());
-        anchors.push(match slugs.iter().filter(|known| **known == own).count() {
-            0 => own.clone(),
-            count => format!("{own}-{count}"),
-        });
-        slugs.push(own);
+        let anchor = slug(title.trim_start_matches('#').trim());
+        anchors.push(
+            match slugs.iter().filter(|known| **known == anchor).count() {
+                0 => anchor.clone(),
+                count => format!("{anchor}-{count}"),
+            },
+        );
+        slugs.push(anchor);
     }
     anchors
 }

@@ -32,20 +32,20 @@ fn long(text: &str) -> Vec<(usize, String)> {
     let (mut in_code, mut is_generated) = (false, false);
     let (mut paragraph, mut first) = (String::new(), 1);
     for (number, line) in (1..).zip(text.lines().chain([""])) {
-        let own = line.trim();
-        let is_mark = own.starts_with("<!--");
+        let trimmed = line.trim();
+        let is_mark = trimmed.starts_with("<!--");
         if is_mark {
-            let begins = own.contains("begin") || own.contains("generated: ");
-            is_generated = begins && !own.contains("end -->");
+            let begins = trimmed.contains("begin") || trimmed.contains("generated: ");
+            is_generated = begins && !trimmed.contains("end -->");
         }
-        let is_fence = own.starts_with("```");
+        let is_fence = trimmed.starts_with("```");
         let is_other = in_code
             || is_fence
             || is_generated
-            || own.starts_with(['|', '#', '<'])
-            || own.starts_with("![");
+            || trimmed.starts_with(['|', '#', '<'])
+            || trimmed.starts_with("![");
         in_code ^= is_fence;
-        if is_other || own.is_empty() || begins_item(own) {
+        if is_other || trimmed.is_empty() || begins_item(trimmed) {
             let sentences = long_sentences(&paragraph).into_iter();
             found.extend(sentences.map(|(words, begin)| {
                 (
@@ -66,7 +66,7 @@ fn long(text: &str) -> Vec<(usize, String)> {
                 first = number;
             }
             paragraph.push(' ');
-            paragraph.push_str(own);
+            paragraph.push_str(trimmed);
         }
     }
     found
@@ -74,7 +74,7 @@ fn long(text: &str) -> Vec<(usize, String)> {
 
 /// Whether a line begins an item of a list.
 fn begins_item(line: &str) -> bool {
-    let number = line.trim_start_matches(|own: char| own.is_ascii_digit());
+    let number = line.trim_start_matches(|c: char| c.is_ascii_digit());
     line.starts_with("- ")
         || line.starts_with("* ")
         || number.len() < line.len() && number.starts_with(". ")

@@ -44,7 +44,7 @@ pub(super) fn strength(
             triaxial_undrained(material.strength, request.stress, volume)
         }
         StandardTest::SimpleShearDrained | StandardTest::SimpleShearUndrained => {
-            let share = (effects.directions).map_or(1.0, |own| own.simple_shear);
+            let share = (effects.directions).map_or(1.0, |directions| directions.simple_shear);
             simple_shear(material.strength, share, volume)
         }
         StandardTest::Oedometer
@@ -83,18 +83,18 @@ fn triaxial_drained(strength: Strength, side: f64, volume: f64) -> Option<(f64, 
             rate: None,
             ..
         } => Some((passive(side, cohesion / volume, friction_angle), PASSIVE)),
-        Strength::HardeningSoil(own) => Some((
-            passive(side, own.cohesion / volume, own.friction_angle),
+        Strength::HardeningSoil(soil) => Some((
+            passive(side, soil.cohesion / volume, soil.friction_angle),
             PASSIVE,
         )),
-        Strength::HoekBrown(own) => {
-            let (sci, side) = (own.intact_strength, side * volume);
-            let base = own.ratio() * side / sci + own.cohesive_share();
-            let value = sci * base.powf(own.exponent()) / volume;
+        Strength::HoekBrown(rock) => {
+            let (sci, side) = (rock.intact_strength, side * volume);
+            let base = rock.ratio() * side / sci + rock.cohesive_share();
+            let value = sci * base.powf(rock.exponent()) / volume;
             Some((value, "σ_ci (m_b σ_3/σ_ci + s)^a"))
         }
-        Strength::ModifiedCamClay(own) => Some((
-            3.0 * own.critical_ratio * side / (3.0 - own.critical_ratio),
+        Strength::ModifiedCamClay(clay) => Some((
+            3.0 * clay.critical_ratio * side / (3.0 - clay.critical_ratio),
             "M p with p = 3 σ_3/(3 - M)",
         )),
         _ => undrained_compression(strength, volume),
@@ -128,8 +128,8 @@ fn triaxial_undrained(
             let value = 6.0 * (p * sin + cohesion * cos) / (3.0 - sin);
             Some((value, "constant p, ψ = 0"))
         }
-        Strength::ModifiedCamClay(own) => Some((
-            own.critical_ratio * undrained_pressure(&own, stress),
+        Strength::ModifiedCamClay(clay) => Some((
+            clay.critical_ratio * undrained_pressure(&clay, stress),
             "M p at constant volume",
         )),
         _ => undrained_compression(strength, volume),
@@ -146,7 +146,7 @@ fn simple_shear(strength: Strength, share: f64, volume: f64) -> Option<(f64, &'s
     }
 }
 
-/// What [`passive`] is.
+/// The formula of [`passive`].
 const PASSIVE: &str = "σ_3 (K_p - 1) + 2 c √K_p";
 
 /// q at failure of soil with cohesion and friction between sides under a stress \[Pa\].
@@ -156,16 +156,16 @@ fn passive(side: f64, cohesion: f64, friction_angle: f64) -> f64 {
 }
 
 /// p at the critical state of soil that keeps its volume (theory, eq. 92) \[Pa\].
-fn undrained_pressure(own: &CamClayParameters, [axial, side]: [f64; 2]) -> f64 {
+fn undrained_pressure(clay: &CamClayParameters, [axial, side]: [f64; 2]) -> f64 {
     let (p, q) = ((axial + 2.0 * side) / 3.0, (axial - side).abs());
-    let (m, plastic) = (own.critical_ratio, own.compression - own.swelling);
-    let tip = own.overconsolidation * p * (1.0 + (q / (m * p)).powi(2));
-    let shear = match own.shear {
+    let (m, plastic) = (clay.critical_ratio, clay.compression - clay.swelling);
+    let tip = clay.overconsolidation * p * (1.0 + (q / (m * p)).powi(2));
+    let shear = match clay.shear {
         ShearStiffness::Constant(_) => 0.0,
         ShearStiffness::Poisson(poisson) => {
-            let per_pressure = 1.5 * (1.0 - 2.0 * poisson) / (1.0 + poisson) / own.swelling;
+            let per_pressure = 1.5 * (1.0 - 2.0 * poisson) / (1.0 + poisson) / clay.swelling;
             (m * m - (q / p).powi(2)) / (6.0 * per_pressure)
         }
     };
-    ((own.swelling * p.ln() + shear + plastic * (0.5 * tip).ln()) / own.compression).exp()
+    ((clay.swelling * p.ln() + shear + plastic * (0.5 * tip).ln()) / clay.compression).exp()
 }

@@ -41,7 +41,7 @@ impl Compared {
     ) -> Self {
         let computed = (states.iter())
             .map(|state| {
-                let value = |own: &Measure| state.map_or(f64::NAN, |at| own.of(at, first, drive));
+                let value = |m: &Measure| state.map_or(f64::NAN, |at| m.of(at, first, drive));
                 data.columns.iter().map(value).collect()
             })
             .collect();
@@ -51,7 +51,7 @@ impl Compared {
     /// Computed less measured of a column by lines, where both are known.
     pub(crate) fn differences(&self, column: usize) -> impl Iterator<Item = (u64, f64)> {
         (self.data.rows.iter().zip(&self.computed))
-            .map(move |(row, own)| (row.line, own[column] - row.values[column]))
+            .map(move |(row, computed)| (row.line, computed[column] - row.values[column]))
             .filter(|(_, difference)| difference.is_finite())
     }
 
@@ -75,13 +75,13 @@ impl Compared {
     /// The columns of which nothing was computed, as the test ended before.
     pub(super) fn beyond(&self) -> impl Iterator<Item = Measure> {
         let columns = self.data.columns.iter().enumerate();
-        columns.filter_map(|(place, own)| self.off(place).is_none().then_some(*own))
+        columns.filter_map(|(place, measure)| self.off(place).is_none().then_some(*measure))
     }
 
     /// How far off a column is in print: values, root mean square, the largest difference and its line; dashes where nothing is known.
     pub(crate) fn off_in_words(&self, column: usize) -> [String; 4] {
-        let own = self.data.columns[column];
-        let printed = |value: f64| format!("{} {}", short(own.printed(value)), own.unit());
+        let measure = self.data.columns[column];
+        let printed = |value: f64| format!("{} {}", short(measure.printed(value)), measure.unit());
         match self.off(column) {
             Some(off) => [
                 off.values.to_string(),
@@ -96,23 +96,23 @@ impl Compared {
     /// A line for each column.
     pub(crate) fn said(&self) -> String {
         let mut text = String::new();
-        for (column, own) in self.data.columns.iter().enumerate() {
-            let unit = own.unit();
+        for (column, measure) in self.data.columns.iter().enumerate() {
+            let unit = measure.unit();
             match self.off(column) {
                 Some(off) => {
                     let _ = writeln!(
                         text,
                         "  measured {}, {} values of {}: root mean square difference {} {unit}, largest {} {unit} in line {}",
-                        own.name(),
+                        measure.name(),
                         off.values,
                         self.data.name,
-                        short(own.printed(off.mean)),
-                        short(own.printed(off.largest.0)),
+                        short(measure.printed(off.mean)),
+                        short(measure.printed(off.largest.0)),
                         off.largest.1,
                     );
                 }
                 None => {
-                    let _ = writeln!(text, "  measured {}: beyond the early end", own.name());
+                    let _ = writeln!(text, "  measured {}: beyond the early end", measure.name());
                 }
             }
         }
@@ -123,23 +123,23 @@ impl Compared {
     pub(super) fn table(&self, drive: &Drive) -> Table {
         let mut header = vec![
             "line".to_owned(),
-            driven(drive).map_or("leg [-]".to_owned(), |own| own.header().to_owned()),
+            driven(drive).map_or("leg [-]".to_owned(), |strain| strain.header().to_owned()),
         ];
-        for own in &self.data.columns {
-            for what in ["measured", "computed", "computed less measured"] {
-                header.push(format!("{what}: {}", own.header()));
+        for measure in &self.data.columns {
+            for kind in ["measured", "computed", "computed less measured"] {
+                header.push(format!("{kind}: {}", measure.header()));
             }
         }
         let columns: Vec<&str> = header.iter().map(String::as_str).collect();
         let mut table = Table::new("data", &columns);
         for (row, computed) in self.data.rows.iter().zip(&self.computed) {
-            let at = driven(drive).map_or(row.at, |own| own.printed(row.at));
+            let at = driven(drive).map_or(row.at, |strain| strain.printed(row.at));
             let mut cells = vec![row.line as f64, at];
-            for ((own, measured), computed) in
+            for ((measure, measured), computed) in
                 self.data.columns.iter().zip(&row.values).zip(computed)
             {
                 let values = [*measured, *computed, computed - measured];
-                cells.extend(values.map(|value| own.printed(value)));
+                cells.extend(values.map(|value| measure.printed(value)));
             }
             table.push(cells);
         }

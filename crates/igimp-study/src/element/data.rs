@@ -44,22 +44,22 @@ pub enum DataError {
         /// Why.
         source: std::io::Error,
     },
-    /// What is wrong, and where.
+    /// A problem and its place.
     #[error("{name}, {place}: {what}")]
     At {
         /// The file.
         name: String,
         /// Line and column.
         place: String,
-        /// What is wrong.
+        /// The problem.
         what: String,
-        /// What helps.
+        /// The help.
         help: String,
     },
 }
 
 impl DataError {
-    /// What helps.
+    /// The help.
     pub fn help(&self) -> &str {
         match self {
             Self::File { .. } => "the data of a test are a CSV file",
@@ -70,7 +70,7 @@ impl DataError {
     pub(super) fn at(
         name: &str,
         (line, column): (u64, &str),
-        what: impl Into<String>,
+        problem: impl Into<String>,
         help: impl Into<String>,
     ) -> Self {
         let place = if column.is_empty() {
@@ -81,13 +81,13 @@ impl DataError {
         Self::At {
             name: name.to_owned(),
             place,
-            what: what.into(),
+            what: problem.into(),
             help: help.into(),
         }
     }
 }
 
-/// What a column holds.
+/// The content of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Column {
     /// The place on the way, times a factor.
@@ -151,8 +151,8 @@ pub fn parse_data(
     if data.rows.iter().any(measured) {
         Ok(data)
     } else {
-        let what = "nothing is measured in this file";
-        Err(DataError::at(name, (1, ""), what, columns_help(drive)))
+        let problem = "nothing is measured in this file";
+        Err(DataError::at(name, (1, ""), problem, columns_help(drive)))
     }
 }
 
@@ -178,22 +178,22 @@ fn columns(
     let way = driven(drive);
     let mut columns = Vec::new();
     for &cell in cells {
-        let refused = |what: String| DataError::at(name, (line, cell), what, columns_help(drive));
+        let refused = |text: String| DataError::at(name, (line, cell), text, columns_help(drive));
         let (words, unit) = match cell.split_once(['[', '(']) {
             Some((words, unit)) => (words, Some(unit.trim_end_matches([']', ')']).trim())),
             None => (cell, None),
         };
-        let own = plain(words);
-        if NOT_MEASURED.contains(&own.as_str()) || variables.contains(&own.as_str()) {
+        let label = plain(words);
+        if NOT_MEASURED.contains(&label.as_str()) || variables.contains(&label.as_str()) {
             columns.push(Column::Unused);
             continue;
         }
-        if own == "leg" && way.is_none() {
+        if label == "leg" && way.is_none() {
             columns.push(Column::Way(1.0));
             continue;
         }
-        let Some(measure) = Measure::of_test(drive).find(|of| of.name() == own) else {
-            return Err(refused(format!("`{own}` is no quantity of this test")));
+        let Some(measure) = Measure::of_test(drive).find(|of| of.name() == label) else {
+            return Err(refused(format!("`{label}` is no quantity of this test")));
         };
         let Some(unit) = unit else {
             return Err(refused("the header says no unit".to_owned()));
@@ -209,18 +209,25 @@ fn columns(
         if way == Some(measure) {
             columns.push(Column::Way(scale));
         } else if measured.contains(&measure) {
-            return Err(refused(format!("`{own}` stands in two columns")));
+            return Err(refused(format!("`{label}` stands in two columns")));
         } else {
             columns.push(Column::Of(measured.len(), scale));
             measured.push(measure);
         }
     }
-    let ways = columns.iter().filter(|own| matches!(own, Column::Way(_)));
+    let ways = columns
+        .iter()
+        .filter(|column| matches!(column, Column::Way(_)));
     if ways.count() == 1 {
         Ok(columns)
     } else {
-        let what = format!("one column is `{}`", way_header(drive));
-        Err(DataError::at(name, (line, ""), what, columns_help(drive)))
+        let problem = format!("one column is `{}`", way_header(drive));
+        Err(DataError::at(
+            name,
+            (line, ""),
+            problem,
+            columns_help(drive),
+        ))
     }
 }
 
@@ -232,10 +239,10 @@ fn row(
     measured: usize,
 ) -> Result<Row, DataError> {
     if cells.len() != columns.len() {
-        let what = format!("{} cells under {} headers", cells.len(), columns.len());
+        let problem = format!("{} cells under {} headers", cells.len(), columns.len());
         let help =
             "a row has a cell for each header; leave a cell empty where nothing was measured";
-        return Err(DataError::at(name, (line, ""), what, help));
+        return Err(DataError::at(name, (line, ""), problem, help));
     }
     let mut row = Row {
         line,
@@ -248,13 +255,13 @@ fn row(
         }
         let number = cell.parse().ok().filter(|value: &f64| value.is_finite());
         let Some(number) = number else {
-            let what = if cell.is_empty() {
+            let problem = if cell.is_empty() {
                 "nothing says where on the way this was measured".to_owned()
             } else {
                 format!("`{}` is no number", igimp_text::on_a_line(cell))
             };
             let help = "numbers with a decimal point, separated by commas";
-            return Err(DataError::at(name, (line, header), what, help));
+            return Err(DataError::at(name, (line, header), problem, help));
         };
         match column {
             Column::Way(scale) => row.at = scale * number,
@@ -280,11 +287,11 @@ fn plain(words: &str) -> String {
 
 /// The header of the column that says where on the way something was measured.
 fn way_header(drive: &Drive) -> String {
-    driven(drive).map_or("leg".to_owned(), |own| format!("{} [%]", own.name()))
+    driven(drive).map_or("leg".to_owned(), |strain| format!("{} [%]", strain.name()))
 }
 
 fn columns_help(drive: &Drive) -> String {
-    let others = Measure::of_test(drive).filter(|own| Some(*own) != driven(drive));
+    let others = Measure::of_test(drive).filter(|measure| Some(*measure) != driven(drive));
     let others: Vec<&str> = others.map(Measure::name).collect();
     format!(
         "columns are {} and, with a unit such as [kPa] or [%], some of {}; compression is positive",
@@ -320,7 +327,7 @@ impl Data {
             if (-1e-9..=legs + 1e-9).contains(&way) {
                 return Ok(way.clamp(0.0, legs));
             }
-            let (what, help) = match drive {
+            let (problem, help) = match drive {
                 Drive::Standard(..) => (
                     format!(
                         "the test goes from 0 to {} %, and this is {} %",
@@ -337,7 +344,7 @@ impl Data {
             Err(DataError::at(
                 &self.name,
                 (row.line, &way_header(drive)),
-                what,
+                problem,
                 help,
             ))
         };
@@ -360,9 +367,10 @@ mod tests {
     /// GOAL: columns come in any order and unit, in the words of the program's own table too; holes are no measurements.
     #[test]
     fn columns_are_those_of_the_table_in_any_unit() {
-        let own = "# specimen 3\n\"q [MPa]\",\"strain_yy, compression positive [-]\",(ignored)\n";
+        let headers =
+            "# specimen 3\n\"q [MPa]\",\"strain_yy, compression positive [-]\",(ignored)\n";
         assert_eq!(
-            refused(own),
+            refused(headers),
             "a.csv, line 2, column `(ignored)`: `` is no quantity of this test"
         );
         let text = "# specimen 3\nq (MPa),\"strain_yy, compression positive [-]\",\

@@ -57,7 +57,8 @@ impl Measure {
     /// Those that a test has: all but the pore pressure, which is one of undrained tests.
     pub(super) fn of_test(drive: &Drive) -> impl Iterator<Item = Self> {
         let is_undrained = undrained(drive).is_some();
-        (Self::ALL.into_iter()).filter(move |own| is_undrained || *own != Self::PorePressure)
+        (Self::ALL.into_iter())
+            .filter(move |measure| is_undrained || *measure != Self::PorePressure)
     }
 
     /// The name in data: the header of the table without words on its sign, and without unit.
@@ -81,7 +82,7 @@ impl Measure {
 
     /// The quantity of a name.
     pub fn of_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|own| own.name() == name)
+        Self::ALL.into_iter().find(|measure| measure.name() == name)
     }
 
     /// The value of a text such as `2 kPa` in SI, if it is one of its kind.

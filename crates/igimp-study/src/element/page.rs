@@ -49,15 +49,15 @@ fn sentences(tested: &Tested) -> Vec<String> {
         short(100.0 * along.of(peak, &states[0], &request.drive)),
         table::driven_name(&request.drive),
     )];
-    sentences.extend(said::closed(values, request, states).map(|own| sentence(&own)));
-    sentences.extend(said::ending(tested).iter().map(|own| sentence(own)));
+    sentences.extend(said::closed(values, request, states).map(|text| sentence(&text)));
+    sentences.extend(said::ending(tested).iter().map(|line| sentence(line)));
     sentences
 }
 
 /// A line as a sentence.
 fn sentence(line: &str) -> String {
     let mut letters = line.chars();
-    let first = letters.next().map(|own| own.to_uppercase().to_string());
+    let first = letters.next().map(|c| c.to_uppercase().to_string());
     format!("{}{}.", first.unwrap_or_default(), letters.as_str())
 }
 
@@ -65,10 +65,10 @@ fn sentence(line: &str) -> String {
 fn warnings(tested: &Tested) -> Vec<String> {
     let varies = tested.material.varies().then(|| sentence(said::VARIES));
     let compared = tested.compared.iter();
-    let beyond = compared.flat_map(Compared::beyond).map(|own| {
+    let beyond = compared.flat_map(Compared::beyond).map(|measure| {
         format!(
             "{} was measured beyond the early end of the test.",
-            own.name()
+            measure.name()
         )
     });
     varies.into_iter().chain(beyond).collect()
@@ -80,9 +80,9 @@ fn values(tested: &Tested) -> Section {
     let values = &tested.values;
     let shown = [0, values.peak, states.len() - 1].map(|place| &states[place]);
     let along = table::abscissa(drive);
-    let quantity = |own: Measure| {
-        let cells = shown.map(|state| short(own.printed(own.of(state, &states[0], drive))));
-        [own.header().to_owned()].into_iter().chain(cells).collect()
+    let quantity = |m: Measure| {
+        let cells = shown.map(|state| short(m.printed(m.of(state, &states[0], drive))));
+        [m.header().to_owned()].into_iter().chain(cells).collect()
     };
     let mut rows: Vec<Vec<String>> = measures(drive, along).map(quantity).collect();
     let row = |name: &str, cells: [f64; 3]| {
@@ -166,9 +166,9 @@ pub(crate) fn pictures(tested: &Tested) -> Vec<FigureNote> {
 fn measured(tested: &Tested) -> Option<Section> {
     let compared = tested.compared.as_ref()?;
     let data = &compared.data;
-    let rows = data.columns.iter().enumerate().map(|(place, own)| {
+    let rows = data.columns.iter().enumerate().map(|(place, m)| {
         let cells = compared.off_in_words(place);
-        [own.name().to_owned()].into_iter().chain(cells).collect()
+        [m.name().to_owned()].into_iter().chain(cells).collect()
     });
     let numbers = [
         "Values",
@@ -197,13 +197,13 @@ fn measured(tested: &Tested) -> Option<Section> {
 
 /// The law and its parameters.
 fn material(tested: &Tested) -> Section {
-    let own = setup::of_material(&tested.material);
+    let table = setup::of_material(&tested.material);
     Section {
         title: format!("Material {}", tested.material.name),
         tables: vec![PageTable {
-            name: own.title,
-            columns: own.header.into_iter().map(Column::words).collect(),
-            rows: own.rows,
+            name: table.title,
+            columns: table.header.into_iter().map(Column::words).collect(),
+            rows: table.rows,
         }],
         ..Section::default()
     }
@@ -213,7 +213,7 @@ fn material(tested: &Tested) -> Section {
 fn path(tested: &Tested) -> Section {
     let mut sentences = path_words::sentences(&tested.request);
     let notes = tested.notes().into_iter();
-    sentences.extend((notes.filter(|own| *own != said::VARIES)).map(|own| sentence(&own)));
+    sentences.extend((notes.filter(|note| *note != said::VARIES)).map(|note| sentence(&note)));
     Section {
         title: "Path".to_owned(),
         sentences,

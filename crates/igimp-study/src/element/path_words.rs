@@ -45,7 +45,7 @@ pub(super) fn sentences(request: &Request) -> Vec<String> {
 
 /// A test of the laboratory in words.
 fn standard(test: StandardTest, strain: f64) -> String {
-    let (what, kept) = match test {
+    let (name, kept) = match test {
         StandardTest::TriaxialDrained => ("Axial", "while the stress at the sides stays"),
         StandardTest::TriaxialUndrained => ("Axial", "at constant volume, with both sides alike"),
         StandardTest::Oedometer => ("Axial", "without strain of the sides"),
@@ -60,7 +60,7 @@ fn standard(test: StandardTest, strain: f64) -> String {
         StandardTest::PlaneStrainUndrained => ("Axial", "at constant volume, without strain in z"),
     };
     let percent = short(100.0 * strain);
-    format!("{what} strain is driven from 0 to {percent} %, {kept}.")
+    format!("{name} strain is driven from 0 to {percent} %, {kept}.")
 }
 
 fn legs_in_words(legs: usize) -> String {
@@ -85,7 +85,7 @@ pub(super) fn legs(drive: &Drive) -> Option<PageTable> {
         Control::Strain | Control::AsXx => Column::numbers(strain.header()),
     };
     let columns = controls.iter().zip(COMPONENTS);
-    let columns = columns.map(|(control, own)| column(control, own));
+    let columns = columns.map(|(control, measures)| column(control, measures));
     let rows = legs.iter().take(MOST_LEGS).zip(1..).map(|(leg, number)| {
         let cells = leg.iter().zip(controls).enumerate();
         let cells = cells.map(|(place, (value, control))| cell(place, *value, *control));

@@ -66,10 +66,13 @@ pub(super) fn plots(
     } else {
         [None, None]
     };
-    let columns = compared.map_or(&[][..], |own| &own.data.columns);
-    for own in columns.iter().filter(|own| !shown.contains(&Some(**own))) {
-        let name = format!("measured-{}", own.name().replace([' ', '_'], "-"));
-        plots.push((name, drawn.measured(*own)));
+    let columns = compared.map_or(&[][..], |compared| &compared.data.columns);
+    for measure in columns
+        .iter()
+        .filter(|measure| !shown.contains(&Some(**measure)))
+    {
+        let name = format!("measured-{}", measure.name().replace([' ', '_'], "-"));
+        plots.push((name, drawn.measured(*measure)));
     }
     plots
 }
@@ -83,7 +86,7 @@ pub(super) fn residuals(
 ) -> CurvePlot {
     let at = |at: f64| driven(drive).map_or(at, |strain| strain.printed(at));
     let columns = compared.data.columns.iter().enumerate().zip(scales);
-    let series = columns.map(|((column, own), scale)| {
+    let series = columns.map(|((column, measure), scale)| {
         let rows = compared.data.rows.iter().zip(&compared.computed);
         let points = rows.map(|(row, computed)| {
             let difference = computed[column] - row.values[column];
@@ -91,11 +94,11 @@ pub(super) fn residuals(
         });
         let known = points.filter(|point| point[1].is_finite());
         let is_alone = compared.data.columns.len() == 1;
-        let name = if is_alone { "" } else { own.name() };
+        let name = if is_alone { "" } else { measure.name() };
         Series::markers(name, known.collect())
     });
     let series: Vec<Series> = series.collect();
-    let sizes = series.iter().flat_map(|own| &own.points);
+    let sizes = series.iter().flat_map(|marks| &marks.points);
     let most = sizes.fold(0.0_f64, |most, point| most.max(point[1].abs()));
     let end = (1.1 * most).max(3.0);
     let line = |value: f64| ReferenceLine {
@@ -119,7 +122,7 @@ impl Drawn<'_> {
     /// A quantity over another one, and the measurements of both.
     fn plot(&self, (x, x_label): (Measure, &str), (y, y_label): (Measure, &str)) -> CurvePlot {
         let first = &self.states[0];
-        let value = |own: Measure, state| own.printed(own.of(state, first, self.drive));
+        let value = |measure: Measure, state| measure.printed(measure.of(state, first, self.drive));
         let curve = (self.states.iter())
             .map(|state| [value(x, state), value(y, state)])
             .collect();
@@ -133,32 +136,32 @@ impl Drawn<'_> {
     }
 
     /// A measured quantity over the place on the way; computed values at the same places.
-    fn measured(&self, own: Measure) -> CurvePlot {
+    fn measured(&self, measure: Measure) -> CurvePlot {
         let Some(compared) = self.compared else {
             return CurvePlot::default();
         };
-        let is_own = |of: &Measure| *of == own;
-        let column = compared.data.columns.iter().position(is_own).unwrap_or(0);
+        let is_same = |of: &Measure| *of == measure;
+        let column = compared.data.columns.iter().position(is_same).unwrap_or(0);
         let label = driven(self.drive).map_or("legs of the path [-]", Measure::header);
         let at = |at: f64| driven(self.drive).map_or(at, |strain| strain.printed(at));
         let rows = || compared.data.rows.iter().zip(&compared.computed);
         let mut curve: Vec<[f64; 2]> = rows()
-            .map(|(row, computed)| [at(row.at), own.printed(computed[column])])
+            .map(|(row, computed)| [at(row.at), measure.printed(computed[column])])
             .collect();
         curve.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let points = rows()
-            .map(|(row, _)| [at(row.at), own.printed(row.values[column])])
+            .map(|(row, _)| [at(row.at), measure.printed(row.values[column])])
             .collect();
-        self.over(label, own.header(), curve, points)
+        self.over(label, measure.header(), curve, points)
     }
 
-    /// What was measured of a quantity, by rows.
-    fn measured_of(&self, own: Measure) -> Option<Vec<f64>> {
+    /// The measured values of a quantity, by rows.
+    fn measured_of(&self, measure: Measure) -> Option<Vec<f64>> {
         let data = &self.compared?.data;
-        if driven(self.drive) == Some(own) {
+        if driven(self.drive) == Some(measure) {
             return Some(data.rows.iter().map(|row| row.at).collect());
         }
-        let column = data.columns.iter().position(|of| *of == own)?;
+        let column = data.columns.iter().position(|of| *of == measure)?;
         Some(data.rows.iter().map(|row| row.values[column]).collect())
     }
 

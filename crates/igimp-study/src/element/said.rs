@@ -42,8 +42,8 @@ pub(super) fn said(tested: &Tested) -> String {
     for line in ending(tested) {
         let _ = writeln!(text, "  {line}");
     }
-    if let Some(own) = &tested.compared {
-        text.push_str(&own.said());
+    if let Some(compared) = &tested.compared {
+        text.push_str(&compared.said());
     }
     text
 }
@@ -55,7 +55,7 @@ pub(super) fn ending(tested: &Tested) -> Vec<String> {
     };
     let because = lost.law.as_ref().map(|law| format!("because: {law}"));
     let curves = tested.material.softening;
-    let is_brittle = curves.is_some_and(|own| own.goes_with_strain()) && because.is_none();
+    let is_brittle = curves.is_some_and(|curves| curves.goes_with_strain()) && because.is_none();
     [format!("ended early: {lost}")]
         .into_iter()
         .chain(because)
@@ -69,14 +69,14 @@ pub(super) fn closed(
     request: &Request,
     states: &[ElementState],
 ) -> Option<String> {
-    let own = values.closed.as_ref()?;
+    let form = values.closed.as_ref()?;
     let end = values.stress.of(states.last()?, &states[0], &request.drive);
     Some(format!(
         "closed form at failure: {} = {} kPa, {}; at the end {} % of it",
         values.symbol(),
-        short(own.value / 1e3),
-        own.from,
-        short(100.0 * end / own.value),
+        short(form.value / 1e3),
+        form.from,
+        short(100.0 * end / form.value),
     ))
 }
 

@@ -62,22 +62,20 @@ pub(super) fn table(
     let is_path = driven(drive).is_none();
     let mut header: Vec<String> = Vec::new();
     header.extend(is_path.then(|| LEG.to_owned()));
-    header.extend(Measure::of_test(drive).map(|own| own.header().to_owned()));
+    header.extend(Measure::of_test(drive).map(|measure| measure.header().to_owned()));
     header.push("plastic strain [-]".to_owned());
     header.push("regime".to_owned());
     header.extend(
         variables
             .iter()
-            .map(|own| format!("{} [{}]", own.name, own.unit)),
+            .map(|variable| format!("{} [{}]", variable.name, variable.unit)),
     );
     let columns: Vec<&str> = header.iter().map(String::as_str).collect();
     let mut table = Table::new("element", &columns);
     for (state, way) in states.iter().zip(ways) {
         let mut row = Vec::new();
         row.extend(is_path.then_some(*way));
-        row.extend(
-            Measure::of_test(drive).map(|own| own.printed(own.of(state, &states[0], drive))),
-        );
+        row.extend(Measure::of_test(drive).map(|m| m.printed(m.of(state, &states[0], drive))));
         row.push(state.history.eps_p_eq);
         row.push(f64::from(state.regime.code()));
         row.extend(state.history.internal.iter().take(variables.len()));

@@ -13,7 +13,7 @@ use crate::element::{Compared, Tested, pictures};
 /// Stands for what has no number.
 const NONE: &str = "–";
 
-/// What the picture of residuals shows.
+/// The caption of the picture of residuals.
 const RESIDUALS: &str =
     "Residuals over their standard deviation; of scatter alone 95 % lie within the lines at 2";
 
@@ -55,18 +55,20 @@ pub(super) fn page(fitted: &Fitted, written: &[(String, Vec<String>)]) -> Page {
     }
 }
 
-/// What a reader has to know before a value is used.
+/// Reservations about the values, for a reader.
 fn reservations(fitted: &Fitted) -> Vec<String> {
     let sentence = |text: &str| {
         let mut letters = text.chars();
-        let first = letters.next().map(|own| own.to_uppercase().to_string());
+        let first = letters.next().map(|c| c.to_uppercase().to_string());
         format!("{}{}.", first.unwrap_or_default(), letters.as_str())
     };
     let unknown = (fitted.parameters.iter())
-        .filter(|own| !matches!(own.known, Known::Well { .. }))
-        .map(|own| format!("{}.", said::line(own, &fitted.parameters)));
+        .filter(|found| !matches!(found.known, Known::Well { .. }))
+        .map(|found| format!("{}.", said::line(found, &fitted.parameters)));
     let kink = fitted.has_kink.then(|| sentence(said::KINK));
-    let pairs = said::pairs(fitted).into_iter().map(|own| format!("{own}."));
+    let pairs = said::pairs(fitted)
+        .into_iter()
+        .map(|pair| format!("{pair}."));
     kink.into_iter().chain(unknown).chain(pairs).collect()
 }
 
@@ -91,9 +93,9 @@ fn parameters(fitted: &Fitted) -> Section {
 }
 
 /// The row of a parameter.
-fn row(own: &Found) -> Vec<String> {
+fn row(found: &Found) -> Vec<String> {
     let none = || NONE.to_owned();
-    let (numbers, by) = match &own.known {
+    let (numbers, by) = match &found.known {
         Known::Well {
             error,
             interval: [low, high],
@@ -101,28 +103,31 @@ fn row(own: &Found) -> Vec<String> {
             let digits = |value: f64| said::digits(value, *error);
             let ends = [digits(*low), digits(*high)];
             let [low, high] = ends;
-            ([digits(own.value), short(*error), low, high], "these data")
+            (
+                [digits(found.value), short(*error), low, high],
+                "these data",
+            )
         }
         Known::AtBound { .. } | Known::AtWall { .. } => {
-            let by = match own.known {
+            let by = match found.known {
                 Known::AtBound { upper: true } => "its upper bound",
                 Known::AtBound { .. } => "its lower bound",
                 Known::AtWall { upper: true } => "the greatest value that is accepted",
                 _ => "the least value that is accepted",
             };
-            ([short(own.value), none(), none(), none()], by)
+            ([short(found.value), none(), none(), none()], by)
         }
         Known::NotDetermined { .. } => ([(); 4].map(|()| none()), "nothing: not determined"),
     };
-    let head = [own.key.clone(), own.unit.clone(), short(own.start)];
+    let head = [found.key.clone(), found.unit.clone(), short(found.start)];
     (head.into_iter().chain(numbers))
         .chain([by.to_owned()])
         .collect()
 }
 
 fn correlations(fitted: &Fitted) -> Section {
-    let keys = || fitted.parameters.iter().map(|own| own.key.clone());
-    let cell = |own: &f64| match said::correlation(*own, 3) {
+    let keys = || fitted.parameters.iter().map(|found| found.key.clone());
+    let cell = |value: &f64| match said::correlation(*value, 3) {
         none if none.is_empty() => NONE.to_owned(),
         some => some,
     };
@@ -162,9 +167,9 @@ fn differences(fitted: &Fitted) -> Section {
     let tests = fitted.tests.iter().zip(&fitted.scales).zip(1..);
     let rows = tests.flat_map(|((tested, scales), at)| {
         let compared = tested.compared.iter();
-        compared.flat_map(move |own| {
+        compared.flat_map(move |data| {
             let columns = scales.iter().enumerate();
-            columns.map(move |(k, scale)| off((own, at), k, scale * fitted.deviation))
+            columns.map(move |(k, scale)| off((data, at), k, scale * fitted.deviation))
         })
     });
     Section {
@@ -187,43 +192,43 @@ fn differences(fitted: &Fitted) -> Section {
 
 /// The row of a quantity of a test, with its standard deviation in SI.
 fn off((compared, at): (&Compared, usize), column: usize, deviation: f64) -> Vec<String> {
-    let own = compared.data.columns[column];
+    let measure = compared.data.columns[column];
     let [values, mean, largest, line] = compared.off_in_words(column);
     let deviation = match compared.off(column) {
-        Some(_) => format!("{} {}", short(own.printed(deviation)), own.unit()),
+        Some(_) => format!("{} {}", short(measure.printed(deviation)), measure.unit()),
         None => NONE.to_owned(),
     };
     let numbers = [values, deviation, mean, largest, line];
     let data = &compared.data.name;
-    let words = [at.to_string(), own.name().to_owned(), data.clone()];
+    let words = [at.to_string(), measure.name().to_owned(), data.clone()];
     words.into_iter().chain(numbers).collect()
 }
 
 /// A test with its pictures.
 fn test(tested: &Tested, at: usize, (folder, files): &(String, Vec<String>)) -> Section {
     let first = tested.text.lines().next().unwrap_or_default();
-    let what = first.rsplit(", ").next().unwrap_or_default();
+    let name = first.rsplit(", ").next().unwrap_or_default();
     let inside = |file: &str| format!("{folder}/{file}");
     let mut pictures = pictures(tested);
     pictures.extend(
         files
             .iter()
-            .any(|own| own == "residuals.svg")
+            .any(|file| file == "residuals.svg")
             .then(|| FigureNote {
                 file: "residuals".to_owned(),
                 caption: RESIDUALS.to_owned(),
             }),
     );
-    for own in &mut pictures {
-        own.file = inside(&own.file);
+    for picture in &mut pictures {
+        picture.file = inside(&picture.file);
     }
-    let is_table = |own: &&String| Path::new(own).extension().is_some_and(|end| end == "csv");
+    let is_table = |file: &&String| Path::new(file).extension().is_some_and(|end| end == "csv");
     let tables = files.iter().filter(is_table);
     Section {
-        title: format!("Test {at}: {what}"),
+        title: format!("Test {at}: {name}"),
         text: tested.text.clone(),
         pictures,
-        files: tables.map(|own| inside(own)).collect(),
+        files: tables.map(|file| inside(file)).collect(),
         ..Section::default()
     }
 }

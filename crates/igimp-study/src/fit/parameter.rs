@@ -113,11 +113,11 @@ impl std::str::FromStr for Vary {
             None => (text, None),
             Some((key, bounds)) => {
                 let (low, high) = bounds.split_once("..").ok_or_else(form)?;
-                (key, Some([low, high].map(|own| own.trim().to_owned())))
+                (key, Some([low, high].map(|bound| bound.trim().to_owned())))
             }
         };
         let key = key.trim().to_owned();
-        let is_key = |own: char| own.is_ascii_alphanumeric() || matches!(own, '_' | '.' | '-');
+        let is_key = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '-');
         if key.is_empty() || !key.chars().all(is_key) {
             return Err(form());
         }
@@ -223,9 +223,11 @@ pub(super) struct Range {
 
 impl Range {
     /// The bounds that were stated.
-    pub(super) fn stated(own: &Parameter) -> Self {
+    pub(super) fn stated(parameter: &Parameter) -> Self {
         Self {
-            ends: own.limits().unwrap_or([f64::NEG_INFINITY, f64::INFINITY]),
+            ends: parameter
+                .limits()
+                .unwrap_or([f64::NEG_INFINITY, f64::INFINITY]),
             is_wall: [false; 2],
         }
     }
@@ -258,10 +260,10 @@ fn bounds_in(
     bounds: &[String; 2],
     (first, unit): (f64, &str),
 ) -> Result<[f64; 2], ParameterError> {
-    let one = Quantity::parse(&format!("1 {unit}")).map_or(1.0, |own| own.value);
-    let kind = Quantity::parse(&format!("1 {unit}")).map_or(None, |own| own.dimension);
-    let mut own = [0.0; 2];
-    for (value, text) in own.iter_mut().zip(bounds) {
+    let one = Quantity::parse(&format!("1 {unit}")).map_or(1.0, |q| q.value);
+    let kind = Quantity::parse(&format!("1 {unit}")).map_or(None, |q| q.dimension);
+    let mut ends = [0.0; 2];
+    for (value, text) in ends.iter_mut().zip(bounds) {
         let read = Quantity::parse(text).map_err(|source| ParameterError::Bound {
             key: key.to_owned(),
             source,
@@ -275,9 +277,9 @@ fn bounds_in(
         }
         *value = read.value / one;
     }
-    let [low, high] = own;
+    let [low, high] = ends;
     if low < high && (low..=high).contains(&first) {
-        return Ok(own);
+        return Ok(ends);
     }
     let [low, high] = bounds.clone();
     Err(ParameterError::Outside {

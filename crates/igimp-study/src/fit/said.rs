@@ -18,16 +18,16 @@ pub(super) fn said(fitted: &Fitted) -> String {
     if fitted.has_kink {
         let _ = writeln!(text, "  {KINK}");
     }
-    for own in &fitted.parameters {
-        let _ = writeln!(text, "  {}", line(own, &fitted.parameters));
+    for found in &fitted.parameters {
+        let _ = writeln!(text, "  {}", line(found, &fitted.parameters));
     }
     for pair in pairs(fitted) {
         let _ = writeln!(text, "  {pair}");
     }
     for (tested, at) in fitted.tests.iter().zip(1..) {
-        let what = tested.text.lines().next().unwrap_or_default();
-        let _ = writeln!(text, "  test {at}, {what}");
-        for line in tested.compared.iter().flat_map(|own| lines(&own.said())) {
+        let title = tested.text.lines().next().unwrap_or_default();
+        let _ = writeln!(text, "  test {at}, {title}");
+        for line in tested.compared.iter().flat_map(|data| lines(&data.said())) {
             let _ = writeln!(text, "  {line}");
         }
     }
@@ -35,7 +35,7 @@ pub(super) fn said(fitted: &Fitted) -> String {
     text
 }
 
-/// What is said where the best values have a measurement at the beginning of yield.
+/// The remark where the best values have a measurement at the beginning of yield.
 pub(super) const KINK: &str = "the least sum of squares is at a kink, as where soil begins to yield at a measurement: errors are rough";
 
 /// How many parameters come from how many data.
@@ -63,9 +63,9 @@ pub(super) fn pairs(fitted: &Fitted) -> Vec<String> {
 }
 
 /// A correlation with so many places; empty where there is none.
-pub(super) fn correlation(own: f64, places: usize) -> String {
-    if own.is_finite() {
-        format!("{own:.places$}")
+pub(super) fn correlation(value: f64, places: usize) -> String {
+    if value.is_finite() {
+        format!("{value:.places$}")
     } else {
         String::new()
     }
@@ -75,17 +75,17 @@ fn lines(text: &str) -> Vec<String> {
     text.lines().map(str::to_owned).collect()
 }
 
-fn counted(count: usize, what: &str) -> String {
+fn counted(count: usize, noun: &str) -> String {
     let more = if count == 1 { "" } else { "s" };
-    format!("{count} {what}{more}")
+    format!("{count} {noun}{more}")
 }
 
 /// A line for a parameter.
-pub(super) fn line(own: &Found, all: &[Found]) -> String {
+pub(super) fn line(found: &Found, all: &[Found]) -> String {
     let Found {
         key, unit, value, ..
-    } = own;
-    match &own.known {
+    } = found;
+    match &found.known {
         Known::Well {
             error,
             interval: [low, high],
@@ -139,26 +139,26 @@ pub(super) fn digits(value: f64, error: f64) -> String {
 }
 
 /// The row of a parameter in `fit.csv`.
-pub(super) fn row(own: &Found) -> Vec<String> {
+pub(super) fn row(found: &Found) -> Vec<String> {
     let number = |value: f64| format!("{value:.9e}");
-    let mut row = vec![own.key.clone(), own.unit.clone(), number(own.start)];
-    let (values, known) = match &own.known {
+    let mut row = vec![found.key.clone(), found.unit.clone(), number(found.start)];
+    let (values, known) = match &found.known {
         Known::Well {
             error,
             interval: [low, high],
         } => (
-            [own.value, *error, *low, *high].map(number),
+            [found.value, *error, *low, *high].map(number),
             "standard error",
         ),
         Known::AtBound { .. } | Known::AtWall { .. } => {
-            let known = match own.known {
+            let known = match found.known {
                 Known::AtBound { upper: true } => "at its upper bound",
                 Known::AtBound { .. } => "at its lower bound",
                 Known::AtWall { upper: true } => "greatest that is accepted",
                 _ => "least that is accepted",
             };
             let none = String::new;
-            ([number(own.value), none(), none(), none()], known)
+            ([number(found.value), none(), none(), none()], known)
         }
         Known::NotDetermined { .. } => ([(); 4].map(|()| String::new()), "not determined"),
     };
@@ -170,19 +170,19 @@ pub(super) fn row(own: &Found) -> Vec<String> {
 /// The values as a block of a case file; what is not determined is left out.
 pub(super) fn block(material: &str, found: &[Found]) -> String {
     let mut text = format!("[materials.{}]\n", quoted(material));
-    for own in found {
-        let key = &own.key;
-        let value = match &own.known {
+    for parameter in found {
+        let key = &parameter.key;
+        let value = match &parameter.known {
             Known::NotDetermined { .. } => {
                 let _ = writeln!(text, "# {key} is not determined");
                 continue;
             }
-            Known::Well { error, .. } => digits(own.value, error / 100.0),
-            Known::AtBound { .. } | Known::AtWall { .. } => own.value.to_string(),
+            Known::Well { error, .. } => digits(parameter.value, error / 100.0),
+            Known::AtBound { .. } | Known::AtWall { .. } => parameter.value.to_string(),
         };
-        let number = value.parse().unwrap_or(own.value);
-        let value = written(number, &own.unit);
-        let value = if own.unit.is_empty() {
+        let number = value.parse().unwrap_or(parameter.value);
+        let value = written(number, &parameter.unit);
+        let value = if parameter.unit.is_empty() {
             value
         } else {
             format!("\"{value}\"")
@@ -194,7 +194,7 @@ pub(super) fn block(material: &str, found: &[Found]) -> String {
 
 /// A name as a key of TOML.
 pub(super) fn quoted(name: &str) -> String {
-    let is_bare = |own: char| own.is_ascii_alphanumeric() || matches!(own, '_' | '-');
+    let is_bare = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
     if !name.is_empty() && name.chars().all(is_bare) {
         name.to_owned()
     } else {

@@ -34,7 +34,7 @@ pub struct Collected {
     pub unknown: Vec<String>,
 }
 
-/// What is there of a task.
+/// The state of a task.
 struct Standing {
     /// How it ended, in a word.
     end: String,
@@ -59,12 +59,12 @@ pub fn collect(sweep: &Sweep) -> Collected {
         })
         .collect();
     let mut columns: Vec<String> = Vec::new();
-    for (name, _) in standing.iter().flat_map(|own| &own.found).flatten() {
+    for (name, _) in standing.iter().flat_map(|state| &state.found).flatten() {
         if !columns.contains(name) {
             columns.push(name.clone());
         }
     }
-    let some = standing.iter().any(|own| own.found.is_some());
+    let some = standing.iter().any(|state| state.found.is_some());
     let unknown = sweep
         .collect
         .iter()
@@ -79,11 +79,11 @@ pub fn collect(sweep: &Sweep) -> Collected {
         .collect();
     let rows = std::iter::zip(&sweep.tasks, &standing)
         .enumerate()
-        .map(|(place, (task, own))| row((place, task), &parameters, own, &columns))
+        .map(|(place, (task, state))| row((place, task), &parameters, state, &columns))
         .collect();
     let numbers_where = |holds: fn(&Standing) -> bool| {
         let tasks = std::iter::zip(&sweep.tasks, &standing);
-        let those = tasks.filter(|(_, own)| holds(own));
+        let those = tasks.filter(|(_, state)| holds(state));
         those.map(|(task, _)| task.number).collect()
     };
     let mut header = vec!["task".to_owned()];
@@ -95,8 +95,8 @@ pub fn collect(sweep: &Sweep) -> Collected {
         header,
         rows,
         numbers: parameters.into_iter().map(|one| one.numbers).collect(),
-        missing: numbers_where(|own| own.found.is_none() && !own.is_outdated),
-        outdated: numbers_where(|own| own.is_outdated),
+        missing: numbers_where(|state| state.found.is_none() && !state.is_outdated),
+        outdated: numbers_where(|state| state.is_outdated),
         unchecked,
         unknown,
     }
@@ -196,19 +196,19 @@ pub fn aligned(lines: &[Vec<String>]) -> String {
 fn row(
     (place, task): (usize, &Task),
     parameters: &[Column],
-    own: &Standing,
+    state: &Standing,
     columns: &[String],
 ) -> Vec<String> {
     let mut row = vec![task.number.to_string()];
     row.extend(parameters.iter().map(|one| one.cells[place].clone()));
-    row.push(own.end.clone());
+    row.push(state.end.clone());
     row.extend(columns.iter().map(|column| {
-        let mut found = own.found.iter().flatten();
+        let mut found = state.found.iter().flatten();
         found
             .find(|(name, _)| name == column)
             .map_or_else(String::new, |(_, value)| value.to_string())
     }));
-    row.push(own.message.clone());
+    row.push(state.message.clone());
     row
 }
 
