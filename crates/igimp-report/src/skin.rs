@@ -154,7 +154,7 @@ fn faces(boxes: Boxes<'_>, bins: &Bins<'_>, k: usize) -> u8 {
         // Mostly there is one box that covers all of it.
         let is_hidden = bins.is_within_one(&ends, &middle, k)
             || bins.is_covered(&middle, k)
-                && beside.iter().all(|&own| bins.is_covered(&moved(own), k));
+                && beside.iter().all(|&at| bins.is_covered(&moved(at), k));
         if !is_hidden {
             faces |= 1 << face;
         }

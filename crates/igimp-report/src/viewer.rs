@@ -138,18 +138,18 @@ pub(super) fn held(folder: &Path, around: &Surroundings) -> Option<Held> {
     let all = particles.len();
     let places = whereabouts(&particles, &around.stages);
     let of = |k: usize, keep| {
-        let packed = |own: Option<&pvd::Frame>| frame(&folder.join(&own?.file), keep, None);
-        let own = &particles[k];
-        let seconds = seconds.get(&own.file).copied();
+        let packed = |found: Option<&pvd::Frame>| frame(&folder.join(&found?.file), keep, None);
+        let shown = &particles[k];
+        let seconds = seconds.get(&shown.file).copied();
         let when = match seconds {
-            Some(seconds) => format!("t = {} s, stage “{}”", short(seconds), own.stage),
-            None => format!("stage “{}”, {}", own.stage, places[k].when),
+            Some(seconds) => format!("t = {} s, stage “{}”", short(seconds), shown.stage),
+            None => format!("stage “{}”, {}", shown.stage, places[k].when),
         };
         Some(HeldFrame {
             label: format!("Frame {} of {all}, {when}", k + 1),
             seconds,
             stage: places[k].stage,
-            data: frame(&folder.join(&own.file), keep, around.bodies.as_ref())?,
+            data: frame(&folder.join(&shown.file), keep, around.bodies.as_ref())?,
             bodies: packed(bodies.get(k)),
             members: packed(members.get(k)),
         })

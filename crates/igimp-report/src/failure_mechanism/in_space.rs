@@ -63,11 +63,11 @@ impl IncrementInSpace<'_> {
 /// The highest level at which soil moves half as far as what moves most above it, if it moves by as much as `least` there and the
 /// change is sharp.
 fn half_way(levels: &[Level], least: f64) -> Option<f64> {
-    let most = levels.iter().map(|own| own.1).fold(0.0, f64::max);
+    let most = levels.iter().map(|at| at.1).fold(0.0, f64::max);
     let moves = most > 0.0 && most >= least;
     // From above: the highest level below which soil moves by less than a share of the most.
     let level = |share: f64| {
-        let below = levels.iter().rposition(|own| own.1 < share * most)?;
+        let below = levels.iter().rposition(|at| at.1 < share * most)?;
         let [a, b] = levels.get(below..below + 2)?.try_into().ok()?;
         Some(a.0 + (b.0 - a.0) * (share * most - a.1) / (b.1 - a.1))
     };

@@ -34,8 +34,8 @@ pub fn energy_pictures<const D: usize>(
     };
     let mut notes = Vec::new();
     for (number, stage) in case.stages.iter().enumerate() {
-        let is_own = |row: &&Vec<f64>| (row[of_stage] - (number + 1) as f64).abs() < 0.5;
-        let rows: Vec<&Vec<f64>> = table.rows.iter().filter(is_own).collect();
+        let in_stage = |row: &&Vec<f64>| (row[of_stage] - (number + 1) as f64).abs() < 0.5;
+        let rows: Vec<&Vec<f64>> = table.rows.iter().filter(in_stage).collect();
         if rows.is_empty() {
             continue;
         }
@@ -145,12 +145,12 @@ fn left_out(shown: &[(String, Vec<f64>)], table: &Table, rows: &[&Vec<f64>]) -> 
     let all = all_curves(table, rows);
     let is_small = |(label, values): &&(String, Vec<f64>)| {
         let is_there = values.iter().any(|value| *value != 0.0);
-        is_there && !shown.iter().any(|(own, _)| own == label)
+        is_there && !shown.iter().any(|(name, _)| name == label)
     };
     let small: Vec<&str> = all
         .iter()
         .filter(is_small)
-        .map(|own| own.0.as_str())
+        .map(|curve| curve.0.as_str())
         .collect();
     if small.is_empty() {
         return String::new();
@@ -187,7 +187,7 @@ mod tests {
         table.push(vec![1.0, 2.0, 0.2, 1e3, 1e3, 600.0, 20.0, 1.0, 6.0, 1e-3]);
         let rows: Vec<&Vec<f64>> = table.rows.iter().collect();
         let curves = curves(&table, &rows);
-        let labels: Vec<&str> = curves.iter().map(|own| own.0.as_str()).collect();
+        let labels: Vec<&str> = curves.iter().map(|curve| curve.0.as_str()).collect();
         assert_eq!(
             labels,
             ["kinetic", "boundaries", "elastic", "numerical method"]

@@ -74,11 +74,11 @@ pub fn monitor_pictures<const D: usize>(
 
 /// The times of the rows of a table \[s\]; none where a stage among them does not move in time.
 fn times<const D: usize>(case: &Case<D>, table: &Table) -> Option<Vec<f64>> {
-    let column = |name: &str| table.header.iter().position(|own| own.starts_with(name));
+    let column = |name: &str| table.header.iter().position(|head| head.starts_with(name));
     let (stage, time) = (column("stage")?, column("time")?);
     let of_motion = |row: &Vec<f64>| {
-        let own = case.stages.get((row[stage] as usize).checked_sub(1)?)?;
-        matches!(own.kind, StageKind::Dynamic(_)).then_some(row[time])
+        let found = case.stages.get((row[stage] as usize).checked_sub(1)?)?;
+        matches!(found.kind, StageKind::Dynamic(_)).then_some(row[time])
     };
     table.rows.iter().map(of_motion).collect()
 }
@@ -223,7 +223,7 @@ impl Course {
             .unwrap_or(0);
         let along: [f64; D] = std::array::from_fn(|axis| section.to[axis] - section.from[axis]);
         let rise = along[D - 1];
-        let is_level = |own: &f64| own.abs() <= 1e-6 * rise.abs();
+        let is_level = |run: &f64| run.abs() <= 1e-6 * rise.abs();
         let mut course = Self {
             along: Vec::new(),
             is_upright: rise.abs() > 0.0 && along[..D - 1].iter().all(is_level),
@@ -322,7 +322,7 @@ fn groups(record: &[Field], table: &Table, axes: Axes) -> Vec<Group> {
 
 impl Group {
     fn has(&self, field: Field) -> bool {
-        self.columns.iter().any(|&(own, _)| own == field)
+        self.columns.iter().any(|&(other, _)| other == field)
     }
 
     /// The unit of its values.

@@ -32,11 +32,11 @@ pub fn mesh_pictures(folder: &Path, summary: &Summary) -> Result<Vec<FigureNote>
             continue;
         }
         let expected = summary.checks.iter().filter(|row| {
-            let own = study
+            let same = study
                 .results
                 .iter()
                 .filter(|other| other.values == result.values);
-            own.into_iter()
+            same.into_iter()
                 .any(|other| other.name == row.check.quantity)
         });
         let plot = plot(

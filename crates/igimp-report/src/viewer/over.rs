@@ -83,7 +83,7 @@ fn tables<const D: usize>(case: &Case<D>, stage: usize) -> Vec<Surface> {
     if let Some(case) = in_plane::<Case<D>, Case<2>>(case) {
         let ends = [case.grid.lower()[0], case.grid.upper()[0]];
         let tables = tables_after(case, stage, ends).into_iter();
-        return tables.map(|own| Surface::Line(own.points)).collect();
+        return tables.map(|line| Surface::Line(line.points)).collect();
     }
     in_plane::<Case<D>, Case<3>>(case).map_or_else(Vec::new, |case| rasters(case, stage))
 }
@@ -91,13 +91,13 @@ fn tables<const D: usize>(case: &Case<D>, stage: usize) -> Vec<Surface> {
 /// The free surface of the flow at the end of a stage, by its table, and the free water that stands over the ground.
 fn free_surface<const D: usize>(case: &Case<D>, stage: usize, root: &Path) -> Vec<Surface> {
     let condition = case.water_after(stage);
-    let Some((condition, own)) = condition.and_then(|k| Some((k, case.water.get(k)?))) else {
+    let Some((condition, water)) = condition.and_then(|k| Some((k, case.water.get(k)?))) else {
         return Vec::new();
     };
-    let PoreSource::Seepage(flow) = &own.source else {
+    let PoreSource::Seepage(flow) = &water.source else {
         return Vec::new();
     };
-    let name = file_name(&format!("seepage-{}", own.name));
+    let name = file_name(&format!("seepage-{}", water.name));
     let ground = Ground::new(case, condition, flow);
     let rows = table(root, "sections", &name).unwrap_or_default();
     let rows: Vec<([f64; D], Option<f64>)> = (rows.iter())
@@ -129,7 +129,7 @@ fn over_lines<const D: usize>(rows: &[([f64; D], Option<f64>)]) -> Surface {
     let (x, y) = (along(0), along(1));
     let mut z = vec![vec![None; x.len()]; y.len()];
     for (row, level) in rows {
-        let of = |places: &[f64], at: f64| places.partition_point(|&own| own < at);
+        let of = |places: &[f64], at: f64| places.partition_point(|&place| place < at);
         z[of(&y, row[1])][of(&x, row[0])] = *level;
     }
     Surface::Raster { x, y, z }
@@ -178,7 +178,7 @@ impl<'c, const D: usize> Ground<'c, D> {
     /// The level of the free water over a place on the ground \[m\].
     fn free_water(&self, place: &[f64; D]) -> Option<f64> {
         let table = self.flow.free_water.as_ref();
-        if let Some(level) = table.and_then(|own| own.table(place)) {
+        if let Some(level) = table.and_then(|source| source.table(place)) {
             return Some(level);
         }
         // Of several boxes that hold a face the last counts.
@@ -192,7 +192,7 @@ impl<'c, const D: usize> Ground<'c, D> {
             return None;
         };
         let moment = self.flow.in_time.as_ref();
-        let history = moment.and_then(|own| Some(own.histories.get(last)?.as_ref()?.at(own.time)));
+        let history = moment.and_then(|m| Some(m.histories.get(last)?.as_ref()?.at(m.time)));
         Some(history.unwrap_or(head))
     }
 }
@@ -203,11 +203,11 @@ fn rasters(case: &Case<3>, stage: usize) -> Vec<Surface> {
         return Vec::new();
     };
     let there = case.bodies_after(stage);
-    let own = condition.bodies.iter().filter(|(body, _)| there[*body]);
-    let own = own.map(|(body, source)| (source, case.bodies[*body].region.bounds()));
+    let local = condition.bodies.iter().filter(|(body, _)| there[*body]);
+    let local = local.map(|(body, source)| (source, case.bodies[*body].region.bounds()));
     let plan = (case.grid.lower(), case.grid.upper());
     std::iter::once((&condition.source, plan))
-        .chain(own)
+        .chain(local)
         .filter_map(|(source, plan)| raster(source, plan))
         .collect()
 }

@@ -23,7 +23,7 @@ impl Bodies {
     /// The bodies of a case; none where they cannot be seeded.
     pub fn of<const D: usize>(case: &Case<D>) -> Option<Self> {
         if let Some(case) = in_plane::<Case<D>, Case<2>>(case) {
-            return Pieces::of(case).ok().map(|own| Self::Plane(Arc::new(own)));
+            return Pieces::of(case).ok().map(Arc::new).map(Self::Plane);
         }
         let case = in_plane::<Case<D>, Case<3>>(case)?;
         Outlines::of(case).ok().map(Self::Space)
@@ -43,7 +43,7 @@ impl Surroundings {
     /// are no frames.
     pub fn of<const D: usize>(case: &Case<D>, folder: &Path, pieces: Option<Arc<Pieces>>) -> Self {
         let frames = pvd::frames(&folder.join("paraview"), pvd::PARTICLES);
-        if frames.is_none_or(|own| own.is_empty()) {
+        if frames.is_none_or(|found| found.is_empty()) {
             return Self::default();
         }
         Self {
