@@ -187,7 +187,7 @@ impl Rays {
         if shears.is_empty() {
             return None;
         }
-        // Angles count from the middle of what shears, so that they do not jump there.
+        // Angles count from the middle of the shear, so that they do not jump there.
         let middle = [0, 1].map(|axis| {
             shears.iter().map(|&p| of.x[p][axis]).sum::<f64>() / shears.len() as f64 - centre[axis]
         });

@@ -18,7 +18,7 @@ use crate::patches::{Carriers, Pieces};
 use crate::pictures::{Colours, axes_of, edges, titled, water};
 use crate::whereabouts::whereabouts;
 
-/// Free room around the bodies, as a share of the larger side of what they have been in \[-\].
+/// Free room around the bodies, as a share of the larger side of the box of their motion \[-\].
 const ROOM: f64 = 0.03;
 /// Time that a frame stays where the case has no time \[s\].
 const STAY: f64 = 0.25;
@@ -31,7 +31,7 @@ const PACES: [f64; 7] = [1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01];
 /// Most frames: of more, as many at equal distances.
 const MOST: usize = 400;
 
-/// What a film is to show.
+/// A film that is asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmRequest {
     /// The field.
@@ -44,7 +44,7 @@ pub struct FilmRequest {
     pub width: u32,
 }
 
-/// A film, and what it shows.
+/// A film, and its data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     /// The bytes of the animated GIF.
@@ -186,7 +186,7 @@ fn pace_of(lasts: f64) -> f64 {
     found.unwrap_or(PACES[PACES.len() - 1])
 }
 
-/// What a frame says of itself.
+/// The title of a frame.
 fn label(frame: &Frame, step: Option<&str>, pace: Option<f64>) -> String {
     let Some(pace) = pace else {
         let step = step.map_or_else(String::new, |step| format!(", {step}"));
@@ -307,7 +307,7 @@ impl Look {
     }
 }
 
-/// What all frames share.
+/// Data that all frames share.
 struct Stage<'a> {
     case: &'a Case<2>,
     pieces: &'a Pieces,

@@ -19,7 +19,7 @@ use crate::error::ReportError;
 /// Corners that a particle carries further from their middle than so many times its size have
 /// parted \[-\].
 pub(crate) const PARTED: f64 = 1.5;
-/// A corner is drawn no further from its particle than so many times as far as it was seeded \[-\]: what has flowed far is
+/// A corner is drawn no further from its particle than so many times as far as it was seeded \[-\]: soil that has flowed far is
 /// sheared into threads that no soil has.
 const MOST_STRETCHED: f64 = 3.0;
 /// Corners closer than this share of the smallest cell are one \[-\].
@@ -62,7 +62,7 @@ pub(crate) fn carried<const D: usize>(x: [f64; D], f: [[f64; D]; D], offset: [f6
     std::array::from_fn(|a| x[a] + shown * arm[a])
 }
 
-/// What pieces need to know of particles: of a body, or of a frame that was read back.
+/// Columns of particles that carry pieces: of a body, or of a frame that was read back.
 #[derive(Clone, Copy, Debug)]
 pub struct Carriers<'a> {
     /// Centres \[m\].

@@ -1,4 +1,4 @@
-//! The case in words and numbers, as tables for a reader who has no case file before him.
+//! The case in words and numbers, as tables for a reader without the case file.
 
 mod materials;
 mod stages;
@@ -11,7 +11,7 @@ use igimp_text::short;
 
 pub use materials::{given_in_words, law_name, of_material};
 
-/// Stands for what a row does not have.
+/// Stands for an entry that a row does not have.
 const NONE: &str = "–";
 /// Most corners of a body that are listed one by one.
 const MOST_CORNERS: usize = 24;

@@ -183,7 +183,7 @@ fn lie(boxes: Boxes<'_>, bins: &Bins<'_>, k: usize) -> Lie {
     }
     let length = outwards.iter().map(|n| n * n).sum::<f64>().sqrt();
     Lie {
-        // What is left of sums that cancel has no direction.
+        // The rest of sums that cancel has no direction.
         normal: outwards.map(|n| if length > 1e-3 * all { n / length } else { 0.0 }),
         open: free / all,
     }

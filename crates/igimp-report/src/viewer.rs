@@ -1,8 +1,8 @@
 //! Parts of pages that show frames in a browser: `igimp view`, and the frames of a report.
 //!
 //! The script draws plane and space alike, and needs no other script and no network. It takes frames as
-//! [`packed`] makes them of those in `paraview/`, the only states along a run that a results folder keeps. What stands over
-//! them, water and slip lines, comes from the case and its tables ([`over`]).
+//! [`packed`] makes them of those in `paraview/`, the only states along a run that a results folder keeps. Overlays,
+//! water and slip lines, come from the case and its tables ([`over`]).
 
 pub mod over;
 mod packed;
@@ -104,7 +104,7 @@ pub(super) struct Held {
     script: String,
     /// Those that fit into a page, the last among them; none if that one is too large.
     frames: Vec<HeldFrame>,
-    /// What stands over the frames of each stage, as JSON.
+    /// Overlays of the frames of each stage, as JSON.
     over: String,
     /// How many there are.
     all: usize,

@@ -17,10 +17,10 @@ const SEEN: f64 = 0.002;
 /// Columns that place a row, or that are shown in another way.
 const APART: [&str; 4] = ["stage", "step", "time", "kinetic_gain"];
 
-/// Columns of what the numerical method took, which is one curve.
+/// Columns of the energy that the numerical method took, which is one curve.
 const OF_METHOD: [&str; 3] = ["scheme", "map", "integration"];
 
-/// The pictures of the energy of the stages that take time, by a table as `energy.csv` is: what loads did, and where it went.
+/// The pictures of the energy of the stages that take time, by a table as `energy.csv` is: the work of loads, and where it went.
 ///
 /// # Errors
 /// [`ResultsError::File`](igimp_results::ResultsError::File) and [`ReportError::Figure`].
@@ -92,7 +92,7 @@ fn curves(table: &Table, rows: &[&Vec<f64>]) -> Vec<(String, Vec<f64>)> {
     all
 }
 
-/// All parts of the energy, what the method took as one.
+/// All parts of the energy, the losses of the method as one.
 fn all_curves(table: &Table, rows: &[&Vec<f64>]) -> Vec<(String, Vec<f64>)> {
     let mut method = vec![0.0; rows.len()];
     let mut all = Vec::new();
@@ -122,7 +122,7 @@ fn largest(curves: &[(String, Vec<f64>)]) -> f64 {
         .fold(0.0, |most: f64, value| most.max(value.abs()))
 }
 
-/// The unit in which the largest value reads well, and what divides values in J or J/m.
+/// The unit in which the largest value reads well, and the divisor of values in J or J/m.
 fn unit(table: &Table, curves: &[(String, Vec<f64>)]) -> (f64, String) {
     let per = if table.header.iter().any(|header| header.ends_with("[J/m]")) {
         "/m"
@@ -140,7 +140,7 @@ fn unit(table: &Table, curves: &[(String, Vec<f64>)]) -> (f64, String) {
     (divide_by, format!("{prefix}J{per}"))
 }
 
-/// What is too small to be seen, in words.
+/// Parts that are too small to be seen, in words.
 fn left_out(shown: &[(String, Vec<f64>)], table: &Table, rows: &[&Vec<f64>]) -> String {
     let all = all_curves(table, rows);
     let is_small = |(label, values): &&(String, Vec<f64>)| {
@@ -166,8 +166,8 @@ fn left_out(shown: &[(String, Vec<f64>)], table: &Table, rows: &[&Vec<f64>]) -> 
 mod tests {
     use super::*;
 
-    /// GOAL: columns are found by their names, wherever they stand; one that is new has a curve; what the method took is the
-    /// sum of its parts; what cannot be seen is named.
+    /// GOAL: columns are found by their names, wherever they stand; one that is new has a curve; the loss of the method is the
+    /// sum of its parts; a part that cannot be seen is named.
     #[test]
     fn energy_is_read_by_the_names_of_its_columns() {
         let header = [

@@ -323,7 +323,7 @@ mod tests {
 
     /// GOAL: a field that is even but for rounding and a few values has a picture; the run ended with its colour bar.
     /// CASE: an excess pore pressure of 9.9975 kPa with differences of 1e-12, one value that is larger, and one of nothing; a speed of 1e-200.
-    /// ORACLE: what the figures take.
+    /// ORACLE: the ranges that figures take.
     #[test]
     fn an_even_field_has_a_range_that_can_be_drawn() {
         let mut values: Vec<f64> = (0..1000).map(|k| 9.9975 + 1e-15 * f64::from(k)).collect();

@@ -19,10 +19,10 @@ use crate::error::ReportError;
 /// Most changes of stage that are marked in a history.
 const MOST_MARKS: usize = 12;
 
-/// The pictures of a monitor: what its table holds under the [headers](igimp_model::Field::header) of the
-/// recorded fields, over the accepted steps, or over time where every stage moves in time. Where a column `stage` changes stands a line, and what does
-/// not go on there is not joined: displacements that count anew, a stage that starts from another one
-/// than that before it.
+/// The pictures of a monitor: the columns of its table under the [headers](igimp_model::Field::header) of the
+/// recorded fields, over the accepted steps, or over time where every stage moves in time. Where a column `stage` changes stands
+/// a line, and a curve that does not go on there is not joined: displacements that count anew, a stage
+/// that starts from another one than that before it.
 ///
 /// # Errors
 /// [`ResultsError::File`](igimp_results::ResultsError::File) and [`ReportError::Figure`].
@@ -133,7 +133,7 @@ fn stage_marks(table: &Table, times: Option<&[f64]>) -> Vec<ReferenceLine> {
     }
 }
 
-/// The pictures of a section at the end of a stage, with what it is held against. The distance along the section stands in the
+/// The pictures of a section at the end of a stage, with its references. The distance along the section stands in the
 /// first column whose header begins with `distance` (else the first of all). An upright section is
 /// drawn upright, over the height.
 ///
@@ -195,7 +195,7 @@ pub fn section_pictures<const D: usize>(
     Ok(notes)
 }
 
-/// What the caption of a picture of a section says of where and when.
+/// Place and time of a section, for the caption of its picture.
 fn along_at_end(section: &str, stage: &str) -> String {
     format!("along section “{section}” at the end of stage “{stage}”")
 }

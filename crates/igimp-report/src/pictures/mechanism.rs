@@ -34,7 +34,7 @@ pub struct Failing<'a, const D: usize> {
     pub stage: usize,
     /// Strength reduction factor of the state \[-\].
     pub srf: f64,
-    /// Which state it is, such as `first-unstable`.
+    /// Name of the state, as `first-unstable`.
     pub what: &'a str,
     /// The last equilibrium but one.
     pub before: &'a Particles<D>,
@@ -177,7 +177,7 @@ pub fn mechanism_picture(
     write(canvas.folder, &name, &plot.draw()?, caption)
 }
 
-/// Lower and upper corner of what the picture shows.
+/// Lower and upper corner of the picture.
 fn window(particles: &Particles<2>, found: &Mechanism, most_shear: f64) -> [[f64; 2]; 2] {
     let length = |k: usize| found.moved[k][0].hypot(found.moved[k][1]);
     let most = (0..particles.len()).map(length).fold(0.0, f64::max);

@@ -152,7 +152,7 @@ impl<'a> InSpace<'a> {
                 water::legend(&plot.outlines)
             );
             let same_axis = planes.iter().filter(|other| other.axis == plane.axis);
-            // More of them across an axis are told apart by their places.
+            // More of them across an axis differ by their places.
             let name = if same_axis.count() > 1 {
                 name(&plane.name())
             } else {

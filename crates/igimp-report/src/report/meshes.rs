@@ -76,7 +76,7 @@ pub(super) fn numbers(study: &StudySummary) -> Vec<Number> {
     study.results.iter().filter_map(number).collect()
 }
 
-/// Tells in the verdict what the study found, and that a mesh went wrong if one did.
+/// Adds the result of the study to the verdict, and that a mesh went wrong if one did.
 pub(super) fn add_to(verdict: &mut Verdict, study: &StudySummary) {
     match study.ending() {
         Ending::NotConverged => (verdict.class, verdict.word) = ("bad", "Not converged"),

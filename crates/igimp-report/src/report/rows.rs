@@ -19,7 +19,7 @@ pub(super) const PHASES: [&str; 5] = ["set-up", "assembly", "factorisation", "so
 /// The note on a result whose mesh error was not studied.
 const MESH_ERROR_UNKNOWN: &str = "mesh error not known: igimp run --meshes 2 finds it";
 
-/// A number with its name, and what a reader has to know of it.
+/// A number with its name, and a note for its reader.
 #[derive(Serialize)]
 pub(super) struct Number {
     pub name: String,
@@ -164,7 +164,7 @@ fn consolidated(summary: &Summary) -> impl Iterator<Item = (&StageSummary, &Cons
     stages.filter_map(|stage| Some((stage, stage.consolidation.as_ref()?)))
 }
 
-/// What stands below the share of excess pressure that is gone.
+/// The note below the share of excess pressure that is gone.
 fn dissipation_note(summary: &Summary, flow: &ConsolidationSummary) -> String {
     format!(
         "mean of coupled soil {} of {} at most; water that left {} {}",
@@ -260,7 +260,7 @@ pub(super) struct HeadView {
     code: bool,
 }
 
-/// Project, client, author, revision, date, and what the results were made from and with.
+/// Project, client, author, revision, date, input and program of the results.
 pub(super) fn head(summary: &Summary) -> Vec<HeadView> {
     let block = &summary.title_block;
     let entries = [

@@ -21,7 +21,7 @@ pub(super) struct Verdict {
     pub text: String,
 }
 
-/// The verdict on a run: how it ended, what the checks say, and the factor of safety.
+/// The verdict on a run: its ending, its checks, and the factor of safety.
 pub(super) fn verdict(summary: &Summary) -> Verdict {
     let missed: Vec<&CheckRow> = summary.checks.iter().filter(|row| !row.pass).collect();
     let failed = |stage: &&StageSummary| stage.outcome == StageOutcome::NotConverged;
@@ -173,7 +173,7 @@ fn and_others(count: usize) -> String {
     }
 }
 
-/// The factor of safety with what belongs to it.
+/// The factor of safety with its remarks.
 pub(super) fn on_safety(safety: &SafetySummary) -> Vec<String> {
     if safety.needs_no_strength() {
         let words = "Nothing of this ground can fail: its strength is not needed";
@@ -266,7 +266,7 @@ mod tests {
 
     use super::*;
 
-    // GOAL: several factors of safety are told apart by their stages, and one alone needs no name.
+    // GOAL: several factors of safety differ by their stages, and one alone needs no name.
     // ORACLE: by hand.
     #[test]
     fn several_factors_name_their_stages() {
@@ -322,7 +322,7 @@ mod tests {
         assert!(found.text.starts_with(sentence), "{}", found.text);
     }
 
-    // GOAL: a check that was not reached is told as that, and not as one that holds. ORACLE: by hand.
+    // GOAL: a check that was not reached is named as that, and not as one that holds. ORACLE: by hand.
     #[test]
     fn a_check_that_was_not_reached_is_named() {
         let check = Check {

@@ -78,7 +78,7 @@ pub fn of_material(material: &Material) -> SetupTable {
     table("Material", &["Parameter", "Value"], rows)
 }
 
-/// How a parameter of a law is printed: what its values are divided by, and its unit.
+/// The divisor of the values of a parameter of a law as printed, and its unit.
 fn scale_of(value: ParameterValue) -> (f64, &'static str) {
     match value {
         ParameterValue::Cohesive(_) | ParameterValue::Stress(_) => (1e3, " kPa"),

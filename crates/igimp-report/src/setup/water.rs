@@ -1,4 +1,4 @@
-//! Conditions of the water, and what the soil does with it, as tables.
+//! Conditions of the water, and the drainage of soil, as tables.
 
 use igimp_model::{Case, Drainage, Material, PoreSource, StageKind, WaterCondition};
 use igimp_results::summary::SetupTable;

@@ -9,7 +9,7 @@ const FEW: f64 = 0.002;
 /// Most bins by box.
 const MOST: usize = 4;
 
-/// Which boxes touch which bin. What lies beyond the bins is in the outermost ones.
+/// Which boxes touch which bin. Boxes beyond the bins are in the outermost ones.
 pub(super) struct Bins<'a> {
     boxes: Boxes<'a>,
     low: [f64; 3],
@@ -70,7 +70,7 @@ impl<'a> Bins<'a> {
         }
     }
 
-    /// Place of a coordinate among the bins of an axis; the cast takes what lies below to the first.
+    /// Place of a coordinate among the bins of an axis; the cast takes places below to the first.
     fn place(&self, axis: usize, x: f64) -> usize {
         let place = ((x - self.low[axis]) / self.width[axis]).floor() as usize;
         place.min(self.count[axis] - 1)

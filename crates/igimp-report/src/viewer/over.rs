@@ -1,4 +1,4 @@
-//! What pages draw over the frames of a stage: water tables, free surfaces of seepage, and the slip line or surface.
+//! Lines and surfaces over the frames of a stage: water tables, free surfaces of seepage, and the slip line or surface.
 //!
 //! Lines in the plane, rasters in space. `igimp view` and the frames of a report take them from here.
 
@@ -34,7 +34,7 @@ pub enum Surface {
     },
 }
 
-/// What is drawn over the frames of a stage.
+/// Lines and surfaces over the frames of a stage.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Over {
     /// The water at the end of the stage.
@@ -43,7 +43,7 @@ pub struct Over {
     pub slip: Option<Surface>,
 }
 
-/// What is drawn over the frames of every stage of a case, by the tables of its results folder as far as these are there.
+/// Lines and surfaces over the frames of every stage of a case, by the tables of its results folder as far as these are there.
 pub fn by_stage<const D: usize>(case: &Case<D>, folder: &Path) -> Vec<Over> {
     let Ok(root) = fs::canonicalize(folder) else {
         return vec![Over::default(); case.stages.len()];
@@ -141,7 +141,7 @@ struct Ground<'c, const D: usize> {
     flow: &'c SeepageCase,
     lower: [f64; D],
     upper: [f64; D],
-    /// What is taken for round-off \[m\].
+    /// A length that is taken for round-off \[m\].
     reach: f64,
 }
 

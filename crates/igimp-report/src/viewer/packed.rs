@@ -65,7 +65,7 @@ struct Packed {
     count: usize,
     /// Places of the planes along which the body can be cut, by axis \[m\]; null where any will do.
     planes: Option<[Vec<f64>; 3]>,
-    /// Places of what is shown.
+    /// Places of the cells that are shown.
     places: Vec<Array>,
     /// Fields of the particles.
     fields: Vec<Array>,
@@ -80,7 +80,7 @@ struct Array {
     whole: bool,
     /// `f32`, `i32`, `u16` or `u8`.
     kind: &'static str,
-    /// By component: a number is low + step · what stands there.
+    /// By component: a number is low + step · the stored one.
     low: Vec<f64>,
     step: Vec<f64>,
     /// By component, and of three for their length too: least, largest, and the same without the outermost
@@ -388,7 +388,7 @@ fn range_of(mut values: Vec<f64>) -> [f64; 4] {
         .map(|place| *values.select_nth_unstable_by(place, f64::total_cmp).1)
 }
 
-/// Single precision, which is exact enough for what is read off a picture; places far from zero are told from
+/// Single precision, which is exact enough for numbers that are read off a picture; places far from zero count from
 /// the first one on.
 fn exact(name: &str, components: usize, numbers: &[f64]) -> Array {
     let low: Vec<f64> = match numbers.first_chunk::<3>() {

@@ -1,4 +1,4 @@
-//! What a case knows of its frames that the frames do not: where its bodies end, and its water.
+//! Data of a case that its frames do not hold: the edges of its bodies, and its water.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -30,7 +30,7 @@ impl Bodies {
     }
 }
 
-/// What the frames of a report are drawn with.
+/// Bodies, stages and water that the frames of a report are drawn with.
 #[derive(Clone, Debug, Default)]
 pub struct Surroundings {
     pub(super) bodies: Option<Bodies>,
