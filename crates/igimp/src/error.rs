@@ -131,8 +131,8 @@ impl ProgramError {
     }
 }
 
-/// The exit code of an error: files and memory that the system does not give, or a folder that somebody
-/// else writes into, count apart from bad input.
+/// The exit code of an error: files and memory that the system refuses, or a folder in use elsewhere,
+/// count apart from bad input.
 pub(crate) fn of_error(error: &(dyn Error + 'static)) -> Exit {
     if is_of_the_system(error) {
         Exit::InputOutput

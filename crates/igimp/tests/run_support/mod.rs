@@ -77,7 +77,7 @@ impl Folder {
 
     /// Every file of a results folder by its path there: tables, pictures, frames, the arrays of the
     /// ends of stages, and the summary without its times. Files saved within a stage are not there:
-    /// they depend on where a run was taken up; nor is the file that says whose the folder is.
+    /// they depend on where a run was taken up. Nor is the file that says whose the folder is.
     pub(crate) fn everything(&self, out: &str) -> BTreeMap<PathBuf, Vec<u8>> {
         let root = self.0.join(out);
         let mut files = BTreeMap::new();
