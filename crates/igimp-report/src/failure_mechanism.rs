@@ -187,7 +187,7 @@ impl Rays {
         if shears.is_empty() {
             return None;
         }
-        // Angles count from the middle of what shears, so that they do not jump there.
+        // Angles count from the middle of the shear, so that they do not jump there.
         let middle = [0, 1].map(|axis| {
             shears.iter().map(|&p| of.x[p][axis]).sum::<f64>() / shears.len() as f64 - centre[axis]
         });
@@ -309,7 +309,7 @@ impl Rays {
                 let about = place.saturating_sub(4)..(place + 5).min(self.shear[ray].len());
                 let (mut sum, mut moment) = (0.0, 0.0);
                 for k in about {
-                    let above = self.shear[ray][k].map_or(0.0, |own| (own - 0.5 * shear).max(0.0));
+                    let above = self.shear[ray][k].map_or(0.0, |s| (s - 0.5 * shear).max(0.0));
                     sum += above;
                     moment += above * k as f64;
                 }
@@ -451,7 +451,7 @@ mod tests {
     /// GOAL: no line is made up: not of soil at rest, not of even shear, not of two bodies that part.
     #[test]
     fn no_line_where_none_stands_out() {
-        for (what, field) in [
+        for (name, field) in [
             ("rest", Field::new(|_| [0.0; 2])),
             ("even shear", Field::new(|[_, y]| [0.01 * y, 0.0])),
             (
@@ -460,7 +460,7 @@ mod tests {
             ),
         ] {
             let increment = field.increment();
-            assert_eq!(increment.slip_line(&increment.shear()), None, "{what}");
+            assert_eq!(increment.slip_line(&increment.shear()), None, "{name}");
         }
     }
 }

@@ -18,7 +18,7 @@ use crate::patches::{Carriers, Pieces};
 use crate::pictures::{Colours, axes_of, edges, titled, water};
 use crate::whereabouts::whereabouts;
 
-/// Free room around the bodies, as a share of the larger side of what they have been in \[-\].
+/// Free room around the bodies, as a share of the larger side of the box of their motion \[-\].
 const ROOM: f64 = 0.03;
 /// Time that a frame stays where the case has no time \[s\].
 const STAY: f64 = 0.25;
@@ -31,7 +31,7 @@ const PACES: [f64; 7] = [1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01];
 /// Most frames: of more, as many at equal distances.
 const MOST: usize = 400;
 
-/// What a film is to show.
+/// A film that is asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmRequest {
     /// The field.
@@ -44,7 +44,7 @@ pub struct FilmRequest {
     pub width: u32,
 }
 
-/// A film, and what it shows.
+/// A film, and its data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     /// The bytes of the animated GIF.
@@ -78,7 +78,7 @@ pub fn film_of(folder: &Path, case: &Case<2>, request: &FilmRequest) -> Result<F
             why: why.to_owned(),
         });
     }
-    let is_motion = frames.iter().all(|own| own.1.is_none());
+    let is_motion = frames.iter().all(|(_, step)| step.is_none());
     let lasts = frames[frames.len() - 1].0.time - frames[0].0.time;
     let pace = is_motion.then(|| request.pace.unwrap_or_else(|| pace_of(lasts)));
     let frames = match pace {
@@ -100,8 +100,8 @@ pub fn film_of(folder: &Path, case: &Case<2>, request: &FilmRequest) -> Result<F
     let pictures = (0..frames.len())
         .into_par_iter()
         .map(|k| {
-            let told = told(&frames[k], steps[k].as_deref(), pace);
-            Ok(stage.draw(&told, &scenes[k])?.to_rgb(request.width)?)
+            let label = label(&frames[k], steps[k].as_deref(), pace);
+            Ok(stage.draw(&label, &scenes[k])?.to_rgb(request.width)?)
         })
         .collect::<Result<Vec<_>, ReportError>>()?;
     let stays = (0..frames.len()).map(|k| match (frames.get(k + 1), pace) {
@@ -113,7 +113,7 @@ pub fn film_of(folder: &Path, case: &Case<2>, request: &FilmRequest) -> Result<F
     Ok(Film {
         gif: film(&shown)?,
         frames: shown.len(),
-        seconds: shown.iter().map(|own| own.1).sum(),
+        seconds: shown.iter().map(|(_, stay)| stay).sum(),
         pace,
     })
 }
@@ -137,15 +137,15 @@ fn at_pace<T>(frames: Vec<(Frame, T)>, pace: f64) -> Result<Vec<(Frame, T)>, Rep
     let least = (1.0 - 1e-6) * shortest * pace;
     let last = frames.len() - 1;
     let (mut kept, mut before) = (Vec::new(), f64::NEG_INFINITY);
-    for (k, own) in frames.into_iter().enumerate() {
-        let is_close = own.0.time - before < least;
+    for (k, frame) in frames.into_iter().enumerate() {
+        let is_close = frame.0.time - before < least;
         if is_close && k == last && kept.len() > 1 {
             kept.pop();
         } else if is_close && k < last {
             continue;
         }
-        before = own.0.time;
-        kept.push(own);
+        before = frame.0.time;
+        kept.push(frame);
     }
     Ok(kept)
 }
@@ -155,15 +155,15 @@ fn chosen(folder: &Path, case: &Case<2>, stage: Option<usize>) -> Vec<(Frame, Op
     let moves = |&number: &usize| matches!(case.stages[number].kind, StageKind::Dynamic(_));
     let motion = stage.or_else(|| (0..case.stages.len()).rfind(moves));
     let mut frames: Vec<(Frame, Option<String>)> = if let Some(number) = motion.filter(moves) {
-        let own = pvd::motion(folder, number).into_iter();
-        own.map(|frame| (frame, None)).collect()
+        let moving = pvd::motion(folder, number).into_iter();
+        moving.map(|frame| (frame, None)).collect()
     } else {
         let all = pvd::frames(folder, pvd::PARTICLES).unwrap_or_default();
         let name = stage.map(|number| case.stages[number].name.as_str());
-        let is_own = |frame: &Frame| name.is_none_or(|name| frame.stage == name);
+        let in_stage = |frame: &Frame| name.is_none_or(|name| frame.stage == name);
         let steps = whereabouts(&all, &case.stages).into_iter();
-        let all = all.into_iter().zip(steps.map(|own| Some(own.when)));
-        all.filter(|(frame, _)| is_own(frame)).collect()
+        let all = all.into_iter().zip(steps.map(|place| Some(place.when)));
+        all.filter(|(frame, _)| in_stage(frame)).collect()
     };
     let count = frames.len();
     if count > MOST {
@@ -186,8 +186,8 @@ fn pace_of(lasts: f64) -> f64 {
     found.unwrap_or(PACES[PACES.len() - 1])
 }
 
-/// What a frame says of itself.
-fn told(frame: &Frame, step: Option<&str>, pace: Option<f64>) -> String {
+/// The title of a frame.
+fn label(frame: &Frame, step: Option<&str>, pace: Option<f64>) -> String {
     let Some(pace) = pace else {
         let step = step.map_or_else(String::new, |step| format!(", {step}"));
         return format!("{}{step}", frame.stage);
@@ -231,7 +231,7 @@ fn scene(
     over.extend(beside(pvd::REINFORCEMENT, OutlineStyle::Member));
     let places = particles.x.iter().map(|x| x[0]);
     let ends = places.fold([f64::MAX, f64::MIN], |[a, b], x| [a.min(x), b.max(x)]);
-    if let Some(number) = case.stages.iter().position(|own| own.name == *stage) {
+    if let Some(number) = case.stages.iter().position(|other| other.name == *stage) {
         over.extend(water::tables_after(case, number, ends));
     }
     Ok(Scene {
@@ -294,12 +294,12 @@ impl Look {
             label: format!(
                 "{total}{}{}",
                 fields::label_in(axes_of(case), field, scale),
-                colours.told()
+                colours.note()
             ),
             colours: Colours {
                 range: colours
                     .range
-                    .or(Some(ends).filter(|&own| own.0 < own.1 && AxisScale::Linear.accepts(own))),
+                    .or(Some(ends).filter(|&(a, b)| a < b && AxisScale::Linear.accepts((a, b)))),
                 ..colours
             },
             scale,
@@ -307,7 +307,7 @@ impl Look {
     }
 }
 
-/// What all frames share.
+/// Data that all frames share.
 struct Stage<'a> {
     case: &'a Case<2>,
     pieces: &'a Pieces,
@@ -317,13 +317,13 @@ struct Stage<'a> {
 
 impl Stage<'_> {
     /// The picture of a frame.
-    fn draw(&self, told: &str, scene: &Scene) -> Result<Drawing, ReportError> {
+    fn draw(&self, label: &str, scene: &Scene) -> Result<Drawing, ReportError> {
         let carriers = scene.carriers();
         let (domains, whose) = self.pieces.now(carriers);
         let outlines = edges(self.case, self.pieces, carriers).into_iter();
         let look = &self.look;
         let plot = FieldPlot {
-            title: titled(&self.case.title, told),
+            title: titled(&self.case.title, label),
             domains,
             values: (whose.iter())
                 .map(|&k| scene.values[k] / look.scale.divide_by)
@@ -398,7 +398,7 @@ mod tests {
         };
         let times = |pace: f64| -> Vec<f64> {
             let kept = at_pace(frames(), pace).unwrap().into_iter();
-            kept.map(|own| own.0.time).collect()
+            kept.map(|frame| frame.0.time).collect()
         };
         assert_eq!(times(1.0).len(), 101);
         assert_eq!(times(5.0).len(), 101);
@@ -422,17 +422,17 @@ mod tests {
             file: String::new(),
         };
         assert_eq!(
-            told(&frame, None, Some(0.1)),
+            label(&frame, None, Some(0.1)),
             "t = 0.125 s, 10 times slower"
         );
         assert_eq!(
-            told(&frame, None, Some(1.0)),
+            label(&frame, None, Some(1.0)),
             "t = 0.125 s, as fast as it was"
         );
         assert_eq!(
-            told(&frame, None, Some(10.0)),
+            label(&frame, None, Some(10.0)),
             "t = 0.125 s, 10 times faster"
         );
-        assert_eq!(told(&frame, Some("step 7"), None), "slide, step 7");
+        assert_eq!(label(&frame, Some("step 7"), None), "slide, step 7");
     }
 }

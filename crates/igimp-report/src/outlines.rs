@@ -138,10 +138,10 @@ impl<'a> Bins<'a> {
 
     /// Seeds in a bin and those beside it.
     fn around(&self, at: &Point) -> impl Iterator<Item = usize> + '_ {
-        let own = self.bin(at);
+        let middle = self.bin(at);
         (0..27).flat_map(move |k| {
             let shift = [k % 3, k / 3 % 3, k / 9].map(|shift| shift - 1);
-            let bin: [i64; 3] = std::array::from_fn(|k| own[k].saturating_add(shift[k]));
+            let bin: [i64; 3] = std::array::from_fn(|k| middle[k].saturating_add(shift[k]));
             self.by_bin.get(&bin).into_iter().flatten().copied()
         })
     }

@@ -19,7 +19,7 @@ use crate::error::ReportError;
 /// Corners that a particle carries further from their middle than so many times its size have
 /// parted \[-\].
 pub(crate) const PARTED: f64 = 1.5;
-/// A corner is drawn no further from its particle than so many times as far as it was seeded \[-\]: what has flowed far is
+/// A corner is drawn no further from its particle than so many times as far as it was seeded \[-\]: soil that has flowed far is
 /// sheared into threads that no soil has.
 const MOST_STRETCHED: f64 = 3.0;
 /// Corners closer than this share of the smallest cell are one \[-\].
@@ -62,7 +62,7 @@ pub(crate) fn carried<const D: usize>(x: [f64; D], f: [[f64; D]; D], offset: [f6
     std::array::from_fn(|a| x[a] + shown * arm[a])
 }
 
-/// What pieces need to know of particles: of a body, or of a frame that was read back.
+/// Columns of particles that carry pieces: of a body, or of a frame that was read back.
 #[derive(Clone, Copy, Debug)]
 pub struct Carriers<'a> {
     /// Centres \[m\].
@@ -150,7 +150,7 @@ impl Pieces {
         for body in &case.bodies {
             let (seeds, pieces) =
                 fill_in_pieces(&grid, body.polygon(), body.per_direction, 0.0, 0)?;
-            let own = all.corners.len();
+            let start = all.corners.len();
             for Piece { particle, polygon } in pieces {
                 let mut corners: Vec<Corner> = Vec::with_capacity(polygon.len());
                 for at in polygon {
@@ -175,7 +175,7 @@ impl Pieces {
                     all.corners.push(corners);
                 }
             }
-            all.edges.extend(outline(&all.corners[own..]));
+            all.edges.extend(outline(&all.corners[start..]));
             all.bodies.push(first..first + seeds.len());
             all.half_lengths
                 .extend(seeds.iter().map(|seed| seed.half_length));
@@ -213,8 +213,8 @@ impl Pieces {
     /// By body of the case: whether it is there.
     pub fn there<'a>(&self, particles: impl Into<Carriers<'a>>) -> Vec<bool> {
         let there = There::new(particles.into());
-        let is_there = |own: &Range<usize>| {
-            let mut numbers = own.clone();
+        let is_there = |range: &Range<usize>| {
+            let mut numbers = range.clone();
             numbers.any(|number| there.place_of(number).is_some())
         };
         self.bodies.iter().map(is_there).collect()

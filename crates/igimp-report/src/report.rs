@@ -1,4 +1,4 @@
-//! `report.html`: one page without outside parts that tells what a run found.
+//! `report.html`: one page without outside parts on the results of a run.
 
 mod files;
 mod meshes;
@@ -20,7 +20,7 @@ use crate::error::ReportError;
 /// The page; values are escaped as they are filled in.
 const TEMPLATE: &str = include_str!("report.html");
 
-/// Makes `report.html` of what lies in a results folder, and returns its path.
+/// Makes `report.html` of the files of a results folder, and returns its path.
 ///
 /// `summary.json` must be there; pictures, tables, `convergence.csv` and the two texts of the case
 /// take part as far as they exist. Pictures are embedded, tables are linked by relative paths. Frames show the bodies

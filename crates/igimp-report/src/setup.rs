@@ -1,4 +1,4 @@
-//! The case in words and numbers, as tables for a reader who has no case file before him.
+//! The case in words and numbers, as tables for a reader without the case file.
 
 mod materials;
 mod stages;
@@ -11,7 +11,7 @@ use igimp_text::short;
 
 pub use materials::{given_in_words, law_name, of_material};
 
-/// Stands for what a row does not have.
+/// Stands for an entry that a row does not have.
 const NONE: &str = "–";
 /// Most corners of a body that are listed one by one.
 const MOST_CORNERS: usize = 24;
@@ -45,7 +45,7 @@ fn table(title: &str, header: &[&str], rows: Vec<Vec<String>>) -> SetupTable {
 
 fn bodies<const D: usize>(case: &Case<D>) -> SetupTable {
     let come_and_go = case.stages.iter().any(|stage| match &stage.kind {
-        StageKind::Construction(own) => !(own.place.is_empty() && own.remove.is_empty()),
+        StageKind::Construction(works) => !(works.place.is_empty() && works.remove.is_empty()),
         _ => false,
     });
     let rows = case.bodies.iter().enumerate().map(|(index, body)| {
@@ -79,11 +79,11 @@ fn while_there<const D: usize>(case: &Case<D>, body: usize) -> String {
         words.push("from the start".to_owned());
     }
     for stage in &case.stages {
-        if let StageKind::Construction(own) = &stage.kind {
-            if own.place.contains(&body) {
+        if let StageKind::Construction(works) = &stage.kind {
+            if works.place.contains(&body) {
                 words.push(format!("from stage {} on", stage.name));
             }
-            if own.remove.contains(&body) {
+            if works.remove.contains(&body) {
                 words.push(format!("until stage {}", stage.name));
             }
         }
@@ -239,7 +239,7 @@ fn kilo(value: f64, unit: &str) -> String {
 }
 
 fn components<const D: usize>(components: [f64; D], unit: &str) -> String {
-    let printed = components.map(|own| short(own / 1e3));
+    let printed = components.map(|value| short(value / 1e3));
     format!("{} k{unit}", printed.join(", "))
 }
 
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slope_is_told_in_words() {
+    fn a_slope_in_words() {
         let tables = of("slope");
         assert_eq!(
             row(&tables, "Materials", 0),
@@ -284,7 +284,7 @@ mod tests {
     /// GOAL: a report tells of the law that ran, and not of that of the file. CASE: the slope with the law of the undrained one.
     /// ORACLE: the name and the words of the law that was given.
     #[test]
-    fn a_law_that_was_given_is_told_in_words() {
+    fn a_given_law_in_words() {
         let case_of = |name: &str| {
             let shipped = SHIPPED.iter().find(|case| case.name == name).unwrap();
             CaseFile::parse("case.toml", shipped.text, &[])
@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn rigid_bodies_are_told_in_words() {
+    fn rigid_bodies_in_words() {
         let text = include_str!("../../igimp-cases/tests/data/two_bodies.toml").replacen(
             "weight = \"2 kN/m\"",
             "weight = \"2 kN/m\"\nforce_factor = 2\ntension_limit = \"3 kPa\"\nsides = [{ side = \"bottom\", interface = \"smooth\" }]",

@@ -154,7 +154,7 @@ fn faces(boxes: Boxes<'_>, bins: &Bins<'_>, k: usize) -> u8 {
         // Mostly there is one box that covers all of it.
         let is_hidden = bins.is_within_one(&ends, &middle, k)
             || bins.is_covered(&middle, k)
-                && beside.iter().all(|&own| bins.is_covered(&moved(own), k));
+                && beside.iter().all(|&at| bins.is_covered(&moved(at), k));
         if !is_hidden {
             faces |= 1 << face;
         }
@@ -183,7 +183,7 @@ fn lie(boxes: Boxes<'_>, bins: &Bins<'_>, k: usize) -> Lie {
     }
     let length = outwards.iter().map(|n| n * n).sum::<f64>().sqrt();
     Lie {
-        // What is left of sums that cancel has no direction.
+        // The rest of sums that cancel has no direction.
         normal: outwards.map(|n| if length > 1e-3 * all { n / length } else { 0.0 }),
         open: free / all,
     }

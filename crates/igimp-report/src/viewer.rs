@@ -1,8 +1,8 @@
 //! Parts of pages that show frames in a browser: `igimp view`, and the frames of a report.
 //!
 //! The script draws plane and space alike, and needs no other script and no network. It takes frames as
-//! [`packed`] makes them of those in `paraview/`, the only states along a run that a results folder keeps. What stands over
-//! them, water and slip lines, comes from the case and its tables ([`over`]).
+//! [`packed`] makes them of those in `paraview/`, the only states along a run that a results folder keeps. Overlays,
+//! water and slip lines, come from the case and its tables ([`over`]).
 
 pub mod over;
 mod packed;
@@ -104,7 +104,7 @@ pub(super) struct Held {
     script: String,
     /// Those that fit into a page, the last among them; none if that one is too large.
     frames: Vec<HeldFrame>,
-    /// What stands over the frames of each stage, as JSON.
+    /// Overlays of the frames of each stage, as JSON.
     over: String,
     /// How many there are.
     all: usize,
@@ -138,18 +138,18 @@ pub(super) fn held(folder: &Path, around: &Surroundings) -> Option<Held> {
     let all = particles.len();
     let places = whereabouts(&particles, &around.stages);
     let of = |k: usize, keep| {
-        let packed = |own: Option<&pvd::Frame>| frame(&folder.join(&own?.file), keep, None);
-        let own = &particles[k];
-        let seconds = seconds.get(&own.file).copied();
+        let packed = |found: Option<&pvd::Frame>| frame(&folder.join(&found?.file), keep, None);
+        let shown = &particles[k];
+        let seconds = seconds.get(&shown.file).copied();
         let when = match seconds {
-            Some(seconds) => format!("t = {} s, stage “{}”", short(seconds), own.stage),
-            None => format!("stage “{}”, {}", own.stage, places[k].when),
+            Some(seconds) => format!("t = {} s, stage “{}”", short(seconds), shown.stage),
+            None => format!("stage “{}”, {}", shown.stage, places[k].when),
         };
         Some(HeldFrame {
             label: format!("Frame {} of {all}, {when}", k + 1),
             seconds,
             stage: places[k].stage,
-            data: frame(&folder.join(&own.file), keep, around.bodies.as_ref())?,
+            data: frame(&folder.join(&shown.file), keep, around.bodies.as_ref())?,
             bodies: packed(bodies.get(k)),
             members: packed(members.get(k)),
         })

@@ -23,13 +23,13 @@ pub struct Whereabouts {
 pub fn whereabouts(frames: &[Frame], stages: &[Stage]) -> Vec<Whereabouts> {
     let (mut start, mut stage, mut before) = (0.0, None, None::<&Frame>);
     let mut all = Vec::new();
-    for own in frames {
-        if let Some(end) = before.filter(|before| before.stage != own.stage) {
+    for frame in frames {
+        if let Some(end) = before.filter(|before| before.stage != frame.stage) {
             start = end.time;
         }
-        before = Some(own);
-        stage = number(stages, &own.stage, stage.unwrap_or(0)).or(stage);
-        let step = (own.time - start).max(0.0).floor() as usize;
+        before = Some(frame);
+        stage = number(stages, &frame.stage, stage.unwrap_or(0)).or(stage);
+        let step = (frame.time - start).max(0.0).floor() as usize;
         let kind = stage.map(|stage: usize| &stages[stage].kind);
         let when = match kind {
             Some(StageKind::StrengthReduction(_)) if step == 0 => "as it ends".to_owned(),
@@ -43,9 +43,9 @@ pub fn whereabouts(frames: &[Frame], stages: &[Stage]) -> Vec<Whereabouts> {
 
 /// The number of a stage by its name, at the one before it or later: names may come again.
 fn number(stages: &[Stage], name: &str, before: usize) -> Option<usize> {
-    let is_own = |&k: &usize| on_a_line(&stages[k].name) == name;
-    let later = (before..stages.len()).find(is_own);
-    later.or_else(|| (0..before).find(is_own))
+    let has_name = |&k: &usize| on_a_line(&stages[k].name) == name;
+    let later = (before..stages.len()).find(has_name);
+    later.or_else(|| (0..before).find(has_name))
 }
 
 #[cfg(test)]
@@ -58,7 +58,7 @@ mod tests {
     /// ORACLE: counted by hand.
     #[test]
     fn steps_are_counted_within_the_stage() {
-        let told = |case: &str, frames: &[(f64, &str)]| -> Vec<String> {
+        let steps = |case: &str, frames: &[(f64, &str)]| -> Vec<String> {
             let case = find(case).unwrap().case_file([""; 0]).unwrap().into_case();
             let frame = |&(time, stage): &(f64, &str)| Frame {
                 time,
@@ -67,7 +67,7 @@ mod tests {
             };
             let frames: Vec<Frame> = frames.iter().map(frame).collect();
             let all = whereabouts(&frames, &case.stages).into_iter();
-            let words = |own: Whereabouts| format!("{} {}", own.stage.unwrap() + 1, own.when);
+            let words = |place: Whereabouts| format!("{} {}", place.stage.unwrap() + 1, place.when);
             all.map(words).collect()
         };
         let frames = [
@@ -79,7 +79,7 @@ mod tests {
             (32.0, "earthquake"),
         ];
         assert_eq!(
-            told("earthquake_slope", &frames),
+            steps("earthquake_slope", &frames),
             [
                 "1 step 1",
                 "1 step 2",
@@ -95,7 +95,7 @@ mod tests {
             (13.0, "run-out"),
         ];
         assert_eq!(
-            told("slope", &frames),
+            steps("slope", &frames),
             ["1 step 10", "2 as it ends", "3 step 3"]
         );
     }

@@ -39,12 +39,12 @@ impl From<Ending> for Exit {
 /// Why a command could not do its work.
 #[derive(Debug, Error)]
 pub(crate) enum ProgramError {
-    /// Arguments that make no sense together with what is in the files.
-    #[error("{what}")]
+    /// Arguments that make no sense together with the files.
+    #[error("{message}")]
     Usage {
-        /// What is wrong.
-        what: String,
-        /// What helps.
+        /// The fault.
+        message: String,
+        /// Its remedy.
         help: String,
     },
     #[error(transparent)]
@@ -82,9 +82,9 @@ impl From<EstimateError> for ProgramError {
 }
 
 impl ProgramError {
-    pub(crate) fn usage(what: impl Into<String>, help: impl Into<String>) -> Self {
+    pub(crate) fn usage(message: impl Into<String>, help: impl Into<String>) -> Self {
         Self::Usage {
-            what: what.into(),
+            message: message.into(),
             help: help.into(),
         }
     }
@@ -117,8 +117,8 @@ impl ProgramError {
                 source: InputError::Invalid { .. },
                 ..
             }) => format!("error: {self}"),
-            Self::Usage { what, help } if help.is_empty() => format!("error: {what}"),
-            Self::Usage { what, help } => format!("error: {what}\n  help: {help}"),
+            Self::Usage { message, help } if help.is_empty() => format!("error: {message}"),
+            Self::Usage { message, help } => format!("error: {message}\n  help: {help}"),
             Self::Case(CaseError::Results(ResultsError::Checkpoint(
                 CheckpointError::Damaged { .. },
             ))) => format!(
@@ -131,8 +131,8 @@ impl ProgramError {
     }
 }
 
-/// The exit code of an error: what the system does not give, files, memory or a folder that somebody else
-/// writes into, is told apart from bad input.
+/// The exit code of an error: files and memory that the system refuses, or a folder in use elsewhere,
+/// count apart from bad input.
 pub(crate) fn of_error(error: &(dyn Error + 'static)) -> Exit {
     if is_of_the_system(error) {
         Exit::InputOutput

@@ -1,5 +1,5 @@
-//! The program `igimp` as a library: writes, checks, runs and compares case files. The commands are one file each; what
-//! they do is in the libraries below. What is handed in here is all that another program may change: the linear solver.
+//! The program `igimp` as a library: writes, checks, runs and compares case files. The commands are one file each; their
+//! work is done by the libraries below. Another program may hand in the linear solver here, and nothing else.
 
 mod arguments;
 mod clock;
@@ -21,7 +21,7 @@ use igimp_text::on_lines;
 use crate::arguments::{Command, CommandLine};
 use crate::error::{Exit, ProgramError};
 
-/// Does what the words of a command line say, the first being the name of the program; its exit code is that of the
+/// Runs the words of a command line, the first being the name of the program; its exit code is that of the
 /// program. Runs solve their linear systems with a given solver, if there is one.
 pub fn program(words: impl IntoIterator<Item = OsString>, given: Option<&GivenSolver>) -> ExitCode {
     let program = match CommandLine::try_parse_from(words) {

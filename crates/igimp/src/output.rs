@@ -1,4 +1,4 @@
-//! Writing to the terminal. A reader that goes away never makes the program panic, and what a file says
+//! Writing to the terminal. A reader that goes away never makes the program panic, and the text of a file
 //! never commands the terminal.
 
 use std::io::{ErrorKind, Write};
@@ -47,7 +47,7 @@ pub(crate) fn warn(warnings: &str) {
 /// Number of the stage with a name.
 pub(crate) fn stage_named(case: &AnyCase, name: &str) -> Result<usize, ProgramError> {
     let names = || case.stages().iter().map(|stage| stage.name.as_str());
-    names().position(|own| own == name).ok_or_else(|| {
+    names().position(|known| known == name).ok_or_else(|| {
         let help = igimp_input::shipped::closest(name, names()).map_or_else(
             || {
                 let quoted: Vec<String> = names().map(|name| format!("\"{name}\"")).collect();

@@ -70,15 +70,15 @@ impl<const D: usize> Listener<D> for Progress {
     }
 }
 
-fn show<const D: usize>(bar: &ProgressBar, told: &mut Lines, event: &Event<'_, D>) {
-    let line = told.line(event);
+fn show<const D: usize>(bar: &ProgressBar, lines: &mut Lines, event: &Event<'_, D>) {
+    let line = lines.line(event);
     match event {
         Event::Step {
             number,
             progress,
             report,
         } => {
-            let text = lines::step(*number, told.steps, *progress, report);
+            let text = lines::step(*number, lines.steps, *progress, report);
             bar.set_message(on_a_line(&text).into_owned());
         }
         Event::Cut { error } => {

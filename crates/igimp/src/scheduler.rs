@@ -11,7 +11,7 @@ use crate::arguments::{Scheduler, SweepArguments};
 use crate::error::{Exit, ProgramError};
 use crate::output::{self, quoted};
 
-/// Writes what a scheduler needs for the tasks that are not done, and tells how it is submitted.
+/// Writes the script of a scheduler for the tasks that are not done, and how it is submitted.
 pub(crate) fn to(
     scheduler: Scheduler,
     sweep: &Sweep,

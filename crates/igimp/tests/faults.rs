@@ -1,4 +1,4 @@
-//! GOAL: what users and machines do to a run costs time and no result: a signal at any moment, a full
+//! GOAL: faults of users and machines cost time and no result: a signal at any moment, a full
 //! disk, a folder that cannot be written, file times that make no sense, another number of threads.
 //! CASE: a coarse slope under gravity, its factor of safety, and its run-out.
 //! ORACLE: every byte of the same run left alone, times aside.
@@ -156,7 +156,7 @@ fn a_run_killed_at_any_moment_ends_with_the_same_files() {
 
 #[cfg(unix)]
 #[test]
-fn a_run_that_is_told_to_end_saves_and_goes_on_to_the_same_files() {
+fn a_run_with_a_signal_saves_and_goes_on_to_the_same_files() {
     for signal in [Signal::Int, Signal::Term, Signal::Hup] {
         interrupted_runs_end_with_the_same_files(signal, KILLS / 3);
     }
@@ -280,7 +280,7 @@ fn file_times_that_make_no_sense_change_nothing() {
 /// Runs a script as `sh` in a mount namespace of its own, where the system allows that; its standard
 /// output. `$0` is the program.
 #[cfg(target_os = "linux")]
-fn with_own_mounts(folder: &Folder, script: &str) -> Option<String> {
+fn with_mounts(folder: &Folder, script: &str) -> Option<String> {
     let unshared = |words: &[&str]| {
         let mut command = Command::new("unshare");
         command
@@ -328,7 +328,7 @@ fn a_run_on_a_full_disk_goes_on_when_there_is_room() {
              \"$0\"{resumed} 2>&1 || exit 8\n\
              cp -r disk/out copy-{size}/"
         );
-        let Some(said) = with_own_mounts(&folder, &script) else {
+        let Some(said) = with_mounts(&folder, &script) else {
             return;
         };
         if said.contains("code 4") {
@@ -375,7 +375,7 @@ fn a_folder_that_cannot_be_written_is_named_before_anything_is_computed() {
         quoted("kept/out", &["--resume"]),
         quoted("kept/new", &[])
     );
-    let Some(said) = with_own_mounts(&folder, &script) else {
+    let Some(said) = with_mounts(&folder, &script) else {
         return;
     };
     assert_eq!(said.matches("code 4").count(), 3, "{said}");

@@ -74,7 +74,7 @@ fn a_motion_makes_a_film() {
         "stages.collapse.steps=5",
     ];
     folder.run("column_collapse", &short);
-    // What it takes was said before.
+    // Its effort was said before.
     let settings = short.iter().flat_map(|setting| ["--set", setting]);
     let check: Vec<&str> = ["check", "case.toml"].into_iter().chain(settings).collect();
     let said = String::from_utf8(folder.igimp(&check).stdout).unwrap();

@@ -1,5 +1,5 @@
-//! GOAL: a study of the mesh error is the runs of its meshes and nothing else: their bits, what they say
-//! together, their folders; what goes wrong on one takes nothing from the others.
+//! GOAL: a study of the mesh error is the runs of its meshes and nothing else: their bits, their
+//! estimate, their folders; a fault on one takes nothing from the others.
 //! CASE: a vertical cut and a slope on coarse grids.
 //! ORACLE: the same meshes run by themselves, and $`2 F(h/2) - F(h)`$.
 
@@ -69,7 +69,7 @@ fn a_study_is_its_meshes() {
     assert!(
         load.half_widths
             .iter()
-            .all(|own| (own - width).abs() < 1e-15)
+            .all(|half| (half - width).abs() < 1e-15)
     );
     // With order 2/3 in place of 1.
     let share = 1.0 / (4_f64.cbrt() - 1.0);
@@ -193,7 +193,7 @@ fn a_study_taken_up_again_ends_the_same() {
     );
 }
 
-/// GOAL: a mesh that cannot be run is told, and the other one is there.
+/// GOAL: a mesh that cannot be run is named, and the other one is there.
 #[test]
 fn a_mesh_that_fails_takes_nothing_from_the_others() {
     let folder = Folder::new("meshes-fail");
@@ -263,7 +263,7 @@ fn a_march_that_ended_early_is_refused() {
 }
 
 #[test]
-fn a_study_that_makes_no_sense_is_told() {
+fn a_study_that_makes_no_sense_is_refused() {
     let folder = Folder::new("meshes-told");
     let check = |settings: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_igimp"));

@@ -127,10 +127,10 @@ fn memory_is_shared_among_particles_and_unknowns() {
     );
 }
 
-/// GOAL: what is estimated and what was used stand side by side, and the memory agrees within 1.5.
-/// Times are told and never decide. A few MiB more are left to a build that is not optimised.
+/// GOAL: the estimate and the use stand side by side, and the memory agrees within 1.5.
+/// Times are printed and never decide. A few MiB more are left to a build that is not optimised.
 #[test]
-fn the_estimate_stands_beside_what_was_used() {
+fn the_estimate_stands_beside_the_use() {
     for name in ["column", "cantilever", "mohr_coulomb_slope"] {
         let case = igimp_input::shipped::find(name).unwrap();
         let folder = Folder::new(&format!("estimate-{name}"), case.text);
@@ -189,7 +189,7 @@ fn a_missed_reference_has_its_code() {
 }
 
 #[test]
-fn want_of_equilibrium_is_told_and_kept() {
+fn want_of_equilibrium_is_reported_and_kept() {
     let folder = Folder::new("collapse", &collapse());
     let (code, out, err) = parts(&folder.igimp(&["run", "case.toml"]));
     assert_eq!(code, 3, "{out}{err}");
@@ -227,7 +227,7 @@ const SWEEP: &str = "igimp_sweep = 1\ncase = \"case.toml\"\ncollect = [\"settlem
     [output]\nfolder = \"sweep\"\n";
 
 #[test]
-fn a_sweep_runs_what_is_not_done_and_collects() {
+fn a_sweep_runs_missing_tasks_and_collects() {
     let folder = Folder::new("sweep", &block(&check("3.6")));
     std::fs::write(folder.0.join("study.toml"), SWEEP).unwrap();
     let (code, out, err) = parts(&folder.igimp(&["run", "study.toml", "--task", "1", "--quiet"]));
@@ -259,7 +259,7 @@ fn a_sweep_runs_what_is_not_done_and_collects() {
     assert!(folder.has("sweep/results-settlement.svg"));
 }
 
-/// GOAL: the table has results of the case as it is now: those that are gone run again, those of another case are left out and told of.
+/// GOAL: the table has results of the case as it is now: those that are gone run again, those of another case are left out and named.
 /// CASE: the summary of a task is removed; then the soil is heavier; then the case is gone.
 /// ORACLE: u = γ H² / (2 E), and the table of before.
 #[test]

@@ -47,7 +47,7 @@ fn a_checkpoint_of_another_case_is_refused() {
     ];
     let (code, said) = folder.end("out", &other);
     assert_eq!(code, Some(2), "{said}");
-    // What does not concern the stages before may change.
+    // Settings that do not concern the stages before may change.
     let other = [
         "--from-stage",
         "run-out",
@@ -58,7 +58,7 @@ fn a_checkpoint_of_another_case_is_refused() {
     assert_eq!(code, Some(0), "{said}");
 }
 
-/// GOAL: rigid bodies go on where they stood, with what contact left behind, on soil whose strength and stiffness
+/// GOAL: rigid bodies go on where they stood, with the marks of contact, on soil whose strength and stiffness
 /// vary: from any step of their stages the run ends with the same files.
 #[test]
 fn rigid_bodies_are_taken_up_where_they_stood() {

@@ -1,5 +1,5 @@
-//! GOAL: what a file says never commands a terminal or a spreadsheet, what is read is bounded, and memory
-//! that cannot be had is told of in words.
+//! GOAL: the text of a file never commands a terminal or a spreadsheet, input is bounded, and memory
+//! that cannot be had is named in words.
 
 use std::fs;
 use std::path::PathBuf;
@@ -122,7 +122,7 @@ fn no_text_of_a_file_commands_the_terminal() {
         assert!(odd.is_empty(), "{words:?}: {odd:?} in {said}");
         assert!(!said.contains("\nerror: d"), "{words:?}: {said}");
     }
-    // What is printed is a case file again, with the title that it has.
+    // The output is a case file again, with the title that it has.
     let explained = said(&folder.igimp(&["explain", "case.toml"]));
     assert!(
         explained.contains("\\u202Eb\\u2066\\u200F\\u2028c\\nerror: d"),
@@ -181,7 +181,7 @@ fn whatever_is_named_as_a_case_is_read_to_a_bound() {
         + "[[curves]]\nname = \"c\"\nx = \"top.displacement\"\ny = \"load_factor\"\n\
            reference = { points_file = \"pipe\", label = \"l\" }\n";
     fs::write(folder.0.join("reference.toml"), reference).unwrap();
-    for (words, code, told) in [
+    for (words, code, part) in [
         (&["check", "/dev/zero"][..], 4, "because: it is no file"),
         (&["check", "pipe"], 4, "because: it is no file"),
         (&["run", "."], 4, "because: it is a folder"),
@@ -201,7 +201,7 @@ fn whatever_is_named_as_a_case_is_read_to_a_bound() {
             "{words:?}: {}",
             said(&output)
         );
-        assert!(said(&output).contains(told), "{words:?}: {}", said(&output));
+        assert!(said(&output).contains(part), "{words:?}: {}", said(&output));
     }
     let output = folder.igimp(&["check", "reference.toml"]);
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
@@ -274,10 +274,10 @@ fn symbols_of_books_are_known() {
     assert!(said.ends_with("6 errors in symbols.toml\n"), "{said}");
 }
 
-/// A limit of the address space that the run cannot keep is told of before it begins.
+/// A limit of the address space that the run cannot keep is named before it begins.
 #[cfg(target_os = "linux")]
 #[test]
-fn memory_that_cannot_be_had_is_told_of() {
+fn memory_that_cannot_be_had_is_named() {
     let folder = Folder::new("memory", &block("block", "by hand"));
     let script =
         "ulimit -v 1000000; exec \"$0\" run case.toml --threads 1 --set 'grid.cell=0.002 m'";
@@ -299,7 +299,7 @@ fn memory_that_cannot_be_had_is_told_of() {
     assert!(!folder.0.join("results").exists());
 }
 
-/// A checkpoint that is damaged is named, and what to do.
+/// A checkpoint that is damaged is named, and the remedy.
 #[test]
 fn a_damaged_checkpoint_is_named() {
     let folder = Folder::new("damaged", &block("block", "by hand"));

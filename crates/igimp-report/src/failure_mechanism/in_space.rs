@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 /// Columns count where the soil on top moves by at least this share of the most \[-\].
 const MOVES: f64 = 0.2;
-/// Soil stands where it moves by less than this share of what moves most above it, and moves as one from the other share on \[-\].
+/// Soil stands where it moves by less than this share of the most above it, and moves as one from the other share on \[-\].
 const STANDS: f64 = 0.25;
 const GOES: f64 = 0.75;
 /// Between the two lies no more than this share of the soil above the surface \[-\].
@@ -60,14 +60,14 @@ impl IncrementInSpace<'_> {
     }
 }
 
-/// The highest level at which soil moves half as far as what moves most above it, if it moves by as much as `least` there and the
+/// The highest level at which soil moves half as far as the most above it, if it moves by as much as `least` there and the
 /// change is sharp.
 fn half_way(levels: &[Level], least: f64) -> Option<f64> {
-    let most = levels.iter().map(|own| own.1).fold(0.0, f64::max);
+    let most = levels.iter().map(|at| at.1).fold(0.0, f64::max);
     let moves = most > 0.0 && most >= least;
     // From above: the highest level below which soil moves by less than a share of the most.
     let level = |share: f64| {
-        let below = levels.iter().rposition(|own| own.1 < share * most)?;
+        let below = levels.iter().rposition(|at| at.1 < share * most)?;
         let [a, b] = levels.get(below..below + 2)?.try_into().ok()?;
         Some(a.0 + (b.0 - a.0) * (share * most - a.1) / (b.1 - a.1))
     };
@@ -80,7 +80,7 @@ fn half_way(levels: &[Level], least: f64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Particles on a lattice with what they move.
+    /// Particles on a lattice with their displacements.
     fn lattice(moves: impl Fn([f64; 3]) -> f64) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
         let n = 20;
         let places = (0..n * n * n).map(|k| [k % n, k / n % n, k / (n * n)]);
@@ -114,7 +114,7 @@ mod tests {
         }
     }
 
-    /// GOAL: soil that settles, stands or moves as a whole has no such surface.
+    /// GOAL: soil that settles, stands or moves as a whole has no slip surface.
     #[test]
     fn soil_without_a_block_has_none() {
         for moves in [|at: [f64; 3]| at[2], |_| 1.0, |_| 0.0] {

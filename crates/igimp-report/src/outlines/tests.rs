@@ -95,7 +95,7 @@ fn lines_end_where_soil_parts() {
     let whole = particles(case, &[0, 1]);
     let mut parted = whole.clone();
     for at in &mut parted.x {
-        // What stood right of x = 3.2 m is moved on by 5 m; the motion takes it to x' > 6.4 m or so.
+        // Soil right of x = 3.2 m is moved on by 5 m; the motion takes it to x' > 6.4 m or so.
         if at[0] > 6.6 {
             at[0] += 5.0;
         }

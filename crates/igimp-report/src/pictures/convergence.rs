@@ -143,7 +143,7 @@ pub fn convergence_plot(title: &str, histories: &[&History], tolerance: Option<f
     }
 }
 
-/// A line through what a logarithmic axis can show.
+/// A line through the values that a logarithmic axis can show.
 fn line(label: &str, history: &History, style: SeriesStyle) -> Series {
     let shown = |point: &&[f64; 2]| point[1] > 0.0 && point[1].is_finite();
     let points = history.residuals.iter().filter(shown).copied().collect();

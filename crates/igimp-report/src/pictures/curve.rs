@@ -1,4 +1,4 @@
-//! A curve of a case with what it is held against.
+//! A curve of a case with its references.
 
 use std::path::Path;
 

@@ -17,10 +17,10 @@ const SEEN: f64 = 0.002;
 /// Columns that place a row, or that are shown in another way.
 const APART: [&str; 4] = ["stage", "step", "time", "kinetic_gain"];
 
-/// Columns of what the numerical method took, which is one curve.
+/// Columns of the energy that the numerical method took, which is one curve.
 const OF_METHOD: [&str; 3] = ["scheme", "map", "integration"];
 
-/// The pictures of the energy of the stages that take time, by a table as `energy.csv` is: what loads did, and where it went.
+/// The pictures of the energy of the stages that take time, by a table as `energy.csv` is: the work of loads, and where it went.
 ///
 /// # Errors
 /// [`ResultsError::File`](igimp_results::ResultsError::File) and [`ReportError::Figure`].
@@ -34,8 +34,8 @@ pub fn energy_pictures<const D: usize>(
     };
     let mut notes = Vec::new();
     for (number, stage) in case.stages.iter().enumerate() {
-        let is_own = |row: &&Vec<f64>| (row[of_stage] - (number + 1) as f64).abs() < 0.5;
-        let rows: Vec<&Vec<f64>> = table.rows.iter().filter(is_own).collect();
+        let in_stage = |row: &&Vec<f64>| (row[of_stage] - (number + 1) as f64).abs() < 0.5;
+        let rows: Vec<&Vec<f64>> = table.rows.iter().filter(in_stage).collect();
         if rows.is_empty() {
             continue;
         }
@@ -92,7 +92,7 @@ fn curves(table: &Table, rows: &[&Vec<f64>]) -> Vec<(String, Vec<f64>)> {
     all
 }
 
-/// All parts of the energy, what the method took as one.
+/// All parts of the energy, the losses of the method as one.
 fn all_curves(table: &Table, rows: &[&Vec<f64>]) -> Vec<(String, Vec<f64>)> {
     let mut method = vec![0.0; rows.len()];
     let mut all = Vec::new();
@@ -122,7 +122,7 @@ fn largest(curves: &[(String, Vec<f64>)]) -> f64 {
         .fold(0.0, |most: f64, value| most.max(value.abs()))
 }
 
-/// The unit in which the largest value reads well, and what divides values in J or J/m.
+/// The unit in which the largest value reads well, and the divisor of values in J or J/m.
 fn unit(table: &Table, curves: &[(String, Vec<f64>)]) -> (f64, String) {
     let per = if table.header.iter().any(|header| header.ends_with("[J/m]")) {
         "/m"
@@ -140,17 +140,17 @@ fn unit(table: &Table, curves: &[(String, Vec<f64>)]) -> (f64, String) {
     (divide_by, format!("{prefix}J{per}"))
 }
 
-/// What is too small to be seen, in words.
+/// Parts that are too small to be seen, in words.
 fn left_out(shown: &[(String, Vec<f64>)], table: &Table, rows: &[&Vec<f64>]) -> String {
     let all = all_curves(table, rows);
     let is_small = |(label, values): &&(String, Vec<f64>)| {
         let is_there = values.iter().any(|value| *value != 0.0);
-        is_there && !shown.iter().any(|(own, _)| own == label)
+        is_there && !shown.iter().any(|(name, _)| name == label)
     };
     let small: Vec<&str> = all
         .iter()
         .filter(is_small)
-        .map(|own| own.0.as_str())
+        .map(|curve| curve.0.as_str())
         .collect();
     if small.is_empty() {
         return String::new();
@@ -166,8 +166,8 @@ fn left_out(shown: &[(String, Vec<f64>)], table: &Table, rows: &[&Vec<f64>]) -> 
 mod tests {
     use super::*;
 
-    /// GOAL: columns are found by their names, wherever they stand; one that is new has a curve; what the method took is the
-    /// sum of its parts; what cannot be seen is named.
+    /// GOAL: columns are found by their names, wherever they stand; one that is new has a curve; the loss of the method is the
+    /// sum of its parts; a part that cannot be seen is named.
     #[test]
     fn energy_is_read_by_the_names_of_its_columns() {
         let header = [
@@ -187,7 +187,7 @@ mod tests {
         table.push(vec![1.0, 2.0, 0.2, 1e3, 1e3, 600.0, 20.0, 1.0, 6.0, 1e-3]);
         let rows: Vec<&Vec<f64>> = table.rows.iter().collect();
         let curves = curves(&table, &rows);
-        let labels: Vec<&str> = curves.iter().map(|own| own.0.as_str()).collect();
+        let labels: Vec<&str> = curves.iter().map(|curve| curve.0.as_str()).collect();
         assert_eq!(
             labels,
             ["kinetic", "boundaries", "elastic", "numerical method"]

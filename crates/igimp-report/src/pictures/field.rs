@@ -123,7 +123,7 @@ pub fn field_picture(
         label: format!(
             "{total}{}{}",
             fields::label_in(axes_of(case), field, scale),
-            colours.told()
+            colours.note()
         ),
         range: colours.range,
         map: colours.map,
@@ -151,7 +151,7 @@ pub fn field_picture(
             fields::plain(field.title_in(axes_of(case)))
         )),
         shown.when,
-        water::told(&over.outlines),
+        water::legend(&over.outlines),
     );
     let name = format!("field-{}-{}", shown.name, field.name());
     write(canvas.folder, &name, &plot.draw()?, caption)
@@ -206,14 +206,14 @@ impl Colours {
     /// From zero where a field has no sign, about zero where both signs matter, without the few values
     /// that would pale all others; without a range where its ends are equal but for rounding, so that the picture finds one.
     pub(crate) fn of(field: Field, values: &[f64]) -> Self {
-        let own = Self::between(field, values);
-        match own.range {
+        let colours = Self::between(field, values);
+        match colours.range {
             Some(range) if !AxisScale::Linear.accepts(range) => Self {
                 range: None,
                 cut: (false, false),
-                ..own
+                ..colours
             },
-            _ => own,
+            _ => colours,
         }
     }
 
@@ -294,7 +294,7 @@ impl Colours {
     }
 
     /// A note on the colour bar for values beyond its range.
-    pub(crate) fn told(&self) -> &'static str {
+    pub(crate) fn note(&self) -> &'static str {
         match self.cut {
             (false, false) => "",
             (true, false) => "; bar from 0.5 % of the particles",
@@ -323,23 +323,23 @@ mod tests {
 
     /// GOAL: a field that is even but for rounding and a few values has a picture; the run ended with its colour bar.
     /// CASE: an excess pore pressure of 9.9975 kPa with differences of 1e-12, one value that is larger, and one of nothing; a speed of 1e-200.
-    /// ORACLE: what the figures take.
+    /// ORACLE: the ranges that figures take.
     #[test]
     fn an_even_field_has_a_range_that_can_be_drawn() {
         let mut values: Vec<f64> = (0..1000).map(|k| 9.9975 + 1e-15 * f64::from(k)).collect();
         let plain = Colours::of(Field::UExcess, &values);
-        assert_eq!((plain.range, plain.told()), (None, ""));
+        assert_eq!((plain.range, plain.note()), (None, ""));
         for wild in [12.0, 0.0] {
             values[500] = wild;
             for &field in Field::ALL {
-                let own = Colours::of(field, &values);
-                let is_drawn = own
+                let colours = Colours::of(field, &values);
+                let is_drawn = colours
                     .range
                     .is_none_or(|range| AxisScale::Linear.accepts(range));
-                assert!(is_drawn, "{field:?}: {:?}", own.range);
+                assert!(is_drawn, "{field:?}: {:?}", colours.range);
             }
-            let own = Colours::of(Field::UExcess, &values);
-            assert_eq!((own.range, own.told()), (None, ""));
+            let colours = Colours::of(Field::UExcess, &values);
+            assert_eq!((colours.range, colours.note()), (None, ""));
         }
         assert_eq!(Colours::of(Field::Speed, &[1e-200]).range, None);
     }
@@ -349,7 +349,7 @@ mod tests {
     fn a_few_wild_values_do_not_hide_the_others() {
         let mut values: Vec<f64> = (0..1000).map(f64::from).collect();
         for &field in Field::ALL {
-            assert_eq!(Colours::of(field, &values).told(), "", "{field:?}");
+            assert_eq!(Colours::of(field, &values).note(), "", "{field:?}");
         }
         values[500] = 1e6;
         let of = |field| Colours::of(field, &values);
@@ -358,7 +358,7 @@ mod tests {
             (stress.range, stress.cut),
             (Some((0.0, 995.0)), (false, true))
         );
-        assert!(stress.told().contains("99.5 %"));
+        assert!(stress.note().contains("99.5 %"));
         for field in [Field::Displacement, Field::PlasticStrain] {
             assert_eq!(
                 (of(field).range, of(field).cut),

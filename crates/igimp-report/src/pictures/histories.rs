@@ -19,10 +19,10 @@ use crate::error::ReportError;
 /// Most changes of stage that are marked in a history.
 const MOST_MARKS: usize = 12;
 
-/// The pictures of a monitor: what its table holds under the [headers](igimp_model::Field::header) of the
-/// recorded fields, over the accepted steps, or over time where every stage moves in time. Where a column `stage` changes stands a line, and what does
-/// not go on there is not joined: displacements that count anew, a stage that starts from another one
-/// than that before it.
+/// The pictures of a monitor: the columns of its table under the [headers](igimp_model::Field::header) of the
+/// recorded fields, over the accepted steps, or over time where every stage moves in time. Where a column `stage` changes stands
+/// a line, and a curve that does not go on there is not joined: displacements that count anew, a stage
+/// that starts from another one than that before it.
 ///
 /// # Errors
 /// [`ResultsError::File`](igimp_results::ResultsError::File) and [`ReportError::Figure`].
@@ -74,11 +74,11 @@ pub fn monitor_pictures<const D: usize>(
 
 /// The times of the rows of a table \[s\]; none where a stage among them does not move in time.
 fn times<const D: usize>(case: &Case<D>, table: &Table) -> Option<Vec<f64>> {
-    let column = |name: &str| table.header.iter().position(|own| own.starts_with(name));
+    let column = |name: &str| table.header.iter().position(|head| head.starts_with(name));
     let (stage, time) = (column("stage")?, column("time")?);
     let of_motion = |row: &Vec<f64>| {
-        let own = case.stages.get((row[stage] as usize).checked_sub(1)?)?;
-        matches!(own.kind, StageKind::Dynamic(_)).then_some(row[time])
+        let found = case.stages.get((row[stage] as usize).checked_sub(1)?)?;
+        matches!(found.kind, StageKind::Dynamic(_)).then_some(row[time])
     };
     table.rows.iter().map(of_motion).collect()
 }
@@ -133,7 +133,7 @@ fn stage_marks(table: &Table, times: Option<&[f64]>) -> Vec<ReferenceLine> {
     }
 }
 
-/// The pictures of a section at the end of a stage, with what it is held against. The distance along the section stands in the
+/// The pictures of a section at the end of a stage, with its references. The distance along the section stands in the
 /// first column whose header begins with `distance` (else the first of all). An upright section is
 /// drawn upright, over the height.
 ///
@@ -195,7 +195,7 @@ pub fn section_pictures<const D: usize>(
     Ok(notes)
 }
 
-/// What the caption of a picture of a section says of where and when.
+/// Place and time of a section, for the caption of its picture.
 fn along_at_end(section: &str, stage: &str) -> String {
     format!("along section “{section}” at the end of stage “{stage}”")
 }
@@ -223,7 +223,7 @@ impl Course {
             .unwrap_or(0);
         let along: [f64; D] = std::array::from_fn(|axis| section.to[axis] - section.from[axis]);
         let rise = along[D - 1];
-        let is_level = |own: &f64| own.abs() <= 1e-6 * rise.abs();
+        let is_level = |run: &f64| run.abs() <= 1e-6 * rise.abs();
         let mut course = Self {
             along: Vec::new(),
             is_upright: rise.abs() > 0.0 && along[..D - 1].iter().all(is_level),
@@ -322,7 +322,7 @@ fn groups(record: &[Field], table: &Table, axes: Axes) -> Vec<Group> {
 
 impl Group {
     fn has(&self, field: Field) -> bool {
-        self.columns.iter().any(|&(own, _)| own == field)
+        self.columns.iter().any(|&(other, _)| other == field)
     }
 
     /// The unit of its values.

@@ -37,8 +37,8 @@ pub fn safety_in_time_picture(
     name: &str,
     found: &SafetyInTime,
 ) -> Result<FigureNote, ReportError> {
-    let last = found.points.iter().map(|own| own[0]).fold(0.0, f64::max);
-    let is_passed = |own: &&(&str, f64)| last >= 3.0 * own.1;
+    let last = found.points.iter().map(|at| at[0]).fold(0.0, f64::max);
+    let is_passed = |unit: &&(&str, f64)| last >= 3.0 * unit.1;
     let (unit, seconds) = UNITS.iter().find(is_passed).copied().unwrap_or(("s", 1.0));
     let points: Vec<[f64; 2]> = (found.points.iter())
         .map(|[time, factor]| [time / seconds, *factor])

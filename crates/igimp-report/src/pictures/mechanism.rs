@@ -34,7 +34,7 @@ pub struct Failing<'a, const D: usize> {
     pub stage: usize,
     /// Strength reduction factor of the state \[-\].
     pub srf: f64,
-    /// Which state it is, such as `first-unstable`.
+    /// Name of the state, as `first-unstable`.
     pub what: &'a str,
     /// The last equilibrium but one.
     pub before: &'a Particles<D>,
@@ -139,7 +139,7 @@ pub fn mechanism_picture(
     let mut outlines = edges(canvas.case, canvas.pieces, failing.last);
     outlines.extend_from_slice(&over.outlines);
     outlines.push(arrows(failing.last, found, &window));
-    let mut told = "; no line of shear stands out".to_owned();
+    let mut remark = "; no line of shear stands out".to_owned();
     if let Some(line) = &found.line {
         outlines.push(Outline {
             points: line.iter().map(|point| point.x).collect(),
@@ -147,7 +147,7 @@ pub fn mechanism_picture(
         });
         if let [first, .., last] = line.as_slice() {
             let at = |point: &SlipPoint| format!("({}, {})", short(point.x[0]), short(point.x[1]));
-            told = format!(
+            remark = format!(
                 ". Heavy line: where it shears most, from {} to {} m",
                 at(first),
                 at(last)
@@ -169,7 +169,7 @@ pub fn mechanism_picture(
     };
     let caption = format!(
         "How the body begins to fail in “{stage}”: increments from the last equilibrium but one to the \
-         last, {} state, SRF {:.4}. Colours: largest shear strain; arrows: displacement{told}.",
+         last, {} state, SRF {:.4}. Colours: largest shear strain; arrows: displacement{remark}.",
         failing.what.replace('-', " "),
         failing.srf,
     );
@@ -177,7 +177,7 @@ pub fn mechanism_picture(
     write(canvas.folder, &name, &plot.draw()?, caption)
 }
 
-/// Lower and upper corner of what the picture shows.
+/// Lower and upper corner of the picture.
 fn window(particles: &Particles<2>, found: &Mechanism, most_shear: f64) -> [[f64; 2]; 2] {
     let length = |k: usize| found.moved[k][0].hypot(found.moved[k][1]);
     let most = (0..particles.len()).map(length).fold(0.0, f64::max);

@@ -16,7 +16,7 @@ const ROOM: f64 = 0.06;
 
 /// The pictures of the results of a study, one each: the values over the size of the cells, the
 /// extrapolated value at no size with its uncertainty, and for a check the value expected. A check of
-/// what another picture shows has none of its own.
+/// a result that another picture shows has none.
 ///
 /// # Errors
 /// [`ResultsError::File`](igimp_results::ResultsError::File) and [`ReportError::Figure`].
@@ -32,11 +32,11 @@ pub fn mesh_pictures(folder: &Path, summary: &Summary) -> Result<Vec<FigureNote>
             continue;
         }
         let expected = summary.checks.iter().filter(|row| {
-            let own = study
+            let same = study
                 .results
                 .iter()
                 .filter(|other| other.values == result.values);
-            own.into_iter()
+            same.into_iter()
                 .any(|other| other.name == row.check.quantity)
         });
         let plot = plot(
@@ -59,7 +59,7 @@ fn plot(
 ) -> CurvePlot {
     let in_si = result.unit.as_ref().map_or(1.0, |unit| unit.in_si);
     let result = &result.as_told();
-    // What ended early is no value of its mesh.
+    // A run that ended early has no value of its mesh.
     let arrived = (study.meshes.iter().enumerate()).filter(|(mesh, _)| !result.ended_early(*mesh));
     let computed: Vec<([f64; 2], f64)> = arrived
         .filter_map(|(number, mesh)| {

@@ -15,8 +15,8 @@
 //! | [`convergence_pictures`] | `convergence-STAGE` |
 //! | [`mesh_pictures`] | `mesh-study-NUMBER-RESULT` |
 //!
-//! Each makes the folder, replaces older pictures of its name, and returns what the summary says
-//! of it. Tables without rows make pictures that say "no data".
+//! Each makes the folder, replaces older pictures of its name, and returns the note of the summary
+//! on it. Tables without rows make pictures that say "no data".
 
 mod convergence;
 mod curve;
@@ -61,7 +61,7 @@ use igimp_results::tables::table::Table;
 /// Folder of the pictures within a results folder.
 pub const FOLDER: &str = "figures";
 
-/// What the axes of a case are called.
+/// The names of the axes of a case.
 pub fn axes_of<const D: usize>(case: &Case<D>) -> Axes {
     match D {
         2 if case.method.section.is_axisymmetric() => Axes::Revolution,
@@ -122,7 +122,7 @@ fn style(points: usize) -> SeriesStyle {
     }
 }
 
-/// The title of a picture: the case, and what is seen of it.
+/// The title of a picture: the case, and its part that is seen.
 pub(super) fn titled(case_title: &str, seen: &str) -> String {
     if case_title.is_empty() || seen.is_empty() {
         format!("{case_title}{seen}")

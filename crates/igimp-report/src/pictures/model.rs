@@ -35,7 +35,7 @@ pub fn model_picture(folder: &Path, case: &Case<2>) -> Result<FigureNote, Report
         "rigid bodies where they start, "
     };
     let is_table = |source: &PoreSource| matches!(source, PoreSource::Table(_));
-    let water = if case.water.iter().any(|own| is_table(&own.source)) {
+    let water = if case.water.iter().any(|water| is_table(&water.source)) {
         "water tables, "
     } else {
         ""

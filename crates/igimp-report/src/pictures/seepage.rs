@@ -65,7 +65,7 @@ fn parts<const D: usize>(
         let clipped = case
             .bodies
             .iter()
-            .map(|own| clip_to_box(own.polygon(), lower, upper));
+            .map(|body| clip_to_box(body.polygon(), lower, upper));
         return clipped
             .filter(|part| area_and_centroid(part).0.abs() > SMALL * size[0] * size[1])
             .collect();
@@ -92,7 +92,7 @@ fn is_ground<const D: usize>(case: &Case<D>, cut: Option<Cut>, place: [f64; 2]) 
     let mut x = [cut.map_or(0.0, |cut| cut.at); D];
     let along = usize::from(cut.is_some_and(|cut| cut.axis == 0));
     (x[along], x[D - 1]) = (place[0], place[1]);
-    case.bodies.iter().any(|own| own.region.encloses(x))
+    case.bodies.iter().any(|body| body.region.encloses(x))
 }
 
 /// The picture of a flow in the plane or in a cut.

@@ -13,7 +13,7 @@ use crate::error::ReportError;
 use crate::skin::{Boxes, Skin};
 
 /// How much the direction of a face itself counts beside that of the surface around it.
-const OWN: f64 = 1.0;
+const FACE: f64 = 1.0;
 
 /// A state in space that is drawn field by field; its surface is found once.
 #[derive(Debug)]
@@ -39,7 +39,7 @@ struct Coloured {
     colours: Colours,
     label: String,
     /// The quantity in words, for captions.
-    what: String,
+    quantity: String,
 }
 
 impl<'a> InSpace<'a> {
@@ -114,16 +114,16 @@ impl<'a> InSpace<'a> {
         compared: &[Seen<'_, 3>],
         planes: &[Cut],
     ) -> Result<Vec<FigureNote>, ReportError> {
-        let own = self.coloured(field, compared);
+        let coloured = self.coloured(field, compared);
         let title = titled(self.title, &shown.title);
         let plot = SpacePlot {
             title: title.clone(),
-            faces: self.faces(&own.values),
+            faces: self.faces(&coloured.values),
             bodies: self.bodies.clone(),
             view: View::default(),
-            label: own.label.clone(),
-            range: own.colours.range,
-            map: own.colours.map,
+            label: coloured.label.clone(),
+            range: coloured.colours.range,
+            map: coloured.colours.map,
         };
         let same = if compared.is_empty() {
             ""
@@ -135,24 +135,24 @@ impl<'a> InSpace<'a> {
         } else {
             " Grey: rigid bodies."
         };
-        let name = |what: &str| format!("{what}-{}-{}", shown.name, field.name());
+        let name = |kind: &str| format!("{kind}-{}-{}", shown.name, field.name());
         let caption = format!(
             "{} {}: the surface of the particles' domains.{bodies}{same}",
-            own.what, shown.when
+            coloured.quantity, shown.when
         );
         let mut notes = vec![write(self.folder, &name("space"), &plot.draw()?, caption)?];
         for plane in planes {
             let letter = ["x", "y", "z"][plane.axis];
             let at = format!("{letter} = {} m", rounded(plane.at));
-            let plot = self.cut(*plane, &own, titled(&title, &at));
+            let plot = self.cut(*plane, &coloured, titled(&title, &at));
             let caption = format!(
                 "{} {} in the plane {at}: the domains that it crosses{}.{same}",
-                own.what,
+                coloured.quantity,
                 shown.when,
-                water::told(&plot.outlines)
+                water::legend(&plot.outlines)
             );
-            let same_axis = planes.iter().filter(|own| own.axis == plane.axis);
-            // More of them across an axis are told apart by their places.
+            let same_axis = planes.iter().filter(|other| other.axis == plane.axis);
+            // More of them across an axis differ by their places.
             let name = if same_axis.count() > 1 {
                 name(&plane.name())
             } else {
@@ -177,9 +177,9 @@ impl<'a> InSpace<'a> {
             label: format!(
                 "{total}{}{}",
                 fields::label_in(Axes::Space, field, scale),
-                colours.told()
+                colours.note()
             ),
-            what: sentence(&format!("{total}{title}")),
+            quantity: sentence(&format!("{total}{title}")),
             colours,
         }
     }
@@ -198,8 +198,8 @@ impl<'a> InSpace<'a> {
             let lie = self.skin.lie[k];
             for face in (0..6).filter(|face| self.skin.faces[k] & (1 << face) != 0) {
                 let corners = self.skin.corners(boxes, k, face);
-                let own = across(&corners, [-1.0, 1.0][face % 2]);
-                let normal = [0, 1, 2].map(|axis| OWN * own[axis] + lie.normal[axis]);
+                let face_normal = across(&corners, [-1.0, 1.0][face % 2]);
+                let normal = [0, 1, 2].map(|axis| FACE * face_normal[axis] + lie.normal[axis]);
                 faces.push(Face {
                     corners,
                     normal: unit(normal),
@@ -212,7 +212,7 @@ impl<'a> InSpace<'a> {
     }
 
     /// The sections of the domains that a plane crosses.
-    fn cut(&self, plane: Cut, own: &Coloured, title: String) -> FieldPlot {
+    fn cut(&self, plane: Cut, coloured: &Coloured, title: String) -> FieldPlot {
         let [across, up] = [[1, 2], [0, 2], [0, 1]][plane.axis];
         let letters = ["x [m]", "y [m]", "z [m]"];
         let boxes = self.boxes();
@@ -224,7 +224,7 @@ impl<'a> InSpace<'a> {
             .map(|k| {
                 let section = self.skin.section(boxes, k, plane.axis, plane.at);
                 let corners = section.map(|at| [at[across], at[up]]).to_vec();
-                (corners, own.values[k])
+                (corners, coloured.values[k])
             })
             .unzip();
         FieldPlot {
@@ -232,9 +232,9 @@ impl<'a> InSpace<'a> {
             outlines: water::over_cut(&self.water, plane, &domains),
             domains,
             values,
-            label: own.label.clone(),
-            range: own.colours.range,
-            map: own.colours.map,
+            label: coloured.label.clone(),
+            range: coloured.colours.range,
+            map: coloured.colours.map,
             x_label: letters[across].to_owned(),
             y_label: letters[up].to_owned(),
             ..FieldPlot::default()

@@ -12,12 +12,12 @@ pub fn tables(
     there: impl Fn(usize) -> bool,
     ends: [f64; 2],
 ) -> Vec<Outline> {
-    let own = condition.bodies.iter().filter(|(body, _)| there(*body));
-    let own = own.map(|(body, source)| {
+    let local = condition.bodies.iter().filter(|(body, _)| there(*body));
+    let local = local.map(|(body, source)| {
         let (lower, upper) = bounding_box(case.bodies[*body].polygon());
         (source, [lower[0].max(ends[0]), upper[0].min(ends[1])])
     });
-    let all = std::iter::once((&condition.source, ends)).chain(own);
+    let all = std::iter::once((&condition.source, ends)).chain(local);
     all.filter_map(|(source, ends)| table(source, ends))
         .collect()
 }
@@ -61,8 +61,8 @@ pub(super) fn over_cut(tables: &[PoreSource], plane: Cut, domains: &[Polygon]) -
         _ => return Vec::new(),
     };
     let ends = domains.iter().flatten().map(|corner| corner[0]);
-    let [from, to] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[from, to], own| {
-        [from.min(own), to.max(own)]
+    let [from, to] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[from, to], x| {
+        [from.min(x), to.max(x)]
     });
     if from >= to {
         return Vec::new();
@@ -85,7 +85,7 @@ pub(super) fn over_cut(tables: &[PoreSource], plane: Cut, domains: &[Polygon]) -
 }
 
 /// The words of a caption for the water tables in its picture.
-pub(super) fn told(outlines: &[Outline]) -> &'static str {
+pub(super) fn legend(outlines: &[Outline]) -> &'static str {
     let is_water = |outline: &Outline| outline.style == OutlineStyle::Water;
     if outlines.iter().any(is_water) {
         "; blue: the water table"
@@ -102,7 +102,7 @@ mod tests {
     #[test]
     fn a_water_table_goes_from_end_to_end() {
         let line = vec![[2.0, 1.0], [4.0, 3.0], [9.0, 3.0]];
-        let drawn = |ends| table(&PoreSource::Table(line.clone()), ends).map(|own| own.points);
+        let drawn = |ends| table(&PoreSource::Table(line.clone()), ends).map(|curve| curve.points);
         let whole = vec![[0.0, 1.0], [2.0, 1.0], [4.0, 3.0], [6.0, 3.0]];
         assert_eq!(drawn([0.0, 6.0]), Some(whole));
         assert_eq!(drawn([2.5, 3.5]), Some(vec![[2.5, 1.5], [3.5, 2.5]]));

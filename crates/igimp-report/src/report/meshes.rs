@@ -60,7 +60,7 @@ pub(super) fn view(study: &StudySummary) -> StudyView {
 
 /// Factors of safety and limit loads as extrapolated.
 pub(super) fn numbers(study: &StudySummary) -> Vec<Number> {
-    let own = |result: &StudyResult| {
+    let number = |result: &StudyResult| {
         let name = match result.kind {
             ResultKind::FactorOfSafety => "Factor of safety",
             ResultKind::LimitLoad => "Limit load",
@@ -73,10 +73,10 @@ pub(super) fn numbers(study: &StudySummary) -> Vec<Number> {
             note: format!("with its mesh error, order {}", found.order.sentence()),
         })
     };
-    study.results.iter().filter_map(own).collect()
+    study.results.iter().filter_map(number).collect()
 }
 
-/// Tells in the verdict what the study found, and that a mesh went wrong if one did.
+/// Adds the result of the study to the verdict, and that a mesh went wrong if one did.
 pub(super) fn add_to(verdict: &mut Verdict, study: &StudySummary) {
     match study.ending() {
         Ending::NotConverged => (verdict.class, verdict.word) = ("bad", "Not converged"),
@@ -137,13 +137,13 @@ fn result(result: StudyResult) -> ResultView {
     let value = |value: Option<f64>| value.map_or_else(|| UNKNOWN.to_owned(), short);
     let found = result.estimate;
     let values = std::iter::zip(&result.values, &result.half_widths).enumerate();
-    let values = values.map(|(mesh, (&own, &width))| {
+    let values = values.map(|(mesh, (&number, &width))| {
         if result.ended_early(mesh) {
-            value(own) + " (ended early)"
+            value(number) + " (ended early)"
         } else if width > 0.0 {
-            format!("{} ± {}", value(own), short(width))
+            format!("{} ± {}", value(number), short(width))
         } else {
-            value(own)
+            value(number)
         }
     });
     ResultView {

@@ -35,5 +35,5 @@ pub(crate) fn percent(share: f64) -> String {
     }
 }
 
-/// Stands for what is not a number.
+/// Stands for a value that is not a number.
 pub(crate) const UNKNOWN: &str = "–";

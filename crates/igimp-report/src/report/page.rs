@@ -1,4 +1,4 @@
-//! `report.html` of what is no run: sections of words, tables and pictures on one page without outside parts.
+//! `report.html` without a run: sections of words, tables and pictures on one page without outside parts.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ const TEMPLATE: &str = include_str!("page.html");
 /// A page.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Page {
-    /// What it is about.
+    /// Subject of the page.
     pub title: String,
     /// Whether a reader should look twice.
     pub is_doubtful: bool,
@@ -30,14 +30,14 @@ pub struct Page {
     pub sections: Vec<Section>,
 }
 
-/// A section of a page; what is empty is left out.
+/// A section of a page; empty parts are left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Section {
     /// Its heading.
     pub title: String,
     /// Paragraphs.
     pub sentences: Vec<String>,
-    /// What a reader has to know before a number is used, as a list.
+    /// Warnings for a reader before a number is used, as a list.
     pub warnings: Vec<String>,
     /// Tables.
     pub tables: Vec<PageTable>,
@@ -52,7 +52,7 @@ pub struct Section {
 /// A table.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct PageTable {
-    /// What it tells, for those who hear the page.
+    /// Its text for those who hear the page.
     pub name: String,
     /// Its columns.
     pub columns: Vec<Column>,
@@ -152,7 +152,7 @@ impl Page {
 mod tests {
     use super::*;
 
-    /// GOAL: a page has what it is given, signs of HTML as text, and no outside part. ORACLE: the text of the page.
+    /// GOAL: a page has the parts that it is given, signs of HTML as text, and no outside part. ORACLE: the text of the page.
     #[test]
     fn a_page_has_its_sections_as_text() {
         let folder = std::env::temp_dir().join(format!("igimp-page-{}", std::process::id()));

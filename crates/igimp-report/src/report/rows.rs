@@ -19,7 +19,7 @@ pub(super) const PHASES: [&str; 5] = ["set-up", "assembly", "factorisation", "so
 /// The note on a result whose mesh error was not studied.
 const MESH_ERROR_UNKNOWN: &str = "mesh error not known: igimp run --meshes 2 finds it";
 
-/// A number with its name, and what a reader has to know of it.
+/// A number with its name, and a note for its reader.
 #[derive(Serialize)]
 pub(super) struct Number {
     pub name: String,
@@ -53,11 +53,11 @@ pub(super) fn headline(summary: &Summary) -> Vec<Number> {
         numbers.push(Number::new("Largest displacement", value, note));
     }
     numbers.extend(pore_pressures(summary));
-    for (stage, own) in consolidated(summary) {
+    for (stage, flow) in consolidated(summary) {
         let has_one = |stage: &StageSummary| stage.consolidation.is_some();
         let name = of_stage(summary, has_one, stage, "Excess pressure dissipated");
-        let value = format!("{} %", short(100.0 * own.dissipated()));
-        numbers.push(Number::new(name, value, dissipation_note(summary, own)));
+        let value = format!("{} %", short(100.0 * flow.dissipated()));
+        numbers.push(Number::new(name, value, dissipation_note(summary, flow)));
     }
     if !summary.checks.is_empty() {
         let met = summary.checks.iter().filter(|row| row.pass).count();
@@ -164,13 +164,13 @@ fn consolidated(summary: &Summary) -> impl Iterator<Item = (&StageSummary, &Cons
     stages.filter_map(|stage| Some((stage, stage.consolidation.as_ref()?)))
 }
 
-/// What stands below the share of excess pressure that is gone.
-fn dissipation_note(summary: &Summary, own: &ConsolidationSummary) -> String {
+/// The note below the share of excess pressure that is gone.
+fn dissipation_note(summary: &Summary, flow: &ConsolidationSummary) -> String {
     format!(
         "mean of coupled soil {} of {} at most; water that left {} {}",
-        quantity(own.excess, "Pa"),
-        quantity(own.most_excess, "Pa"),
-        short(own.outflow),
+        quantity(flow.excess, "Pa"),
+        quantity(flow.most_excess, "Pa"),
+        short(flow.outflow),
         if summary.size.is_whole() {
             "m³"
         } else {
@@ -193,7 +193,7 @@ pub(super) struct MemberView {
 
 /// The tension of reinforcement at the end of the stages that changed it.
 pub(super) fn reinforcement(summary: &Summary) -> Vec<MemberView> {
-    let stages = summary.stages.iter().filter(|own| own.safety.is_none());
+    let stages = summary.stages.iter().filter(|stage| stage.safety.is_none());
     let per_metre = !summary.size.is_whole();
     let unit = force(summary);
     let view = |(stage, member): (&StageSummary, &MemberSummary)| MemberView {
@@ -205,7 +205,7 @@ pub(super) fn reinforcement(summary: &Summary) -> Vec<MemberView> {
         at_limit: format!("{} %", short(100.0 * member.at_limit)),
     };
     stages
-        .flat_map(|stage| stage.reinforcement.iter().map(move |own| (stage, own)))
+        .flat_map(|stage| stage.reinforcement.iter().map(move |bar| (stage, bar)))
         .map(view)
         .collect()
 }
@@ -260,7 +260,7 @@ pub(super) struct HeadView {
     code: bool,
 }
 
-/// Project, client, author, revision, date, and what the results were made from and with.
+/// Project, client, author, revision, date, input and program of the results.
 pub(super) fn head(summary: &Summary) -> Vec<HeadView> {
     let block = &summary.title_block;
     let entries = [
@@ -401,7 +401,7 @@ struct ShareView {
 
 impl ShareView {
     fn of(share: &MaterialShare) -> Self {
-        let bar = |what, by: f64| (what, format!("{by:.3}"), (100.0 * by).clamp(0.0, 100.0));
+        let bar = |symbol, by: f64| (symbol, format!("{by:.3}"), (100.0 * by).clamp(0.0, 100.0));
         let friction = share.friction.map(|friction| bar("tan φ", friction));
         let kept = if share.is_reduced { "" } else { " (kept)" };
         Self {

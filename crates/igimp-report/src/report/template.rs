@@ -7,7 +7,7 @@ use serde::Serialize;
 /// How pages look, on screens and on paper.
 const STYLE: &str = include_str!("style.css");
 
-/// What all pages share: head, contents, pictures and warnings.
+/// Parts that all pages share: head, contents, pictures and warnings.
 const PARTS: &str = include_str!("parts.html");
 
 /// A template with its values; those of HTML are escaped.

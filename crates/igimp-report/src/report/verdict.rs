@@ -21,7 +21,7 @@ pub(super) struct Verdict {
     pub text: String,
 }
 
-/// The verdict on a run: how it ended, what the checks say, and the factor of safety.
+/// The verdict on a run: its ending, its checks, and the factor of safety.
 pub(super) fn verdict(summary: &Summary) -> Verdict {
     let missed: Vec<&CheckRow> = summary.checks.iter().filter(|row| !row.pass).collect();
     let failed = |stage: &&StageSummary| stage.outcome == StageOutcome::NotConverged;
@@ -43,11 +43,11 @@ pub(super) fn verdict(summary: &Summary) -> Verdict {
     let searches = || summary.stages.iter().filter(|stage| stage.safety.is_some());
     for stage in searches() {
         if let Some(safety) = &stage.safety {
-            let mut own = on_safety(safety);
-            if let (Some(first), true) = (own.first_mut(), searches().count() > 1) {
+            let mut lines = on_safety(safety);
+            if let (Some(first), true) = (lines.first_mut(), searches().count() > 1) {
                 *first = format!("Stage “{}”: {first}", stage.name);
             }
-            sentences.extend(own);
+            sentences.extend(lines);
         }
     }
     Verdict {
@@ -130,9 +130,9 @@ fn on_checks(summary: &Summary, unmet: &[&CheckRow]) -> Option<String> {
     let (missed, beyond): (Vec<&CheckRow>, Vec<&CheckRow>) =
         unmet.iter().partition(|row| row.is_reached());
     let (missed, beyond) = (on_missed(count, &missed), on_unreached(count, &beyond));
-    let told: Vec<String> = [missed, beyond].into_iter().flatten().collect();
-    match (told.is_empty(), count) {
-        (false, _) => Some(told.join(" ")),
+    let parts: Vec<String> = [missed, beyond].into_iter().flatten().collect();
+    match (parts.is_empty(), count) {
+        (false, _) => Some(parts.join(" ")),
         (true, 0) => None,
         (true, 1) => Some("The one check holds.".to_owned()),
         (true, _) => Some(format!("All {count} checks hold.")),
@@ -173,7 +173,7 @@ fn and_others(count: usize) -> String {
     }
 }
 
-/// The factor of safety with what belongs to it.
+/// The factor of safety with its remarks.
 pub(super) fn on_safety(safety: &SafetySummary) -> Vec<String> {
     if safety.needs_no_strength() {
         let words = "Nothing of this ground can fail: its strength is not needed";
@@ -266,7 +266,7 @@ mod tests {
 
     use super::*;
 
-    // GOAL: several factors of safety are told apart by their stages, and one alone needs no name.
+    // GOAL: several factors of safety differ by their stages, and one alone needs no name.
     // ORACLE: by hand.
     #[test]
     fn several_factors_name_their_stages() {
@@ -288,8 +288,8 @@ mod tests {
         };
         let both = text(vec![stage("dry", 1.5), stage("full pool", 1.2)]);
         for (name, factor) in [("dry", "1.5"), ("full pool", "1.2")] {
-            let told = format!("Stage “{name}”: The factor of safety lies between {factor}");
-            assert!(both.contains(&told), "{both}");
+            let expected = format!("Stage “{name}”: The factor of safety lies between {factor}");
+            assert!(both.contains(&expected), "{both}");
         }
         let one = text(vec![stage("dry", 1.5)]);
         assert!(!one.contains("Stage “dry”: The"), "{one}");
@@ -313,18 +313,18 @@ mod tests {
             steps: 2,
             ..StageSummary::default()
         };
-        let told = verdict(&Summary {
+        let found = verdict(&Summary {
             stages: vec![stage],
             ..Summary::default()
         });
-        assert_eq!((told.class, told.word), ("fair", "Still moving"));
+        assert_eq!((found.class, found.word), ("fair", "Still moving"));
         let sentence = "Stage “run-out” did not come to rest: still moving after 2 steps.";
-        assert!(told.text.starts_with(sentence), "{}", told.text);
+        assert!(found.text.starts_with(sentence), "{}", found.text);
     }
 
-    // GOAL: a check that was not reached is told as that, and not as one that holds. ORACLE: by hand.
+    // GOAL: a check that was not reached is named as that, and not as one that holds. ORACLE: by hand.
     #[test]
-    fn a_check_that_was_not_reached_is_told() {
+    fn a_check_that_was_not_reached_is_named() {
         let check = Check {
             case: String::new(),
             variant: String::new(),
@@ -335,12 +335,12 @@ mod tests {
             measured: 0.054,
             unit: None,
         };
-        let told = verdict(&Summary {
+        let found = verdict(&Summary {
             stages: vec![StageSummary::default()],
             checks: vec![CheckRow::held(check.clone()), CheckRow::not_reached(check)],
             ..Summary::default()
         });
         let sentence = "1 of 2 checks was not reached: settlement.";
-        assert!(told.text.contains(sentence), "{}", told.text);
+        assert!(found.text.contains(sentence), "{}", found.text);
     }
 }

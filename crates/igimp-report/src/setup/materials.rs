@@ -65,20 +65,20 @@ pub fn of_material(material: &Material) -> SetupTable {
     if material.given.is_none() {
         let constant = Profiles::default();
         let parameters = material.strength.parameters().into_iter();
-        rows.extend(parameters.map(|own| {
-            let name = own.label.trim_end().trim_end_matches('=').trim_end();
-            row(name, value(own, &constant))
+        rows.extend(parameters.map(|parameter| {
+            let name = parameter.label.trim_end().trim_end_matches('=').trim_end();
+            row(name, value(parameter, &constant))
         }));
         let effects = material
             .softening
             .iter()
-            .flat_map(|own| own.in_words(short));
+            .flat_map(|softening| softening.in_words(short));
         rows.extend(effects.map(|words| row("with strain, rate or direction", words)));
     }
     table("Material", &["Parameter", "Value"], rows)
 }
 
-/// How a parameter of a law is printed: what its values are divided by, and its unit.
+/// The divisor of the values of a parameter of a law as printed, and its unit.
 fn scale_of(value: ParameterValue) -> (f64, &'static str) {
     match value {
         ParameterValue::Cohesive(_) | ParameterValue::Stress(_) => (1e3, " kPa"),
@@ -91,16 +91,16 @@ fn scale_of(value: ParameterValue) -> (f64, &'static str) {
 /// Parameters that vary and are not printed among those of the strength.
 fn beside(material: &Material) -> impl Iterator<Item = String> {
     let printed = material.strength.parameters();
-    let is_beside = move |own: &&(&str, Profile)| {
-        own.0 != "poisson" && !printed.iter().any(|other| other.key == own.0)
+    let is_beside = move |entry: &&(&str, Profile)| {
+        entry.0 != "poisson" && !printed.iter().any(|other| other.key == entry.0)
     };
     let parameters = material.profiles.parameters.iter().filter(is_beside);
-    parameters.map(|(key, own)| match *key {
+    parameters.map(|(key, profile)| match *key {
         "friction" => format!(
             "φ at the critical state = {}",
-            in_words(own, over(1_f64.to_radians()), "°")
+            in_words(profile, over(1_f64.to_radians()), "°")
         ),
-        _ => format!("{key} = {}", in_words(own, short, "")),
+        _ => format!("{key} = {}", in_words(profile, short, "")),
     })
 }
 
@@ -132,18 +132,18 @@ fn value(parameter: Parameter, profiles: &Profiles) -> String {
 }
 
 fn material(material: &Material) -> Vec<String> {
-    let own = &material.profiles;
+    let profiles = &material.profiles;
     let or_constant = |profile: &Option<Profile>, constant: f64, scale: f64| match profile {
         Some(profile) => in_words(profile, over(scale), ""),
         None => short(constant / scale),
     };
-    let printed = |parameter: Parameter| format!("{}{}", parameter.label, value(parameter, own));
+    let printed = |entry: Parameter| format!("{}{}", entry.label, value(entry, profiles));
     let of_file = || {
         let parameters = material.strength.parameters().into_iter();
         let effects = material.softening.iter();
-        let effects = effects.flat_map(|own| own.in_words(short));
+        let effects = effects.flat_map(|softening| softening.in_words(short));
         let varies =
-            own.friction.is_some() && material.softening.is_some_and(|own| own.friction.is_some());
+            profiles.friction.is_some() && material.softening.is_some_and(|s| s.friction.is_some());
         let varies = varies.then(|| {
             "φ in the end where it is greatest, elsewhere as much less by its tangent".to_owned()
         });
@@ -151,13 +151,13 @@ fn material(material: &Material) -> Vec<String> {
         let each = parameters.chain(effects).chain(varies);
         each.collect::<Vec<_>>().join(", ")
     };
+    let poisson = profiles.of_parameter("poisson");
     vec![
         material.name.clone(),
         law_name(material).to_owned(),
-        or_constant(&own.unit_weight, material.unit_weight, 1e3),
-        or_constant(&own.young, material.young, 1e6),
-        own.of_parameter("poisson")
-            .map_or_else(|| short(material.poisson), |own| in_words(own, short, "")),
+        or_constant(&profiles.unit_weight, material.unit_weight, 1e3),
+        or_constant(&profiles.young, material.young, 1e6),
+        poisson.map_or_else(|| short(material.poisson), |nu| in_words(nu, short, "")),
         given_in_words(material).unwrap_or_else(of_file),
         material.k0.map_or_else(|| NONE.to_owned(), short),
     ]

@@ -18,25 +18,25 @@ pub(super) fn stages<const D: usize>(case: &Case<D>) -> SetupTable {
             || "undeformed, free of stress".to_owned(),
             |from| case.stages[from].name.clone(),
         );
-        let mut what = vec![happens(case, stage)];
+        let mut parts = vec![happens(case, stage)];
         for &member in &stage.install {
-            what.push(format!("{} installed", case.reinforcement[member].name));
+            parts.push(format!("{} installed", case.reinforcement[member].name));
         }
         if stage.geometry == Geometry::Given {
-            what.push("on the geometry as it is".to_owned());
+            parts.push("on the geometry as it is".to_owned());
         }
-        what.extend(ends(case, &stage.stop_when));
+        parts.extend(ends(case, &stage.stop_when));
         if stage.drained {
-            what.push("all soil drains".to_owned());
+            parts.push("all soil drains".to_owned());
         }
-        what.extend(stage.consolidation.as_ref().map(consolidation_in_words));
+        parts.extend(stage.consolidation.as_ref().map(consolidation_in_words));
         if stage.reset_displacements {
-            what.push("displacements count from its end on".to_owned());
+            parts.push("displacements count from its end on".to_owned());
         }
         vec![
             (number + 1).to_string(),
             stage.name.clone(),
-            what.join("; "),
+            parts.join("; "),
             from,
             stage.steps.to_string(),
         ]
@@ -66,11 +66,11 @@ fn happens<const D: usize>(case: &Case<D>, stage: &Stage) -> String {
             let Load { name, .. } = &case.loads[*load];
             format!("{name} pushed down by {} m", short(*settlement))
         }
-        StageKind::Construction(own) => construction_in_words(case, own),
+        StageKind::Construction(works) => construction_in_words(case, works),
         StageKind::Wait => "nothing changes".to_owned(),
         StageKind::Rigid(moves) => {
-            let told: Vec<String> = moves.iter().map(|own| moves_in_words(case, own)).collect();
-            told.join("; ")
+            let parts: Vec<String> = moves.iter().map(|m| moves_in_words(case, m)).collect();
+            parts.join("; ")
         }
         StageKind::StrengthReduction(reduction) => {
             let path = match reduction.path {
@@ -138,34 +138,34 @@ fn motion_in_words<const D: usize>(case: &Case<D>, dynamic: &Dynamic) -> String 
         parts.push(format!("strength of {strength} divided by {by}"));
     }
     parts.extend(ground_in_words(dynamic));
-    parts.extend(dynamic.bodies.iter().map(|own| moves_in_words(case, own)));
+    parts.extend(dynamic.bodies.iter().map(|m| moves_in_words(case, m)));
     parts.join("; ")
 }
 
 /// The time in which water flows, in words.
-fn consolidation_in_words(own: &Consolidation) -> String {
-    let mut told = format!(
+fn consolidation_in_words(consolidation: &Consolidation) -> String {
+    let mut text = format!(
         "over {}, in which water flows out of soil",
-        duration(own.duration)
+        duration(consolidation.duration)
     );
-    if !own.open_faces {
-        told += ", faces sealed";
+    if !consolidation.open_faces {
+        text += ", faces sealed";
     }
-    match own.open_sides.len() {
+    match consolidation.open_sides.len() {
         0 => {}
-        1 => told += ", one side open",
+        1 => text += ", one side open",
         sides => {
-            let _ = write!(told, ", {sides} sides open");
+            let _ = write!(text, ", {sides} sides open");
         }
     }
-    match own.drains.len() {
+    match consolidation.drains.len() {
         0 => {}
-        1 => told += ", one drain",
+        1 => text += ", one drain",
         drains => {
-            let _ = write!(told, ", {drains} drains");
+            let _ = write!(text, ", {drains} drains");
         }
     }
-    told
+    text
 }
 
 /// A duration in the unit that suits it, given in seconds.
@@ -227,39 +227,39 @@ fn reduction_in_words(reduction: &Reduction) -> String {
 }
 
 /// The changes of a construction stage, in words.
-fn construction_in_words<const D: usize>(case: &Case<D>, own: &Construction) -> String {
+fn construction_in_words<const D: usize>(case: &Case<D>, works: &Construction) -> String {
     let names = |which: &[usize]| {
         let names: Vec<&str> = which.iter().map(|&k| &*case.bodies[k].name).collect();
         names.join(", ")
     };
     let mut parts = Vec::new();
-    if !own.place.is_empty() {
-        parts.push(format!("{} placed", names(&own.place)));
+    if !works.place.is_empty() {
+        parts.push(format!("{} placed", names(&works.place)));
     }
-    if !own.remove.is_empty() {
-        parts.push(format!("{} taken away", names(&own.remove)));
+    if !works.remove.is_empty() {
+        parts.push(format!("{} taken away", names(&works.remove)));
     }
-    for &(body, material) in &own.materials {
+    for &(body, material) in &works.materials {
         let (body, material) = (&case.bodies[body].name, &case.materials[material].name);
         parts.push(format!("{body} becomes {material}"));
     }
-    if let Some(water) = own.water {
+    if let Some(water) = works.water {
         parts.push(format!("water: {}", case.water[water].name));
     }
-    if own.dissipate {
+    if works.dissipate {
         parts.push("excess pore pressure gone".to_owned());
     }
     parts.join("; ")
 }
 
 /// The action of a stage on a rigid body, in words.
-fn moves_in_words<const D: usize>(case: &Case<D>, own: &RigidMove) -> String {
-    let name = &case.rigid[own.body].name;
-    format!("{name}: {}", drives_in_words(case, own))
+fn moves_in_words<const D: usize>(case: &Case<D>, motion: &RigidMove) -> String {
+    let name = &case.rigid[motion.body].name;
+    format!("{name}: {}", drives_in_words(case, motion))
 }
 
 /// The drives of the components of a rigid body's motion in a stage, in words.
-pub(super) fn drives_in_words<const D: usize>(case: &Case<D>, own: &RigidMove) -> String {
+pub(super) fn drives_in_words<const D: usize>(case: &Case<D>, motion: &RigidMove) -> String {
     let names: &[&str] = if D == 2 {
         &["x", "y", "rotation"]
     } else {
@@ -273,18 +273,18 @@ pub(super) fn drives_in_words<const D: usize>(case: &Case<D>, own: &RigidMove) -
         ]
     };
     let [force, moment] = ["N", "N m"].map(|unit| format!("{unit}{}", case.per_metre()));
-    let parts: Vec<String> = std::iter::zip(names, own.drives)
+    let parts: Vec<String> = std::iter::zip(names, motion.drives)
         .filter_map(|(name, drive)| {
             let about = name.strip_prefix("rotation");
             Some(match (drive?, about) {
                 (RigidDrive::By(by), Some(_)) => format!("{name} by {} rad", short(by)),
                 (RigidDrive::By(by), None) => format!("{name} by {} m", short(by)),
                 (RigidDrive::Force(0.0), _) => format!("{name} free"),
-                (RigidDrive::Force(own), Some(about)) => {
-                    format!("moment{about} to {}", kilo(own, &moment))
+                (RigidDrive::Force(size), Some(about)) => {
+                    format!("moment{about} to {}", kilo(size, &moment))
                 }
-                (RigidDrive::Force(own), None) => {
-                    format!("force in {name} to {}", kilo(own, &force))
+                (RigidDrive::Force(size), None) => {
+                    format!("force in {name} to {}", kilo(size, &force))
                 }
             })
         })

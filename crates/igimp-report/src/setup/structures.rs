@@ -37,7 +37,7 @@ fn rigid_body<const D: usize>(case: &Case<D>, index: usize, part: &RigidPart<D>)
     let shear = |side: usize| shear(part.interfaces[side].shear);
     let tension = |side: usize| tension(part.interfaces[side].tension);
     let mut weight = short(part.weight / 1e3);
-    if part.weight > 0.0 && part.arm().iter().any(|own| *own != 0.0) {
+    if part.weight > 0.0 && part.arm().iter().any(|offset| *offset != 0.0) {
         let _ = write!(weight, " at {}", point(part.centre_of_mass));
     }
     if (part.force_factor - 1.0).abs() > 0.0 {
@@ -54,8 +54,8 @@ fn rigid_body<const D: usize>(case: &Case<D>, index: usize, part: &RigidPart<D>)
         else {
             continue;
         };
-        for own in moves.iter().filter(|own| own.body == index) {
-            moved.push(format!("{}: {}", stage.name, drives_in_words(case, own)));
+        for motion in moves.iter().filter(|motion| motion.body == index) {
+            moved.push(format!("{}: {}", stage.name, drives_in_words(case, motion)));
         }
     }
     let names = match part.shape.sides() {
@@ -79,15 +79,15 @@ fn rigid_body<const D: usize>(case: &Case<D>, index: usize, part: &RigidPart<D>)
 /// The interface of all sides, or of each side; the most common one is stated once, last.
 fn by_side(names: &[String], of: impl Fn(usize) -> String) -> String {
     let each: Vec<String> = (0..names.len()).map(of).collect();
-    let count = |own: &String| each.iter().filter(|other| *other == own).count();
-    let Some(most) = each.iter().rev().max_by_key(|own| count(own)) else {
+    let count = |text: &String| each.iter().filter(|other| *other == text).count();
+    let Some(most) = each.iter().rev().max_by_key(|text| count(text)) else {
         return String::new();
     };
     if count(most) == each.len() {
         return most.clone();
     }
-    let said = std::iter::zip(names, &each).filter(|(_, own)| *own != most || count(most) == 1);
-    let mut said: Vec<String> = said.map(|(side, own)| format!("{side} {own}")).collect();
+    let said = std::iter::zip(names, &each).filter(|(_, text)| *text != most || count(most) == 1);
+    let mut said: Vec<String> = said.map(|(side, text)| format!("{side} {text}")).collect();
     if count(most) > 1 {
         said.push(format!("others {most}"));
     }

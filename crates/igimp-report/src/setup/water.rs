@@ -1,4 +1,4 @@
-//! Conditions of the water, and what the soil does with it, as tables.
+//! Conditions of the water, and the drainage of soil, as tables.
 
 use igimp_model::{Case, Drainage, Material, PoreSource, StageKind, WaterCondition};
 use igimp_results::summary::SetupTable;
@@ -12,7 +12,7 @@ const MOST_POINTS: usize = 12;
 /// The conditions of the water.
 pub(super) fn conditions<const D: usize>(case: &Case<D>) -> SetupTable {
     let rows = case.water.iter().enumerate();
-    let rows = rows.map(|(index, own)| condition(case, index, own));
+    let rows = rows.map(|(index, water)| condition(case, index, water));
     let header = [
         "Water",
         "Pore pressure",
@@ -23,17 +23,17 @@ pub(super) fn conditions<const D: usize>(case: &Case<D>) -> SetupTable {
     table("Water", &header, rows.collect())
 }
 
-fn condition<const D: usize>(case: &Case<D>, index: usize, own: &WaterCondition) -> Vec<String> {
-    let mut pressure = source::<D>(&own.source);
-    if own.carried {
+fn condition<const D: usize>(case: &Case<D>, index: usize, water: &WaterCondition) -> Vec<String> {
+    let mut pressure = source::<D>(&water.source);
+    if water.carried {
         pressure.push_str("; carried along by the soil");
     }
-    let bodies = own.bodies.iter();
+    let bodies = water.bodies.iter();
     let bodies: Vec<String> = bodies
-        .map(|(body, own)| format!("{}: {}", case.bodies[*body].name, source::<D>(own)))
+        .map(|(body, pores)| format!("{}: {}", case.bodies[*body].name, source::<D>(pores)))
         .collect();
     let calls = case.stages.iter().filter(
-        |stage| matches!(&stage.kind, StageKind::Construction(own) if own.water == Some(index)),
+        |stage| matches!(&stage.kind, StageKind::Construction(works) if works.water == Some(index)),
     );
     let start = (index == 0).then(|| "from the start".to_owned());
     let calls = calls.map(|stage| format!("from stage {} on", stage.name));
@@ -43,7 +43,7 @@ fn condition<const D: usize>(case: &Case<D>, index: usize, own: &WaterCondition)
         list => list.join("; "),
     };
     vec![
-        own.name.clone(),
+        water.name.clone(),
         pressure,
         or_none(&bodies),
         or_none(&force),
@@ -51,8 +51,8 @@ fn condition<const D: usize>(case: &Case<D>, index: usize, own: &WaterCondition)
     ]
 }
 
-fn source<const D: usize>(own: &PoreSource) -> String {
-    match own {
+fn source<const D: usize>(pores: &PoreSource) -> String {
+    match pores {
         PoreSource::Dry => "dry".to_owned(),
         PoreSource::Points(raster) => {
             let values = raster.values.iter().flatten().copied();
@@ -63,21 +63,21 @@ fn source<const D: usize>(own: &PoreSource) -> String {
                 raster.y.len()
             )
         }
-        PoreSource::Seepage(own) => {
-            let when = match &own.in_time {
-                Some(own) => format!("after {} s", short(own.time)),
+        PoreSource::Seepage(flow) => {
+            let when = match &flow.in_time {
+                Some(transient) => format!("after {} s", short(transient.time)),
                 None => "steady".to_owned(),
             };
-            let own = &own.conditions;
-            let kind = if own.confined {
+            let conditions = &flow.conditions;
+            let kind = if conditions.confined {
                 "confined flow"
             } else {
                 "flow with a free surface"
             };
             format!(
                 "computed: {kind}, {when}, {} conditions on faces, {} regions",
-                own.faces.len(),
-                own.regions.len()
+                conditions.faces.len(),
+                conditions.regions.len()
             )
         }
         PoreSource::Surface(terrain) => {
@@ -88,10 +88,10 @@ fn source<const D: usize>(own: &PoreSource) -> String {
                 short(upper[2])
             )
         }
-        PoreSource::Drained(own) => format!(
+        PoreSource::Drained(drained) => format!(
             "table level at z = {} m within the ground, along its surface, and at z = {} m outside",
-            short(own.inside()),
-            short(own.outside())
+            short(drained.inside()),
+            short(drained.outside())
         ),
         PoreSource::Ratio(ratio) => format!("r_u = {}", short(*ratio)),
         PoreSource::Table(points) => match points.as_slice() {
@@ -110,27 +110,24 @@ fn source<const D: usize>(own: &PoreSource) -> String {
 
 /// The drainage of the materials; empty without water and without soil that generates pore pressure.
 pub(super) fn soils<const D: usize>(case: &Case<D>) -> SetupTable {
-    let is_undrained = |own: &Material| matches!(own.drainage, Drainage::Undrained { .. });
-    let is_told = !case.water.is_empty() || case.materials.iter().any(is_undrained);
-    let soils = case.materials.iter().filter(|_| is_told);
-    let rows = soils.map(|own| {
-        let drainage = match own.drainage {
+    let is_undrained = |soil: &Material| matches!(soil.drainage, Drainage::Undrained { .. });
+    let is_shown = !case.water.is_empty() || case.materials.iter().any(is_undrained);
+    let soils = case.materials.iter().filter(|_| is_shown);
+    let rows = soils.map(|soil| {
+        let drainage = match soil.drainage {
             Drainage::Drained => "drained; strength by effective stress".to_owned(),
             Drainage::Undrained { stiffness, flows } => format!(
                 "{}; strength by effective stress, water of K_w/n = {}{}",
                 if flows { "coupled" } else { "undrained" },
                 kilo(stiffness.modulus, "Pa"),
-                own.permeability
+                soil.permeability
                     .filter(|_| flows)
-                    .map_or_else(String::new, |soil| format!(
-                        ", k = {} m/s",
-                        short(soil.along)
-                    ))
+                    .map_or_else(String::new, |k| format!(", k = {} m/s", short(k.along)))
             ),
             Drainage::Total => "strength by total stress".to_owned(),
         };
-        let saturated = own.saturated.unwrap_or(own.unit_weight);
-        vec![own.name.clone(), short(saturated / 1e3), drainage]
+        let saturated = soil.saturated.unwrap_or(soil.unit_weight);
+        vec![soil.name.clone(), short(saturated / 1e3), drainage]
     });
     let header = [
         "Material",

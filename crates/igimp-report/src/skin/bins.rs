@@ -9,7 +9,7 @@ const FEW: f64 = 0.002;
 /// Most bins by box.
 const MOST: usize = 4;
 
-/// Which boxes touch which bin. What lies beyond the bins is in the outermost ones.
+/// Which boxes touch which bin. Boxes beyond the bins are in the outermost ones.
 pub(super) struct Bins<'a> {
     boxes: Boxes<'a>,
     low: [f64; 3],
@@ -25,7 +25,7 @@ impl<'a> Bins<'a> {
     /// If there are not as many least as largest corners, or 2³² of them.
     pub(super) fn of(boxes: Boxes<'a>) -> Self {
         assert_eq!(boxes.low.len(), boxes.high.len(), "a box has two corners");
-        let own: Vec<usize> = (0..boxes.low.len())
+        let finite: Vec<usize> = (0..boxes.low.len())
             .filter(|&k| boxes.is_finite(k))
             .collect();
         let mut bins = Self {
@@ -36,32 +36,32 @@ impl<'a> Bins<'a> {
             starts: Vec::new(),
             members: Vec::new(),
         };
-        if !own.is_empty() {
+        if !finite.is_empty() {
             for axis in 0..3 {
-                bins.lay_out(axis, &own);
+                bins.lay_out(axis, &finite);
             }
         }
         // Bodies of many small parts far from each other: wider bins rather than many empty ones.
         let all = |count: [usize; 3]| count.map(|count| count as f64).iter().product::<f64>();
-        while all(bins.count) > (MOST * own.len() + 64) as f64 {
+        while all(bins.count) > (MOST * finite.len() + 64) as f64 {
             for axis in 0..3 {
                 bins.width[axis] *= 2.0;
                 bins.count[axis] = bins.count[axis].div_ceil(2);
             }
         }
-        bins.sort(&own);
+        bins.sort(&finite);
         bins
     }
 
-    fn lay_out(&mut self, axis: usize, own: &[usize]) {
+    fn lay_out(&mut self, axis: usize, finite: &[usize]) {
         let boxes = self.boxes;
-        let mut centres: Vec<f64> = own.iter().map(|&k| boxes.centre(k)[axis]).collect();
+        let mut centres: Vec<f64> = finite.iter().map(|&k| boxes.centre(k)[axis]).collect();
         let last = centres.len() - 1;
         let few = (FEW * last as f64) as usize;
         let mut at = |place: usize| *centres.select_nth_unstable_by(place, f64::total_cmp).1;
         let (low, high) = (at(few), at(last - few));
-        let widths = own.iter().map(|&k| 2.0 * boxes.half(k)[axis]);
-        let mean = widths.sum::<f64>() / own.len() as f64;
+        let widths = finite.iter().map(|&k| 2.0 * boxes.half(k)[axis]);
+        let mean = widths.sum::<f64>() / finite.len() as f64;
         let width = (WIDTH * mean).max(1e-9 * (high - low));
         if width > 0.0 {
             self.low[axis] = low - 0.5 * mean;
@@ -70,7 +70,7 @@ impl<'a> Bins<'a> {
         }
     }
 
-    /// Place of a coordinate among the bins of an axis; the cast takes what lies below to the first.
+    /// Place of a coordinate among the bins of an axis; the cast takes places below to the first.
     fn place(&self, axis: usize, x: f64) -> usize {
         let place = ((x - self.low[axis]) / self.width[axis]).floor() as usize;
         place.min(self.count[axis] - 1)
@@ -94,9 +94,9 @@ impl<'a> Bins<'a> {
         }
     }
 
-    fn sort(&mut self, own: &[usize]) {
+    fn sort(&mut self, finite: &[usize]) {
         let mut starts = vec![0_u32; self.count.iter().product::<usize>() + 1];
-        for &k in own {
+        for &k in finite {
             self.touched(k, |bin| starts[bin + 1] += 1);
         }
         for bin in 1..starts.len() {
@@ -104,7 +104,7 @@ impl<'a> Bins<'a> {
         }
         let mut next = starts.clone();
         let mut members = vec![0; starts.last().map_or(0, |&last| last as usize)];
-        for &k in own {
+        for &k in finite {
             let number = u32::try_from(k).expect("fewer than 2^32 boxes");
             self.touched(k, |bin| {
                 members[next[bin] as usize] = number;
@@ -114,29 +114,24 @@ impl<'a> Bins<'a> {
         (self.starts, self.members) = (starts, members);
     }
 
-    /// Whether a point lies in a box other than `own`.
-    pub(super) fn is_covered(&self, point: &[f64; 3], own: usize) -> bool {
-        let mut others = self.others(point, own);
+    /// Whether a point lies in a box other than `k`.
+    pub(super) fn is_covered(&self, point: &[f64; 3], k: usize) -> bool {
+        let mut others = self.others(point, k);
         others.any(|other| self.boxes.holds(other, point))
     }
 
-    /// Whether both ends of a diagonal lie in one box other than `own`, and so all that is between them;
+    /// Whether both ends of a diagonal lie in one box other than `k`, and so all that is between them;
     /// `middle` is halfway.
-    pub(super) fn is_within_one(
-        &self,
-        ends: &[[f64; 3]; 2],
-        middle: &[f64; 3],
-        own: usize,
-    ) -> bool {
-        let mut others = self.others(middle, own);
+    pub(super) fn is_within_one(&self, ends: &[[f64; 3]; 2], middle: &[f64; 3], k: usize) -> bool {
+        let mut others = self.others(middle, k);
         others.any(|other| ends.iter().all(|end| self.boxes.holds(other, end)))
     }
 
-    /// The boxes of the bin of a point other than `own`.
-    fn others(&self, point: &[f64; 3], own: usize) -> impl Iterator<Item = usize> {
+    /// The boxes of the bin of a point other than `k`.
+    fn others(&self, point: &[f64; 3], k: usize) -> impl Iterator<Item = usize> {
         let bin = self.bin([0, 1, 2].map(|axis| self.place(axis, point[axis])));
         let members = self.starts[bin] as usize..self.starts[bin + 1] as usize;
         let others = self.members[members].iter().map(|&other| other as usize);
-        others.filter(move |&other| other != own)
+        others.filter(move |&other| other != k)
     }
 }

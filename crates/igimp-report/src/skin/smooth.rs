@@ -78,14 +78,14 @@ pub(super) fn moves(boxes: Boxes<'_>, faces: &[u8], edges: &[Vec<Point>]) -> Vec
         std::array::from_fn(|corner| {
             let corner = corner as u8;
             let found = places.of_corner.get(&(k as u32, corner)).copied();
-            let own = boxes.corner(k, corner);
-            let place = found.or_else(|| places.nearest(&before, own, SAME * boxes.least_side(k)));
+            let x = boxes.corner(k, corner);
+            let place = found.or_else(|| places.nearest(&before, x, SAME * boxes.least_side(k)));
             let Some(place) = place else {
                 return [0; 3];
             };
             let at = places.all[place as usize].at;
             [0, 1, 2].map(|axis| {
-                let share = (at[axis] - own[axis]) / (boxes.high[k][axis] - boxes.low[k][axis]);
+                let share = (at[axis] - x[axis]) / (boxes.high[k][axis] - boxes.low[k][axis]);
                 (127.0 * share.clamp(-FURTHEST, FURTHEST)).round() as i8
             })
         })
@@ -115,10 +115,10 @@ impl Places {
         };
         for &k in seen {
             for face in (0..6).filter(|face| faces[k] & (1 << face) != 0) {
-                let own = corners_of(face).map(|corner| places.corner(boxes, k, corner));
-                for (j, &place) in own.iter().enumerate() {
+                let ring = corners_of(face).map(|corner| places.corner(boxes, k, corner));
+                for (j, &place) in ring.iter().enumerate() {
                     places.all[place as usize].across |= 1 << (face / 2);
-                    places.pairs.push([place, own[(j + 1) % 4]]);
+                    places.pairs.push([place, ring[(j + 1) % 4]]);
                 }
             }
         }
@@ -156,10 +156,10 @@ impl Places {
         let near = near.into_iter().filter(|place| off(place) <= reach);
         let nearest = near.min_by(|a, b| off(a).total_cmp(&off(b)));
         let place = nearest.unwrap_or_else(|| self.begin(at, side));
-        let own = &mut self.all[place as usize];
-        own.corners += 1.0;
+        let spot = &mut self.all[place as usize];
+        spot.corners += 1.0;
         // It stays in its bin, or close to it.
-        own.at = [0, 1, 2].map(|axis| own.at[axis] + (at[axis] - own.at[axis]) / own.corners);
+        spot.at = [0, 1, 2].map(|axis| spot.at[axis] + (at[axis] - spot.at[axis]) / spot.corners);
         self.of_corner.insert((k as u32, corner), place);
         place
     }
@@ -226,20 +226,20 @@ impl Places {
                 [0, 1, 2].map(|k| pick(ends[0][k], ends[1][k]) + more * ON_EDGE * self.width)
             };
             for place in self.near(&end(f64::min, -1.0), &end(f64::max, 1.0)) {
-                let own = &self.all[place as usize];
-                let foot = foot(ends[0], ends[1], own.at);
-                let off = distance(foot, own.at);
+                let spot = &self.all[place as usize];
+                let foot = foot(ends[0], ends[1], spot.at);
+                let off = distance(foot, spot.at);
                 let least = nearest
                     .get(&place)
-                    .map_or(ON_EDGE * own.side, |best| best.0);
+                    .map_or(ON_EDGE * spot.side, |best| best.0);
                 if off <= least {
                     nearest.insert(place, (off, foot));
                 }
             }
         }
         for (place, (_, foot)) in nearest {
-            let own = &mut self.all[place as usize];
-            (own.at, own.is_held) = (foot, true);
+            let spot = &mut self.all[place as usize];
+            (spot.at, spot.is_held) = (foot, true);
         }
     }
 
@@ -252,11 +252,11 @@ impl Places {
     fn move_to_means(&mut self) {
         let mut sums = vec![([0.0; 3], 0.0); self.all.len()];
         for &[a, b] in &self.pairs {
-            for [own, other] in [[a, b], [b, a]] {
-                let ends = self.all[own as usize].ends;
+            for [one, other] in [[a, b], [b, a]] {
+                let ends = self.all[one as usize].ends;
                 let other_ends = self.all[other as usize].ends;
                 if ends & !other_ends == 0 && (ends == 0 || !self.is_within_side(other)) {
-                    let (sum, count) = &mut sums[own as usize];
+                    let (sum, count) = &mut sums[one as usize];
                     for axis in 0..3 {
                         sum[axis] += self.all[other as usize].at[axis];
                     }
@@ -266,10 +266,9 @@ impl Places {
         }
         for (number, (sum, count)) in sums.into_iter().enumerate() {
             let moves = count > 0.0 && !self.is_within_side(number as u32);
-            let own = &mut self.all[number];
-            if moves && !own.is_held {
-                own.at =
-                    [0, 1, 2].map(|axis| own.at[axis] + SHARE * (sum[axis] / count - own.at[axis]));
+            let Place { at, is_held, .. } = &mut self.all[number];
+            if moves && !*is_held {
+                *at = [0, 1, 2].map(|axis| at[axis] + SHARE * (sum[axis] / count - at[axis]));
             }
         }
     }

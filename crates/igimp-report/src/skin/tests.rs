@@ -129,7 +129,7 @@ fn the_surface_points_outwards_and_knows_hollows() {
 }
 
 #[test]
-fn what_is_nowhere_is_not_seen_and_harms_nothing() {
+fn boxes_without_place_are_not_seen_and_harm_nothing() {
     let (mut low, mut high) = block([3; 3], |_| false);
     low.extend([[f64::NAN; 3], [1e9; 3]]);
     high.extend([[f64::NAN; 3], [1e9 + 1.0; 3]]);

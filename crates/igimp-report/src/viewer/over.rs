@@ -1,4 +1,4 @@
-//! What pages draw over the frames of a stage: water tables, free surfaces of seepage, and the slip line or surface.
+//! Lines and surfaces over the frames of a stage: water tables, free surfaces of seepage, and the slip line or surface.
 //!
 //! Lines in the plane, rasters in space. `igimp view` and the frames of a report take them from here.
 
@@ -34,7 +34,7 @@ pub enum Surface {
     },
 }
 
-/// What is drawn over the frames of a stage.
+/// Lines and surfaces over the frames of a stage.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Over {
     /// The water at the end of the stage.
@@ -43,7 +43,7 @@ pub struct Over {
     pub slip: Option<Surface>,
 }
 
-/// What is drawn over the frames of every stage of a case, by the tables of its results folder as far as these are there.
+/// Lines and surfaces over the frames of every stage of a case, by the tables of its results folder as far as these are there.
 pub fn by_stage<const D: usize>(case: &Case<D>, folder: &Path) -> Vec<Over> {
     let Ok(root) = fs::canonicalize(folder) else {
         return vec![Over::default(); case.stages.len()];
@@ -83,7 +83,7 @@ fn tables<const D: usize>(case: &Case<D>, stage: usize) -> Vec<Surface> {
     if let Some(case) = in_plane::<Case<D>, Case<2>>(case) {
         let ends = [case.grid.lower()[0], case.grid.upper()[0]];
         let tables = tables_after(case, stage, ends).into_iter();
-        return tables.map(|own| Surface::Line(own.points)).collect();
+        return tables.map(|line| Surface::Line(line.points)).collect();
     }
     in_plane::<Case<D>, Case<3>>(case).map_or_else(Vec::new, |case| rasters(case, stage))
 }
@@ -91,13 +91,13 @@ fn tables<const D: usize>(case: &Case<D>, stage: usize) -> Vec<Surface> {
 /// The free surface of the flow at the end of a stage, by its table, and the free water that stands over the ground.
 fn free_surface<const D: usize>(case: &Case<D>, stage: usize, root: &Path) -> Vec<Surface> {
     let condition = case.water_after(stage);
-    let Some((condition, own)) = condition.and_then(|k| Some((k, case.water.get(k)?))) else {
+    let Some((condition, water)) = condition.and_then(|k| Some((k, case.water.get(k)?))) else {
         return Vec::new();
     };
-    let PoreSource::Seepage(flow) = &own.source else {
+    let PoreSource::Seepage(flow) = &water.source else {
         return Vec::new();
     };
-    let name = file_name(&format!("seepage-{}", own.name));
+    let name = file_name(&format!("seepage-{}", water.name));
     let ground = Ground::new(case, condition, flow);
     let rows = table(root, "sections", &name).unwrap_or_default();
     let rows: Vec<([f64; D], Option<f64>)> = (rows.iter())
@@ -129,7 +129,7 @@ fn over_lines<const D: usize>(rows: &[([f64; D], Option<f64>)]) -> Surface {
     let (x, y) = (along(0), along(1));
     let mut z = vec![vec![None; x.len()]; y.len()];
     for (row, level) in rows {
-        let of = |places: &[f64], at: f64| places.partition_point(|&own| own < at);
+        let of = |places: &[f64], at: f64| places.partition_point(|&place| place < at);
         z[of(&y, row[1])][of(&x, row[0])] = *level;
     }
     Surface::Raster { x, y, z }
@@ -141,7 +141,7 @@ struct Ground<'c, const D: usize> {
     flow: &'c SeepageCase,
     lower: [f64; D],
     upper: [f64; D],
-    /// What is taken for round-off \[m\].
+    /// A length that is taken for round-off \[m\].
     reach: f64,
 }
 
@@ -178,7 +178,7 @@ impl<'c, const D: usize> Ground<'c, D> {
     /// The level of the free water over a place on the ground \[m\].
     fn free_water(&self, place: &[f64; D]) -> Option<f64> {
         let table = self.flow.free_water.as_ref();
-        if let Some(level) = table.and_then(|own| own.table(place)) {
+        if let Some(level) = table.and_then(|source| source.table(place)) {
             return Some(level);
         }
         // Of several boxes that hold a face the last counts.
@@ -192,7 +192,7 @@ impl<'c, const D: usize> Ground<'c, D> {
             return None;
         };
         let moment = self.flow.in_time.as_ref();
-        let history = moment.and_then(|own| Some(own.histories.get(last)?.as_ref()?.at(own.time)));
+        let history = moment.and_then(|m| Some(m.histories.get(last)?.as_ref()?.at(m.time)));
         Some(history.unwrap_or(head))
     }
 }
@@ -203,11 +203,11 @@ fn rasters(case: &Case<3>, stage: usize) -> Vec<Surface> {
         return Vec::new();
     };
     let there = case.bodies_after(stage);
-    let own = condition.bodies.iter().filter(|(body, _)| there[*body]);
-    let own = own.map(|(body, source)| (source, case.bodies[*body].region.bounds()));
+    let local = condition.bodies.iter().filter(|(body, _)| there[*body]);
+    let local = local.map(|(body, source)| (source, case.bodies[*body].region.bounds()));
     let plan = (case.grid.lower(), case.grid.upper());
     std::iter::once((&condition.source, plan))
-        .chain(own)
+        .chain(local)
         .filter_map(|(source, plan)| raster(source, plan))
         .collect()
 }

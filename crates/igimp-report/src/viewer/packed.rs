@@ -65,7 +65,7 @@ struct Packed {
     count: usize,
     /// Places of the planes along which the body can be cut, by axis \[m\]; null where any will do.
     planes: Option<[Vec<f64>; 3]>,
-    /// Places of what is shown.
+    /// Places of the cells that are shown.
     places: Vec<Array>,
     /// Fields of the particles.
     fields: Vec<Array>,
@@ -80,7 +80,7 @@ struct Array {
     whole: bool,
     /// `f32`, `i32`, `u16` or `u8`.
     kind: &'static str,
-    /// By component: a number is low + step · what stands there.
+    /// By component: a number is low + step · the stored one.
     low: Vec<f64>,
     step: Vec<f64>,
     /// By component, and of three for their length too: least, largest, and the same without the outermost
@@ -266,7 +266,7 @@ fn lines<const D: usize>(
 
 /// Whole numbers.
 fn whole(name: &str, numbers: impl Iterator<Item = usize>) -> Array {
-    let bytes: Vec<u8> = numbers.flat_map(|own| (own as i32).to_le_bytes()).collect();
+    let bytes: Vec<u8> = numbers.flat_map(|n| (n as i32).to_le_bytes()).collect();
     let array = array(name, 1, "i32", &bytes);
     Array {
         whole: true,
@@ -292,8 +292,8 @@ fn thinned(boxes: Boxes<'_>, skin: &Skin, most: usize) -> (Vec<u32>, Option<[Vec
             (0..3).any(|axis| {
                 let (low, high) = (boxes.low[k][axis], boxes.high[k][axis]);
                 let more = CRACK * (high - low);
-                let own = low - more..=high + more;
-                planes[axis].iter().any(|plane| own.contains(plane))
+                let span = low - more..=high + more;
+                planes[axis].iter().any(|plane| span.contains(plane))
             })
         };
         (0..skin.faces.len())
@@ -320,8 +320,8 @@ fn bytes_of(lie: Lie) -> [u8; 4] {
 }
 
 fn position(name: &str, corners: &[[f64; 3]], kept: &[u32], all: Boxes<'_>, keep: Keep) -> Array {
-    let own = kept.iter().flat_map(|&k| corners[k as usize]);
-    let numbers: Vec<f64> = own.collect();
+    let places = kept.iter().flat_map(|&k| corners[k as usize]);
+    let numbers: Vec<f64> = places.collect();
     if !keep.rounded {
         return exact(name, 3, &numbers);
     }
@@ -354,19 +354,22 @@ fn of_field(field: &Stored<'_>, cells: usize, kept: &[u32], keep: Keep) -> Optio
         let lengths = numbers.as_chunks::<3>().0.iter().map(length);
         range.push(range_of(lengths.collect()));
     }
-    let own: Vec<f64> = kept
+    let values: Vec<f64> = kept
         .iter()
         .flat_map(|&k| &numbers[components * k as usize..][..components])
         .copied()
         .collect();
     let mut array = if field.is_whole() {
-        let bytes: Vec<u8> = own.iter().flat_map(|&x| (x as i32).to_le_bytes()).collect();
+        let bytes: Vec<u8> = values
+            .iter()
+            .flat_map(|&x| (x as i32).to_le_bytes())
+            .collect();
         array(&field.name, components, "i32", &bytes)
     } else if keep.rounded {
-        let ends: Vec<[f64; 2]> = range.iter().map(|own| [own[0], own[1]]).collect();
-        rounded(&field.name, &own, &ends[..components])
+        let ends: Vec<[f64; 2]> = range.iter().map(|&[a, b, ..]| [a, b]).collect();
+        rounded(&field.name, &values, &ends[..components])
     } else {
-        exact(&field.name, components, &own)
+        exact(&field.name, components, &values)
     };
     array.component_names.clone_from(&field.component_names);
     array.whole = field.is_whole();
@@ -385,7 +388,7 @@ fn range_of(mut values: Vec<f64>) -> [f64; 4] {
         .map(|place| *values.select_nth_unstable_by(place, f64::total_cmp).1)
 }
 
-/// Single precision, which is exact enough for what is read off a picture; places far from zero are told from
+/// Single precision, which is exact enough for numbers that are read off a picture; places far from zero count from
 /// the first one on.
 fn exact(name: &str, components: usize, numbers: &[f64]) -> Array {
     let low: Vec<f64> = match numbers.first_chunk::<3>() {
@@ -416,7 +419,7 @@ fn rounded(name: &str, numbers: &[f64], ends: &[[f64; 2]]) -> Array {
         })
         .collect();
     let mut array = array(name, ends.len(), "u16", &bytes);
-    array.low = ends.iter().map(|own| own[0]).collect();
+    array.low = ends.iter().map(|end| end[0]).collect();
     array.step = steps;
     array
 }

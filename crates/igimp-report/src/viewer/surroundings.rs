@@ -1,4 +1,4 @@
-//! What a case knows of its frames that the frames do not: where its bodies end, and its water.
+//! Data of a case that its frames do not hold: the edges of its bodies, and its water.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -23,14 +23,14 @@ impl Bodies {
     /// The bodies of a case; none where they cannot be seeded.
     pub fn of<const D: usize>(case: &Case<D>) -> Option<Self> {
         if let Some(case) = in_plane::<Case<D>, Case<2>>(case) {
-            return Pieces::of(case).ok().map(|own| Self::Plane(Arc::new(own)));
+            return Pieces::of(case).ok().map(Arc::new).map(Self::Plane);
         }
         let case = in_plane::<Case<D>, Case<3>>(case)?;
         Outlines::of(case).ok().map(Self::Space)
     }
 }
 
-/// What the frames of a report are drawn with.
+/// Bodies, stages and water that the frames of a report are drawn with.
 #[derive(Clone, Debug, Default)]
 pub struct Surroundings {
     pub(super) bodies: Option<Bodies>,
@@ -43,7 +43,7 @@ impl Surroundings {
     /// are no frames.
     pub fn of<const D: usize>(case: &Case<D>, folder: &Path, pieces: Option<Arc<Pieces>>) -> Self {
         let frames = pvd::frames(&folder.join("paraview"), pvd::PARTICLES);
-        if frames.is_none_or(|own| own.is_empty()) {
+        if frames.is_none_or(|found| found.is_empty()) {
             return Self::default();
         }
         Self {

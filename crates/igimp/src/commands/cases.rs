@@ -19,15 +19,15 @@ pub(crate) fn explain(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
 pub(crate) fn check(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
     let file = read(&arguments.case, &arguments.settings())?;
     output::warn(&file.warnings());
-    let told = in_any_dimension!(file.any_case(), case => size(case, &arguments.case))?;
-    output::print(&told.text)?;
+    let size = in_any_dimension!(file.any_case(), case => size(case, &arguments.case))?;
+    output::print(&size.text)?;
     Ok(Exit::Done)
 }
 
 /// The name of a case that comes from standard input.
 const STANDARD_INPUT: &str = "-";
 
-/// Reads a case file; a sweep file is named as what it is.
+/// Reads a case file; a sweep file is named as one.
 pub(crate) fn read(path: &std::path::Path, set: &[String]) -> Result<CaseFile, ProgramError> {
     if path == std::path::Path::new(STANDARD_INPUT) {
         return Ok(CaseFile::read_from("stdin", std::io::stdin(), set)?);

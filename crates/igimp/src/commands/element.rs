@@ -70,7 +70,7 @@ pub(crate) fn data(
 ) -> Result<Data, ProgramError> {
     let law = (material.law()).map_err(|error| refused(&TestError::Material(error)))?;
     let variables: Vec<&str> = (law.internal_variables().iter())
-        .map(|own| own.name)
+        .map(|variable| variable.name)
         .collect();
     read_data(path, drive, &variables).map_err(|error| unread(&error))
 }

@@ -35,7 +35,7 @@ pub(crate) fn film(arguments: &FilmArguments) -> Result<Exit, ProgramError> {
         path: path.clone(),
         source,
     })?;
-    output::print(&told(&path, &made))?;
+    output::print(&summary(&path, &made))?;
     Ok(Exit::Done)
 }
 
@@ -79,7 +79,7 @@ fn stage(arguments: &FilmArguments, case: &Case<2>) -> Result<Option<usize>, Pro
 }
 
 /// File, frames, time and size of a film.
-fn told(path: &Path, film: &Film) -> String {
+fn summary(path: &Path, film: &Film) -> String {
     let pace = film
         .pace
         .map_or_else(String::new, |pace| format!(", pace {}", short(pace)));

@@ -42,15 +42,15 @@ pub(crate) fn run(
     let folder = case.output().folder.clone();
     in_any_dimension!(&case, case => refuse_beyond(case))?;
     output::writable(&folder)?;
-    // A run that goes on makes a part of the steps only, and nobody knows what a given solver needs.
+    // A run that goes on makes a part of the steps only, and nobody knows the needs of a given solver.
     let expectation = match start {
         Start::Afresh if given.is_none() => {
             in_any_dimension!(&case, case => Expectation::of(case)).ok()
         }
         Start::Afresh | Start::Resume | Start::FromStage(_) => None,
     };
-    let told = expectation.as_ref();
-    if let Some(lack) = told.and_then(|told| lacks_memory(told.bytes, told.most_bytes)) {
+    let need = expectation.as_ref();
+    if let Some(lack) = need.and_then(|need| lacks_memory(need.bytes, need.most_bytes)) {
         output::print_message(&format!("warning: {lack}"));
     }
     let target = Target {
@@ -183,7 +183,7 @@ fn tell(
         Some(_) => Exit::NotConverged,
         None => ending.into(),
     };
-    // Of what went wrong on several meshes the worst counts; what the system refused is told apart.
+    // Of faults on several meshes the worst counts; refusals of the system are apart.
     for error in &run.lost {
         output::print_message(&igimp_cases::chain(error));
         exit = exit.max(crate::error::of_error(error));

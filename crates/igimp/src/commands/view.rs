@@ -1,10 +1,10 @@
 //! `igimp view`: a results folder in the browser, by a small server on the loopback address.
 //!
-//! A folder that has a page and no run, such as that of `igimp element`, needs no server: its page is opened.
+//! A folder that has a page and no run, as that of `igimp element`, needs no server: its page is opened.
 //!
 //! The address holds a random port and a random token. Nothing is ever written, nothing but the page
-//! and the tables and frames of the folder is given away, and that only to who knows the token and
-//! asks this computer by its own name.
+//! and the tables and frames of the folder is given away, and that only to clients that know the token and
+//! ask this computer by its own name.
 
 mod browser;
 mod http;

@@ -126,7 +126,7 @@ pub(crate) fn can_import(packages: &str) -> bool {
     found
 }
 
-/// Runs a block of Python; what is wrong with it.
+/// Runs a block of Python; its fault.
 fn try_python(folder: &Path, block: &Block) -> Option<String> {
     if !can_import(block.mark("needs:").unwrap_or("sys")) {
         return None;
@@ -136,8 +136,8 @@ fn try_python(folder: &Path, block: &Block) -> Option<String> {
     (!output.status.success()).then(|| said(&output))
 }
 
-/// Runs the commands of a page, one after the other in one folder; how many there are, and what is
-/// wrong.
+/// Runs the commands of a page, one after the other in one folder; their number, and their
+/// faults.
 fn try_page(page: &Path) -> (usize, String) {
     let name = page.file_stem().unwrap().to_string_lossy().into_owned();
     let folder = folder(&name);

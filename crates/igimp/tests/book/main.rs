@@ -1,8 +1,8 @@
-//! GOAL: the guide says what the program does. Commands on its pages run and end with the code that
+//! GOAL: the guide describes the program as it is. Commands on its pages run and end with the code that
 //! the page says; messages, tables and lists are those of the program; the recipe in Python works.
 //! ORACLE: the program itself, and numpy and pandas where they are installed.
 //!
-//! A page says what is tried of it in comments that readers do not see, before a block:
+//! Comments that readers do not see say how a block is tried, before it:
 //!
 //! | comment | meaning |
 //! |---|---|
@@ -16,7 +16,7 @@
 //! | `file: NAME` | the block is written to this file before the next commands run |
 //! | `from: NAME.toml` | its lines are those of a shipped case, comments aside |
 //! | `added to: NAME.toml` | behind a shipped case it makes a valid one |
-//! | `gives` | what the commands before print; a line `...` stands for any lines |
+//! | `gives` | output of the commands before; a line `...` stands for any lines |
 //! | `gives like` | the same, whatever the numbers are: those on the page are of the full grid |
 //! | `NAME.toml: FROM => TO` | the message for a shipped case with this change |
 //! | `NAME.toml: --set SETTING` | the message for a shipped case with this setting |
@@ -27,7 +27,7 @@
 //! run by `tests/shipped` of `igimp-cases`. A block of Python runs in the folder of its page. `coverage.rs` sees to it
 //! that no block of any page is left out.
 //!
-//! Messages and what is generated are written anew with `INSTA_UPDATE=always`, like snapshots.
+//! Messages and generated parts are written anew with `INSTA_UPDATE=always`, like snapshots.
 
 mod commands;
 mod coverage;
@@ -43,7 +43,7 @@ use igimp_schema::reference_markdown;
 
 use crate::page::{blocks, comment, hold, pages, root};
 
-/// What the program says of a shipped case with changes, if the marks ask for it.
+/// The message of the program on a shipped case with changes, if the marks ask for it.
 fn message(marks: &[String]) -> Option<String> {
     let mut case: Option<(&str, String)> = None;
     let mut settings = Vec::new();
@@ -164,15 +164,15 @@ fn generated_parts_are_those_of_the_program() {
         let mut inside = false;
         for line in text.lines() {
             let mark = comment(line);
-            let what = mark
+            let name = mark
                 .as_deref()
                 .and_then(|mark| mark.strip_prefix("generated: "));
-            inside &= what != Some("end");
+            inside &= name != Some("end");
             if !inside {
                 should_be += line;
                 should_be.push('\n');
             }
-            let part = match what {
+            let part = match name {
                 Some("reference") => reference_markdown(),
                 Some("templates") => templates(),
                 None | Some("end") => continue,

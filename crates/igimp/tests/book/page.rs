@@ -74,7 +74,7 @@ pub(crate) fn blocks(text: &str) -> Vec<Block> {
     blocks
 }
 
-/// Holds a page against what it should be, or writes it anew.
+/// Holds a page against the text that it should be, or writes it anew.
 pub(crate) fn hold(page: &Path, text: &str, should_be: &str) {
     if text == should_be {
         return;

@@ -1,4 +1,4 @@
-//! What the guide says of a results folder, held against one.
+//! The guide's description of a results folder, held against one.
 
 use std::fs;
 use std::path::{Path, PathBuf};

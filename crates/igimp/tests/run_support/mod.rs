@@ -18,7 +18,7 @@ const SETTINGS: [&str; 5] = [
     "output.report=false",
 ];
 
-/// What depends on the computer and the hour.
+/// Keys that depend on the computer and the hour.
 const TIMES: [&str; 7] = [
     "date",
     "seconds",
@@ -61,7 +61,7 @@ impl Folder {
         command
     }
 
-    /// Runs to the end and returns the exit code with what was said.
+    /// Runs to the end and returns the exit code with the output.
     pub(crate) fn end(&self, out: &str, more: &[&str]) -> (Option<i32>, String) {
         let output = self.run(out, more).output().unwrap();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -76,8 +76,8 @@ impl Folder {
     }
 
     /// Every file of a results folder by its path there: tables, pictures, frames, the arrays of the
-    /// ends of stages, and the summary without its times. What is saved within a stage is not there:
-    /// it depends on where a run was taken up; nor is what says whose the folder is, as seen from it.
+    /// ends of stages, and the summary without its times. Files saved within a stage are not there:
+    /// they depend on where a run was taken up. Nor is the file that says whose the folder is.
     pub(crate) fn everything(&self, out: &str) -> BTreeMap<PathBuf, Vec<u8>> {
         let root = self.0.join(out);
         let mut files = BTreeMap::new();

@@ -40,7 +40,7 @@ fn a_killed_worker_of_hyperqueue_loses_nothing() {
     let text = said(&output);
     assert_eq!(output.status.code(), Some(0), "{text}");
     assert!(text.contains("killed the worker of task 2"), "{text}");
-    // What the second begin did stands in the task's own log: it replaced that of the first.
+    // The output of the second begin stands in the task's own log: it replaced that of the first.
     let log = std::fs::read_to_string(study.path("out/hyperqueue-2.out")).unwrap();
     assert!(log.contains("push"), "{log}");
     let output = study.igimp(&["sweep", "study.toml", "--to", "hyperqueue"]);

@@ -7,7 +7,7 @@
 //!
 //! | test | needs |
 //! |---|---|
-//! | `hyperqueue.rs` | a Python that can import `hyperqueue`: `python3`, or what `IGIMP_HYPERQUEUE` names |
+//! | `hyperqueue.rs` | a Python that can import `hyperqueue`: `python3`, or the one that `IGIMP_HYPERQUEUE` names |
 //! | `slurm.rs` | `IGIMP_SLURM=1`; `slurmctld`, `slurmd`, `sbatch` and `munged` (four minutes); for tasks of several ranks `IGIMP_MPI`, the folder of igimp-mpi |
 
 #![cfg(unix)]

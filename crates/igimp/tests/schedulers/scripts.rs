@@ -1,4 +1,4 @@
-//! What `--to` writes and says.
+//! Scripts and messages of `--to`.
 
 use std::fs;
 
@@ -45,7 +45,7 @@ fn without_estimates(text: &str) -> String {
 }
 
 #[test]
-fn a_script_of_slurm_holds_what_is_left() {
+fn a_script_of_slurm_holds_the_rest() {
     let study = Study::new("to slurm", [40, 40, 40, 40]);
     let output = study.igimp(&["run", "study.toml", "--task", "3", "--quiet"]);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
@@ -81,7 +81,7 @@ fn a_script_of_slurm_starts_several_ranks() {
 }
 
 #[test]
-fn a_job_file_of_hyperqueue_holds_what_is_left() {
+fn a_job_file_of_hyperqueue_holds_the_rest() {
     let study = Study::new("to-hq", [40, 40, 40, 40]);
     let words = [
         "sweep",

@@ -1,5 +1,5 @@
 //! A real Slurm of one node, started for a test on the loopback: an array job, one task of it killed, one stopped by
-//! its time limit, and what is left submitted again. Tasks of several ranks in the same way, one rank of them killed.
+//! its time limit, and the rest submitted again. Tasks of several ranks in the same way, one rank of them killed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ struct Slurm {
 }
 
 impl Slurm {
-    /// A Slurm, if one is asked for and there; `needs` says what for.
+    /// A Slurm, if one is asked for and there; `needs` says why.
     fn asked_for(needs: &str) -> Option<Self> {
         let programs = ["slurmctld", "slurmd", "sbatch", "munged"];
         let is_asked = std::env::var_os("IGIMP_SLURM").is_some();
@@ -169,7 +169,7 @@ fn an_array_of_slurm_loses_nothing() {
         text.starts_with("2 of 4 tasks are not done: 2,4\n"),
         "{text}"
     );
-    // Submitted twice by mistake: what is begun twice is computed once.
+    // Submitted twice by mistake: tasks begun twice are computed once.
     let jobs = [slurm.submit(&study, &[]), slurm.submit(&study, &[])];
     slurm.wait_until_empty();
     for job in &jobs {
@@ -215,7 +215,7 @@ fn tasks_of_several_ranks_lose_nothing() {
         .status();
     assert!(killed.unwrap().success());
     study.wait_for_push(4);
-    // What Slurm does to the ranks before their time is up.
+    // The signal of Slurm to the ranks before their time is up.
     let asked = slurm.says(&["scancel", "--signal=TERM", &format!("{job}_4")]);
     assert_eq!(asked, "");
     slurm.wait_until_empty();
@@ -238,7 +238,7 @@ fn tasks_of_several_ranks_lose_nothing() {
     assert_eq!([2, 4].map(|task| study.first_stage_of(task)), first_stages);
     let alone = Study::left_alone("slurm-ranks-alone", steps);
     for task in 1..=4 {
-        let [own, other] = [&study, &alone].map(|study| end_of_monitor(study, task));
-        assert!((own / other - 1.0).abs() < 1e-9, "{task}: {own} {other}");
+        let [a, b] = [&study, &alone].map(|study| end_of_monitor(study, task));
+        assert!((a / b - 1.0).abs() < 1e-9, "{task}: {a} {b}");
     }
 }

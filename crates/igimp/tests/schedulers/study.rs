@@ -1,4 +1,4 @@
-//! A study whose tasks take seconds, and what is asked of it.
+//! A study whose tasks take seconds, and questions to it.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -115,14 +115,14 @@ impl Study {
         let output = self.igimp(&["collect", "study.toml"]);
         assert_eq!(output.status.code(), Some(0), "{}", said(&output));
         for task in 1..=4 {
-            let [own, others] = [self, other].map(|study| study.results(task));
-            assert!(own.contains_key(Path::new("convergence.csv")));
-            let differ = differing(&own, &others);
+            let [found, others] = [self, other].map(|study| study.results(task));
+            assert!(found.contains_key(Path::new("convergence.csv")));
+            let differ = differing(&found, &others);
             assert_eq!(differ, Vec::<PathBuf>::new(), "task {task}");
         }
-        let [own, others] =
+        let [table, expected] =
             [self, other].map(|study| fs::read(study.path("out/results.csv")).unwrap());
-        assert_eq!(own, others);
+        assert_eq!(table, expected);
     }
 
     fn results(&self, task: usize) -> BTreeMap<PathBuf, Vec<u8>> {
@@ -131,10 +131,10 @@ impl Study {
 }
 
 /// Waits for something that comes within minutes.
-pub(crate) fn wait(what: &str, mut come: impl FnMut() -> bool) {
+pub(crate) fn wait(event: &str, mut come: impl FnMut() -> bool) {
     let clock = Instant::now();
     while !come() {
-        assert!(clock.elapsed() < Duration::from_secs(LONGEST), "no {what}");
+        assert!(clock.elapsed() < Duration::from_secs(LONGEST), "no {event}");
         std::thread::sleep(Duration::from_millis(50));
     }
 }

@@ -60,9 +60,9 @@ fn a_task_that_is_begun_twice_is_computed_once() {
     study.is_as(&reference);
 }
 
-/// Whoever waits for another can be told to end, and so can the other: both end in good order.
+/// A run that waits for another can be stopped, and so can the other: both end in good order.
 #[test]
-fn who_waits_can_be_stopped() {
+fn a_waiting_run_can_be_stopped() {
     let study = Study::new("turns-stopped", [40, 200_000, 40, 40]);
     let mut first = begun(&study);
     study.wait_for_push(2);

@@ -1,4 +1,4 @@
-//! Pages of folders that are none of a run: what a reader of the page of a test sees, and how it is opened.
+//! Pages of folders that are none of a run: the page of a test as a reader sees it, and how it is opened.
 
 use std::process::Output;
 
@@ -23,8 +23,8 @@ fn tested(name: &str, words: &[&str], expected: i32) -> (Folder, String) {
     std::fs::write(folder.0.join("data.csv"), MEASURED).unwrap();
     let path = "stress_xx [kPa],stress_yy [kPa]\n200,200\n200,2000\n";
     std::fs::write(folder.0.join("path.csv"), path).unwrap();
-    let own = ["element", "sand.toml", "--out", "test"];
-    let output = folder.igimp(&[&own, words].concat());
+    let base = ["element", "sand.toml", "--out", "test"];
+    let output = folder.igimp(&[&base, words].concat());
     assert_eq!(said(&output).0, expected, "{:?}", said(&output));
     let page = std::fs::read_to_string(folder.0.join("test/report.html")).unwrap();
     (folder, page)
@@ -101,9 +101,9 @@ fn a_triaxial_test_has_a_page_with_its_data() {
     }
 }
 
-/// GOAL: a path that soil cannot bear is told at the head of the page, with its legs. ORACLE: the path as it was written.
+/// GOAL: a path that soil cannot bear is named at the head of the page, with its legs. ORACLE: the path as it was written.
 #[test]
-fn a_path_that_ends_early_is_told_on_its_page() {
+fn a_path_that_ends_early_is_noted_on_its_page() {
     let (_folder, page) = tested("element-early", &["--path", "path.csv"], 3);
     for part in [
         "<span class=\"mark fair\">Ended early</span>",
@@ -120,7 +120,7 @@ fn a_path_that_ends_early_is_told_on_its_page() {
     );
 }
 
-/// GOAL: what was warned of on the terminal stands on the page. ORACLE: the same words.
+/// GOAL: the warnings of the terminal stand on the page. ORACLE: the same words.
 #[test]
 fn warnings_stand_on_the_page() {
     let words = ["--set", "materials.sand.cohesion=0 kPa"];
@@ -134,7 +134,7 @@ fn warnings_stand_on_the_page() {
     }
 }
 
-/// GOAL: data that are none leave no page, and are told with file, line and column. ORACLE: the file as it was written.
+/// GOAL: data that are none leave no page, and are named with file, line and column. ORACLE: the file as it was written.
 #[test]
 fn data_that_are_none_make_no_page() {
     let folder = Folder::new("element-bad");
@@ -169,7 +169,7 @@ fn the_view_opens_the_page_of_a_test() {
     );
 }
 
-/// GOAL: undrained soil whose friction softens ends on what is left of it. ORACLE: with ψ = 0 and the volume kept p stays at 100 kPa, and
+/// GOAL: undrained soil whose friction softens ends on its residual. ORACLE: with ψ = 0 and the volume kept p stays at 100 kPa, and
 /// q = 6 (p sin φ + c cos φ)/(3 − sin φ) with the residual φ of 24°. BAND: the four digits that are printed.
 #[test]
 fn undrained_soil_ends_on_the_friction_that_is_left() {

@@ -1,4 +1,4 @@
-//! GOAL: what the page computes to draw: contours of the plane and of space, and the edges of rigid bodies.
+//! GOAL: the geometry that the page computes to draw: contours of the plane and of space, and the edges of rigid bodies.
 //! ORACLE: fields whose contours are known, run through the scripts of the page in a browser.
 
 use igimp_report::viewer;

@@ -1,4 +1,4 @@
-//! GOAL: what stands over the soil of the plane: water, mechanisms, contours, outlines.
+//! GOAL: overlays of the soil of the plane: water, mechanisms, contours, outlines.
 //! ORACLE: the case, and the tables of the run.
 
 use crate::support::{BLOCK, View, attribute, browser, dumped, looked_at, results_of};
@@ -29,8 +29,8 @@ fn a_search_opens_on_its_mechanism() {
     // The slip line has the points of its table, where there is one.
     let lines = std::fs::read_dir(folder.0.join("results/slip_lines"));
     let lines = lines.into_iter().flatten().flatten();
-    let rows = |own: std::fs::DirEntry| {
-        let text = std::fs::read_to_string(own.path()).unwrap();
+    let rows = |entry: std::fs::DirEntry| {
+        let text = std::fs::read_to_string(entry.path()).unwrap();
         text.lines().count() - 1
     };
     let points: usize = lines.map(rows).sum();
@@ -78,7 +78,7 @@ fn contours_and_outlines_are_chosen() {
     let look = |more: &str| looked_at(browser, &folder, &view, &format!("{field}{more}"));
     let page = look("&contours=values");
     let levels = attribute(&page, "canvas", "data-contour-levels");
-    let levels: Vec<f64> = levels.split(' ').map(|own| own.parse().unwrap()).collect();
+    let levels: Vec<f64> = levels.split(' ').map(|v| v.parse().unwrap()).collect();
     assert!(levels.len() > 3, "{levels:?}");
     let lines: usize = attribute(&page, "canvas", "data-contours").parse().unwrap();
     assert_eq!(lines, levels.len());
@@ -86,7 +86,7 @@ fn contours_and_outlines_are_chosen() {
     assert!(
         levels
             .iter()
-            .all(|own| (-36e3..0.0).contains(own) && own % 1e3 == 0.0)
+            .all(|level| (-36e3..0.0).contains(level) && level % 1e3 == 0.0)
     );
     let labels: usize = attribute(&page, "canvas", "data-contour-labels")
         .parse()

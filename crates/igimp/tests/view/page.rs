@@ -277,7 +277,7 @@ fn a_section_is_drawn_by_hand() {
     assert!(page.contains("sigma yy [kPa], tension + along A–B, from (1.1, 1.7) to (1.1, 0.3) m"));
 }
 
-/// GOAL: two runs stand side by side, each with its own files, and what is chosen in the first is chosen in the second.
+/// GOAL: two runs stand side by side, each with its own files, and choices in the first count in the second.
 /// ORACLE: the third of four frames, of both; the colours go as far as the softer run, which moves twice as much.
 #[test]
 fn two_runs_stand_side_by_side() {
@@ -317,7 +317,7 @@ fn two_runs_stand_side_by_side() {
     let scale = |run: u32| -> Vec<f64> {
         let (_, text) = page.split_once(&format!("data-scale{run}=\"")).unwrap();
         let (text, _) = text.split_once('"').unwrap();
-        text.split(' ').map(|own| own.parse().unwrap()).collect()
+        text.split(' ').map(|part| part.parse().unwrap()).collect()
     };
     assert_eq!(scale(1), scale(2));
     // The middle of the highest particle, of the four levels to a metre: γ (H z − z²/2) / E.

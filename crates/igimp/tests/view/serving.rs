@@ -25,7 +25,7 @@ fn a_run_is_a_film_without_a_key() {
             let name = name.replace("paraview/", "packed/paraview/");
             assert_eq!(view.get(&name).0, 200, "{name}");
         }
-        let when = |own: &serde_json::Value| own["when"].as_str().unwrap().to_owned();
+        let when = |frame: &serde_json::Value| frame["when"].as_str().unwrap().to_owned();
         frames.values().map(when).collect()
     };
     let steps: Vec<String> = (1..=12).map(|step| format!("step {step}")).collect();
@@ -130,7 +130,7 @@ const NOT_SHOWN: [&str; 24] = [
     "%",
 ];
 
-/// GOAL: no way leads to anything but the files that are shown; what is refused has no body.
+/// GOAL: no way leads to anything but the files that are shown; a refusal has no body.
 #[test]
 fn foreign_hosts_paths_and_methods_get_nothing() {
     let folder = Folder::with_results("refuses", &[]);
@@ -147,10 +147,10 @@ fn foreign_hosts_paths_and_methods_get_nothing() {
         .status();
     assert!(pipe.unwrap().success());
     let view = View::of(&folder, "results");
-    let own = format!("127.0.0.1:{}", view.port);
-    let nothing = |(status, head, body): (u16, String, String), wanted: u16, what: &str| {
-        assert_eq!((status, body.as_str()), (wanted, ""), "{what}");
-        assert!(head.contains("Content-Length: 0"), "{what}: {head}");
+    let here = format!("127.0.0.1:{}", view.port);
+    let nothing = |(status, head, body): (u16, String, String), wanted: u16, label: &str| {
+        assert_eq!((status, body.as_str()), (wanted, ""), "{label}");
+        assert!(head.contains("Content-Length: 0"), "{label}: {head}");
     };
     let token = &view.token;
     let wrong = format!("/{}/", "0".repeat(token.len()));
@@ -163,12 +163,12 @@ fn foreign_hosts_paths_and_methods_get_nothing() {
         &format!("/{token}"),
         &format!("/{}/", &token[1..]),
     ] {
-        nothing(view.ask("GET", path, &own), 404, path);
+        nothing(view.ask("GET", path, &here), 404, path);
     }
     for name in NOT_SHOWN {
         nothing(view.get(name), 404, name);
     }
-    let absolute = view.ask("GET", &format!("{}index.json", view.address()), &own);
+    let absolute = view.ask("GET", &format!("{}index.json", view.address()), &here);
     nothing(absolute, 400, "a request to a proxy");
     let page = format!("/{token}/");
     for host in [
@@ -182,9 +182,9 @@ fn foreign_hosts_paths_and_methods_get_nothing() {
         nothing(view.ask("GET", &page, &host), 403, &host);
     }
     for method in ["POST", "PUT", "DELETE", "OPTIONS", "TRACE", "get"] {
-        nothing(view.ask(method, &page, &own), 405, method);
+        nothing(view.ask(method, &page, &here), 405, method);
     }
-    let two = format!("GET {page} HTTP/1.1\r\nHost: {own}\r\nHost: {own}\r\n\r\n");
+    let two = format!("GET {page} HTTP/1.1\r\nHost: {here}\r\nHost: {here}\r\n\r\n");
     for request in [
         &*two,
         &format!("GET {page} HTTP/1.1\r\n\r\n"),
@@ -194,7 +194,7 @@ fn foreign_hosts_paths_and_methods_get_nothing() {
         assert!(response.starts_with("HTTP/1.1 400 "), "{response}");
     }
     let long = format!(
-        "GET /{} HTTP/1.1\r\nHost: {own}\r\n\r\n",
+        "GET /{} HTTP/1.1\r\nHost: {here}\r\n\r\n",
         "a".repeat(1 << 20)
     );
     let response = view.send(long.as_bytes());
@@ -211,7 +211,7 @@ fn foreign_hosts_paths_and_methods_get_nothing() {
 }
 
 #[test]
-fn folders_without_frames_and_of_several_runs_are_told_apart() {
+fn folders_without_frames_and_of_several_runs_differ() {
     let folder = Folder::with_results(
         "folders",
         &["--set", "output.paraview={ every = \"never\" }"],

@@ -16,8 +16,8 @@ fn a_run_in_space_is_shown() {
     assert!(run.status.success(), "{said}");
     let figures = folder.0.join("results/figures");
     for field in ["displacement", "sigma_zz"] {
-        for what in ["space", "cut-y", "cut-z"] {
-            let name = format!("{what}-1-own-weight-{field}.png");
+        for kind in ["space", "cut-y", "cut-z"] {
+            let name = format!("{kind}-1-own-weight-{field}.png");
             assert!(figures.join(&name).is_file(), "{name}");
         }
     }
@@ -120,7 +120,7 @@ fn a_search_in_space_shows_where_soil_slips() {
     let mut rows = table.lines();
     assert_eq!(rows.next(), Some("x_[m],y_[m],z_[m]"));
     let point = |row: &str| -> [f64; 3] {
-        let numbers: Vec<f64> = row.split(',').map(|own| own.parse().unwrap()).collect();
+        let numbers: Vec<f64> = row.split(',').map(|part| part.parse().unwrap()).collect();
         numbers.try_into().unwrap()
     };
     let points: Vec<[f64; 3]> = rows.map(point).collect();

@@ -121,7 +121,7 @@ fn far_places_keep_their_digits() {
 }
 
 #[test]
-fn what_cannot_be_read_is_nothing() {
+fn unreadable_data_are_nothing() {
     let text = cube(2).to_xml();
     assert!(packed("", Keep::MUCH, None).is_none());
     assert!(packed(&text.replace("AQ", "@@"), Keep::MUCH, None).is_none());

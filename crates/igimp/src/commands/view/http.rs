@@ -12,7 +12,7 @@ const LONGEST_HEAD: usize = 8192;
 /// Time to send a request, and to take up a part of the response.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Most of what a client may send behind the head before the connection is cut \[bytes\].
+/// Most that a client may send behind the head before the connection is cut \[bytes\].
 const MOST_IGNORED: u64 = 65_536;
 
 /// How a request is answered.
@@ -138,7 +138,7 @@ pub(super) fn respond(
         }
     }
     stream.shutdown(Shutdown::Write)?;
-    // What was sent and never read would tear down the connection before the response is taken up.
+    // Bytes that were sent and never read would tear down the connection before the response is taken up.
     stream.set_read_timeout(Some(Duration::from_millis(500)))?;
     let _ = io::copy(&mut stream.take(MOST_IGNORED), &mut io::sink());
     Ok(())

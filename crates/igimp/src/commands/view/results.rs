@@ -29,7 +29,7 @@ const SHOWN: [(&str, &str, &str); 5] = [
 /// Most folders that a message lists.
 const MOST_LISTED: usize = 12;
 
-/// Bytes of a page that are looked at for its maker, and what stands there.
+/// Bytes of a page that are looked at for its maker, and its mark.
 const LARGEST_HEAD: u64 = 2048;
 const GENERATOR: &str = "<meta name=\"generator\" content=\"igimp";
 
@@ -88,7 +88,7 @@ impl Results {
         let case = self.case();
         let case = case.as_ref().map(CaseFile::any_case);
         let title = case.map_or("", AnyCase::title);
-        let stages: Vec<Value> = std::iter::zip(0.., summary.iter().flat_map(|own| &own.stages))
+        let stages: Vec<Value> = std::iter::zip(0.., summary.iter().flat_map(|run| &run.stages))
             .map(|(number, stage)| {
                 let trials = stage.safety.as_ref().map(|found| found.trials.len());
                 json!({
@@ -137,12 +137,12 @@ impl Results {
     /// Where frames stand in the run, by their files.
     fn frames(&self, case: Option<&AnyCase>) -> serde_json::Map<String, Value> {
         let folder = self.paraview();
-        let frames = folder.and_then(|own| pvd::frames(&own, pvd::PARTICLES));
+        let frames = folder.and_then(|path| pvd::frames(&path, pvd::PARTICLES));
         let frames = frames.unwrap_or_default();
         let places = whereabouts(&frames, case.map_or(&[], AnyCase::stages));
-        let place = |(frame, own): (Frame, Whereabouts)| {
-            let told = json!({ "stage": own.stage, "step": own.step, "when": own.when });
-            (format!("paraview/{}", frame.file), told)
+        let place = |(frame, at): (Frame, Whereabouts)| {
+            let entry = json!({ "stage": at.stage, "step": at.step, "when": at.when });
+            (format!("paraview/{}", frame.file), entry)
         };
         frames.into_iter().zip(places).map(place).collect()
     }
@@ -157,7 +157,7 @@ impl Results {
         named.collect()
     }
 
-    /// What stands over the frames of every stage.
+    /// Overlays of the frames of every stage.
     fn over(&self, case: &AnyCase) -> Vec<Over> {
         match case {
             AnyCase::Plane(case) => by_stage(case, &self.root),
@@ -198,7 +198,7 @@ impl Results {
         SHOWN.iter().find_map(|&(folder, ending, kind)| {
             let mut names = self.names(folder, ending);
             names
-                .find(|(own, _)| *own == name)
+                .find(|(known, _)| *known == name)
                 .map(|(_, path)| (path, kind))
         })
     }
@@ -214,7 +214,7 @@ impl Results {
             let path = entry.ok()?.path();
             let name = path.file_name()?.to_str()?;
             let is_shown = !name.starts_with('.')
-                && path.extension().is_some_and(|own| own == ending)
+                && path.extension().is_some_and(|found| found == ending)
                 // The same for any link on the way, also that of the folder.
                 && fs::canonicalize(&path).is_ok_and(|real| real == path)
                 && path.is_file();
@@ -248,7 +248,7 @@ fn runs_inside(folder: &Path, root: &Path) -> std::io::Result<Vec<PathBuf>> {
     Ok(inside)
 }
 
-/// The page of a folder that is none of a run and holds none, such as that of a test or of a fit, if igimp made one.
+/// The page of a folder that is none of a run and holds none, as that of a test or of a fit, if igimp made one.
 pub(super) fn page_alone(folder: &Path) -> Option<PathBuf> {
     let root = fs::canonicalize(folder).ok()?;
     if is_of_a_run(&root) || !runs_inside(folder, &root).ok()?.is_empty() {
@@ -258,8 +258,8 @@ pub(super) fn page_alone(folder: &Path) -> Option<PathBuf> {
     let mut head = Vec::new();
     let file = File::open(&page).ok()?;
     file.take(LARGEST_HEAD).read_to_end(&mut head).ok()?;
-    let is_own = String::from_utf8_lossy(&head).contains(GENERATOR);
-    is_own.then_some(page)
+    let is_ours = String::from_utf8_lossy(&head).contains(GENERATOR);
+    is_ours.then_some(page)
 }
 
 /// Number of factors that the case lists for a search, each of which is a row of the tables.
