@@ -64,16 +64,16 @@ fn the_million_in_space_is_a_million() {
 fn a_hillside_across_the_grid_is_not_cut() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/hillside.toml");
     let weight = |settings: &[&str]| -> StageSummary {
-        let settings: Vec<_> = settings.iter().map(|&own| own.to_owned()).collect();
+        let settings: Vec<_> = settings.iter().map(|&text| text.to_owned()).collect();
         let file = CaseFile::read(&path, &settings).unwrap();
         in_memory(file.case_in_space()).unwrap().summary.stages[0].clone()
     };
-    let own = weight(&[]);
-    assert_eq!((own.steps, own.cuts), (3, 0), "{own:?}");
+    let space = weight(&[]);
+    assert_eq!((space.steps, space.cuts), (3, 0), "{space:?}");
     let plane = weight(&["grid.small_cuts.below=1e-4"]);
     assert!(plane.cuts > 0, "{plane:?}");
     assert!(
-        plane.largest_displacement > 1.2 * own.largest_displacement,
+        plane.largest_displacement > 1.2 * space.largest_displacement,
         "{plane:?}"
     );
 }

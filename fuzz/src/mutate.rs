@@ -88,8 +88,8 @@ fn carefully(text: &mut Vec<u8>, other: &[u8], random: &mut Random) {
             }
         }
         3 | 4 => {
-            let own = text.clone();
-            let donor = if random.once_in(2) { &own } else { other };
+            let copy = text.clone();
+            let donor = if random.once_in(2) { &copy } else { other };
             if let (Some(to), Some(from)) = (quoted(text, random), quoted(donor, random)) {
                 text.splice(to, donor[from].iter().copied());
             }

@@ -104,8 +104,8 @@ class Body:
         self.__dict__.update(arrays)
         for name, shape in OPTIONAL.items():
             if name not in arrays:
-                own = self.x.shape[1:] if shape is None else shape
-                self.__dict__[name] = np.zeros((len(self.x), *own))
+                extent = self.x.shape[1:] if shape is None else shape
+                self.__dict__[name] = np.zeros((len(self.x), *extent))
         self.materials = materials
 
     @classmethod

@@ -132,7 +132,7 @@ class Case:
     # Values.
 
     def __setitem__(self, key: str, value: Any) -> None:
-        settings = {own: text for own, text in self._settings.items() if own != key}
+        settings = {path: text for path, text in self._settings.items() if path != key}
         settings[key] = _toml.value(value)
         self._file = self._read(settings)
         self._settings, self._completed = settings, None
@@ -161,7 +161,7 @@ class Case:
         >>> slope["materials.clay.cohesion"]
         '12 kPa'
         """
-        settings = {own: text for own, text in self._settings.items() if own not in values}
+        settings = {path: text for path, text in self._settings.items() if path not in values}
         settings |= {key: _toml.value(value) for key, value in values.items()}
         return _again(self._path, self._text, self._name, settings, self._laws)
 
@@ -377,13 +377,13 @@ def _again(path: Path | None, text: str, name: str, settings: Mapping[str, str],
 def _keys(value: Any, before: str = "") -> Iterator[str]:
     """The keys of values within a table or a list of tables, things in lists by their names."""
     if isinstance(value, list):
-        named = {own["name"]: own for own in value if isinstance(own, Mapping) and "name" in own}
+        named = {row["name"]: row for row in value if isinstance(row, Mapping) and "name" in row}
     else:
         named = value if isinstance(value, Mapping) else {}
-    for name, own in named.items():
+    for name, row in named.items():
         part = f'"{name}"' if "." in name else name
         yield before + part
-        yield from _keys(own, f"{before}{part}.")
+        yield from _keys(row, f"{before}{part}.")
 
 
 def _parts(key: str) -> Iterator[str]:

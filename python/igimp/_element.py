@@ -50,8 +50,8 @@ class ElementTest:
         folder = Path(folder)
         names = [name for name in self._made.write(folder) if name.endswith(".svg")]
         stems = [name.removesuffix(".svg") for name in names]
-        own = {stem: Figure(folder / f"{stem}.svg", folder / f"{stem}.png", stem.replace("-", " ")) for stem in stems}
-        return Figures(own)
+        figures = {stem: Figure(folder / f"{stem}.svg", folder / f"{stem}.png", stem.replace("-", " ")) for stem in stems}
+        return Figures(figures)
 
     def __str__(self) -> str:
         return self.text

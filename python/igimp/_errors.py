@@ -70,7 +70,7 @@ class CaseWarning(UserWarning):
     """Something in a case, or about its run, that its author should know."""
 
 
-CLASSES: dict[int, type[Error]] = {own.exit_code: own for own in (ReferenceMissed, InputError, NotConverged, FileError)}
+CLASSES: dict[int, type[Error]] = {error.exit_code: error for error in (ReferenceMissed, InputError, NotConverged, FileError)}
 
 
 def raised(code: int, text: str, diagnostics: str = "[]") -> Error:

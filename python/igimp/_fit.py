@@ -82,13 +82,13 @@ class Fit:
         self.parameters: dict[str, Parameter] = {}
         for key, unit, start, value, known, error, interval, traded_for in made.parameters():
             value = float("nan") if known == "not determined" else value
-            own = Parameter(key, unit, start, value, known, error, interval, tuple(traded_for))
-            self.parameters[key] = own
+            parameter = Parameter(key, unit, start, value, known, error, interval, tuple(traded_for))
+            self.parameters[key] = parameter
         self.correlation = np.array(made.correlation())
 
     @cached_property
     def tests(self) -> list[ElementTest]:
-        return [ElementTest(own) for own in self._made.tests()]
+        return [ElementTest(made) for made in self._made.tests()]
 
     def __getitem__(self, key: str) -> float:
         """The value of a parameter in the unit of the file."""
@@ -98,7 +98,7 @@ class Fit:
         """What is determined, by the keys of a case with this material: for ``Case.with_values``."""
         found = self.parameters.values()
         name = _toml.key(material)
-        return {f"materials.{name}.{own.key}": own.text for own in found if own.known != "not determined"}
+        return {f"materials.{name}.{row.key}": row.text for row in found if row.known != "not determined"}
 
     def save(self, folder: str | os.PathLike[str]) -> Figures:
         """Writes ``report.html``, tables and pictures into a folder; the pictures by test, which a notebook shows."""
@@ -177,12 +177,12 @@ def fit(
         if bounds is not None and (isinstance(bounds, str) or len(bounds) != 2):
             help_ = 'a lower and an upper one, such as ("20 deg", "40 deg"); None for none'
             raise InputError(f"error: `vary`: bounds of `{key}` are {bounds!r}\n  help: {help_}")
-    sought = [(key, None if bounds is None else [str(own) for own in bounds]) for key, bounds in vary.items()]
+    sought = [(key, None if bounds is None else [str(bound) for bound in bounds]) for key, bounds in vary.items()]
     if isinstance(tests, Mapping):
         tests = [tests]
-    asked = [asked_of(f"test {at}", {**all_tests, **own}) for at, own in enumerate(tests, start=1)]
-    for at, own in enumerate(asked, start=1):
-        if own["data"] is None:
+    asked = [asked_of(f"test {at}", {**all_tests, **test}) for at, test in enumerate(tests, start=1)]
+    for at, test in enumerate(asked, start=1):
+        if test["data"] is None:
             raise InputError(f"error: test {at}: there are no data\n  help: `data` is a CSV file, or columns by name")
-    weights = [(name, str(own)) for name, own in (scatter or {}).items()]
+    weights = [(name, str(deviation)) for name, deviation in (scatter or {}).items()]
     return Fit(engine.fit(of_source, sought, asked, weights))

@@ -19,12 +19,12 @@ def preformatted(text: str) -> str:
 def rows(header: list[str], body: list[list[Any]]) -> str:
     """A table; numbers stand on the right."""
 
-    def cell(own: Any) -> str:
-        is_number = isinstance(own, (int, float)) and not isinstance(own, bool)
-        text = f"{own:.5g}" if isinstance(own, float) else str(own)
+    def cell(value: Any) -> str:
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        text = f"{value:.5g}" if isinstance(value, float) else str(value)
         return f'<td style="text-align:{"right" if is_number else "left"}">{html.escape(text)}</td>'
 
-    head = "".join(f'<th style="text-align:left">{html.escape(own)}</th>' for own in header)
+    head = "".join(f'<th style="text-align:left">{html.escape(title)}</th>' for title in header)
     lines = "".join("<tr>" + "".join(map(cell, row)) + "</tr>" for row in body)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{lines}</tbody></table>"
 
@@ -39,7 +39,7 @@ def case(case: Case) -> str:
 
 
 def picture(svg: str, caption: str) -> str:
-    """A picture with its caption; it scales with the page and keeps its own styles to itself."""
+    """A picture with its caption; it scales with the page and keeps its check styles to itself."""
     data = base64.b64encode(svg.encode()).decode()
     image = f'<img style="max-width:100%" alt="{html.escape(caption)}" src="data:image/svg+xml;base64,{data}">'
     return f'<figure style="margin:1em 0">{image}<figcaption>{html.escape(caption)}</figcaption></figure>'
@@ -47,7 +47,7 @@ def picture(svg: str, caption: str) -> str:
 
 def results(results: Results) -> str:
     """What a run found."""
-    stages = [[own.name, own.kind, own.steps, own.outcome, own.reason] for own in results.stages]
+    stages = [[stage.name, stage.kind, stage.steps, stage.outcome, stage.reason] for stage in results.stages]
     text = f"<b>{html.escape(results.title)}</b>: {html.escape(results.ending)}"
     text += rows(["stage", "kind", "steps", "outcome", "reason"], stages)
     if results.factor_of_safety is not None:
@@ -58,14 +58,14 @@ def results(results: Results) -> str:
     if results.checks:
         checks = [
             [
-                "met" if own.met else own.verdict.upper(),
-                own.name,
-                own.told,
-                own._told(own.reference),
-                own.band,
-                own.source,
+                "met" if check.met else check.verdict.upper(),
+                check.name,
+                check.printed,
+                check._printed(check.reference),
+                check.band,
+                check.source,
             ]
-            for own in results.checks
+            for check in results.checks
         ]
         text += rows(["check", "", "value", "reference", "band", "source"], checks)
     if results.failure:

@@ -104,15 +104,15 @@ class Law:
 
     def identity(self) -> str:
         """What the law is, in words: a run is resumed only with a law that says the same."""
-        own = type(self)
-        return f"{own.__module__}.{own.__qualname__}({', '.join(f'{k}={v!r}' for k, v in vars(self).items())})"
+        kind = type(self)
+        return f"{kind.__module__}.{kind.__qualname__}({', '.join(f'{k}={v!r}' for k, v in vars(self).items())})"
 
     def _answer(self, strain: Array, eps_p_eq: Array, young: float, poisson: float) -> tuple[Array, Array]:
         n = len(strain)
         answer: Any = self.return_map(strain, eps_p_eq, Elasticity(young, poisson))
         whose = f"return_map of {type(self).__name__}"
         try:
-            tau, tangent = (np.asarray(own, dtype=float) for own in answer)
+            tau, tangent = (np.asarray(part, dtype=float) for part in answer)
         except (TypeError, ValueError) as error:
             raise ValueError(f"{whose} must answer stress and tangent, two arrays of numbers: {error}") from error
         if tau.shape != (n, 3) or tangent.shape != (n, 3, 3):

@@ -77,19 +77,19 @@ class Step:
     @classmethod
     def of(cls, event: dict[str, Any], body: Body | None) -> Step:
         """The step of an event."""
-        stage, own = event["stage"], event["own"]
+        stage, step = event["stage"], event["details"]
         return cls(
             stage=stage["name"],
             kind=stage["kind"],
             stage_index=stage["index"],
             trial=stage["trial"],
-            number=own["number"],
+            number=step["number"],
             steps=stage["steps"],
-            load_factor=own["load_factor"],
-            iterations=own["iterations"],
-            residuals=tuple(own["residuals"]),
-            plastic_share=own["plastic_share"],
-            unknowns=own["unknowns"],
+            load_factor=step["load_factor"],
+            iterations=step["iterations"],
+            residuals=tuple(step["residuals"]),
+            plastic_share=step["plastic_share"],
+            unknowns=step["unknowns"],
             share=event["share"],
             body=body,
         )
@@ -109,10 +109,10 @@ class March:
     def __next__(self) -> Step:
         try:
             while not self._stopped:
-                told = self._engine.next(PATIENCE)
-                if told is None:
+                item = self._engine.next(PATIENCE)
+                if item is None:
                     break
-                text, arrays = told
+                text, arrays = item
                 event = json.loads(text) if text else {"event": ""}
                 if event["event"] == "step":
                     return Step.of(event, self._body(arrays))
@@ -178,8 +178,8 @@ def finish(march: March, shown: Progress | None = None, callback: Callable[[Step
     """Drives a run to its end."""
     shown = shown or Quiet()
     try:
-        while (told := march._engine.next(PATIENCE)) is not None:
-            text, arrays = told
+        while (item := march._engine.next(PATIENCE)) is not None:
+            text, arrays = item
             if not text:
                 continue
             event = json.loads(text)

@@ -43,8 +43,8 @@ def words(event: dict[str, Any]) -> str:
         return event["line"] or ""
     text = f"{stage['index'] + 1}/{stage['of']} {stage['name']}"
     if event["event"] == "step":
-        own = event["own"]
-        text += f", load factor {own['load_factor']:.3f}, {own['iterations']} it"
+        step = event["details"]
+        text += f", load factor {step['load_factor']:.3f}, {step['iterations']} it"
     return text
 
 
@@ -95,8 +95,8 @@ class Notebook(Quiet):
 def in_notebook() -> bool:
     """Whether a notebook runs this."""
     shell = sys.modules.get("IPython")
-    own = shell.get_ipython() if shell is not None else None
-    return own is not None and type(own).__name__ == "ZMQInteractiveShell"
+    running = shell.get_ipython() if shell is not None else None
+    return running is not None and type(running).__name__ == "ZMQInteractiveShell"
 
 
 def of(wanted: bool | str | None) -> Progress:

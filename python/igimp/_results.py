@@ -65,16 +65,16 @@ class Check:
     @classmethod
     def of(cls, row: dict[str, Any]) -> Check:
         """A check of ``summary.json``."""
-        own = row["check"]
-        value = float("nan") if own["measured"] is None else own["measured"]
-        unit = own.get("unit") or NO_UNIT
+        check = row["check"]
+        value = float("nan") if check["measured"] is None else check["measured"]
+        unit = check.get("unit") or NO_UNIT
         return cls(
-            name=own["quantity"],
+            name=check["quantity"],
             value=value,
-            reference=own["expected"],
-            band=_band(own["band"], unit),
+            reference=check["expected"],
+            band=_band(check["band"], unit),
             met=row["pass"],
-            source=own["source"],
+            source=check["source"],
             standing=row.get("standing", "held"),
             unit=unit["name"],
             in_si=unit["in_si"],
@@ -88,15 +88,15 @@ class Check:
         return "met" if self.met else "missed"
 
     @property
-    def told(self) -> str:
-        """The value as the program tells it, in the unit of the case."""
-        return "> 1000" if self.standing == "nothing-fails" else self._told(self.value)
+    def printed(self) -> str:
+        """The value as the program prints it, in the unit of the case."""
+        return "> 1000" if self.standing == "nothing-fails" else self._printed(self.value)
 
-    def _told(self, value: float) -> str:
+    def _printed(self, value: float) -> str:
         return "-" if math.isnan(value) else f"{value / self.in_si:.4g} {self.unit}".rstrip()
 
     def __str__(self) -> str:
-        return f"{self.name}: {self.told}, expected {self._told(self.reference)}, {self.band} ({self.source})"
+        return f"{self.name}: {self.printed}, expected {self._printed(self.reference)}, {self.band} ({self.source})"
 
 
 def _band(band: dict[str, Any], unit: dict[str, Any]) -> str:
@@ -145,12 +145,12 @@ class Stage:
     details: dict[str, Any] = field(repr=False)
 
     @classmethod
-    def of(cls, own: dict[str, Any]) -> Stage:
+    def of(cls, row: dict[str, Any]) -> Stage:
         """A stage of ``summary.json``."""
-        safety = own.get("safety")
+        safety = row.get("safety")
         names = ("name", "kind", "outcome", "reason", "steps", "iterations", "cuts", "seconds", "largest_displacement")
         interval = None if safety is None else (safety["stable"], safety["failed"])
-        return cls(**{name: own[name] for name in names}, interval=interval, details=own)
+        return cls(**{name: row[name] for name in names}, interval=interval, details=row)
 
 
 class Stages(tuple[Stage, ...]):
@@ -165,13 +165,13 @@ class Stages(tuple[Stage, ...]):
     def __getitem__(self, key: SupportsIndex | str | slice) -> Stage | tuple[Stage, ...]:
         if not isinstance(key, str):
             return super().__getitem__(key)
-        for own in self:
-            if own.name == key:
-                return own
-        raise KeyError(f"there is no stage {key!r}; stages: {', '.join(repr(own.name) for own in self)}")
+        for stage in self:
+            if stage.name == key:
+                return stage
+        raise KeyError(f"there is no stage {key!r}; stages: {', '.join(repr(stage.name) for stage in self)}")
 
     def _ipython_key_completions_(self) -> list[str]:
-        return [own.name for own in self]
+        return [stage.name for stage in self]
 
 
 @dataclass(frozen=True)
@@ -209,7 +209,7 @@ class MeshResult:
     def _row(self) -> list[Any]:
         name = f"{self.name} [{self.unit}]" if self.unit else self.name
         numbers = (*self.values, self.extrapolated, self.uncertainty)
-        return [name, *(None if own is None else own / self.in_si for own in numbers)]
+        return [name, *(None if x is None else x / self.in_si for x in numbers)]
 
 
 @dataclass(frozen=True)
@@ -234,7 +234,7 @@ class MeshStudy:
         return iter(self.results)
 
     @classmethod
-    def of(cls, own: dict[str, Any]) -> MeshStudy:
+    def of(cls, study: dict[str, Any]) -> MeshStudy:
         """The study of ``summary.json``."""
 
         def result(one: dict[str, Any]) -> MeshResult:
@@ -253,16 +253,16 @@ class MeshStudy:
                 unit["in_si"],
             )
 
-        parts = [mesh["parts"] for mesh in own["meshes"]]
+        parts = [mesh["parts"] for mesh in study["meshes"]]
         return cls(
             meshes=tuple("h" if one == 1 else f"h/{one}" for one in parts),
-            endings=tuple(mesh["ending"] for mesh in own["meshes"]),
-            results=tuple(map(result, own["results"])),
+            endings=tuple(mesh["ending"] for mesh in study["meshes"]),
+            results=tuple(map(result, study["results"])),
         )
 
     def _repr_html_(self) -> str:
         header = ["result", *self.meshes, "extrapolated", "uncertainty"]
-        return _html.rows(header, [own._row() for own in self])
+        return _html.rows(header, [result._row() for result in self])
 
 
 @dataclass(frozen=True)
@@ -304,7 +304,7 @@ class Figures(Mapping[str, Figure]):
         return list(self)
 
     def _repr_html_(self) -> str:
-        return "".join(own._repr_html_() for own in self.values())
+        return "".join(table._repr_html_() for table in self.values())
 
 
 class Tables(Mapping[str, Any]):
@@ -424,7 +424,7 @@ class Results:
 
     @property
     def warnings(self) -> list[str]:
-        """What was told during the run."""
+        """The narration of the run."""
         return list(self.summary["warnings"])
 
     @cached_property
@@ -440,13 +440,13 @@ class Results:
     @cached_property
     def mesh_study(self) -> MeshStudy | None:
         """The study of the mesh error, if one was asked for."""
-        own = self.summary.get("mesh_study")
-        return None if own is None else MeshStudy.of(own)
+        study = self.summary.get("mesh_study")
+        return None if study is None else MeshStudy.of(study)
 
     @property
     def factor_of_safety_interval(self) -> tuple[float | None, float | None]:
         """Of the last strength reduction: largest factor found stable, smallest found failed [-]."""
-        found = [own.interval for own in self.stages if own.interval is not None]
+        found = [stage.interval for stage in self.stages if stage.interval is not None]
         return found[-1] if found else (None, None)
 
     @property
@@ -466,7 +466,7 @@ class Results:
             If a check is missed, or was not reached.
         """
         if self.exit_code:
-            unmet = "\n".join(f"{own.verdict}: {own}" for own in self.checks if not own.met)
+            unmet = "\n".join(f"{check.verdict}: {check}" for check in self.checks if not check.met)
             text = self.failure or "\n".join(self.lost) or unmet or f"error: the run was {self.ending}"
             raise CLASSES.get(self.exit_code, Error)(text)
         return self
@@ -538,8 +538,8 @@ class Results:
         found = {}
         for note in self.summary["figures"]:
             path = root / note["file"]
-            own = Figure(path.with_name(path.name + ".svg"), path.with_name(path.name + ".png"), note["caption"])
-            found[path.name] = own
+            figure = Figure(path.with_name(path.name + ".svg"), path.with_name(path.name + ".png"), note["caption"])
+            found[path.name] = figure
         return Figures(found)
 
     @property
@@ -555,17 +555,17 @@ class Results:
         InputError
             If no stage of that name moves in time.
         """
-        own = [k for k, one in enumerate(self.stages, 1) if one.kind == "dynamic" and stage in (None, one.name)]
-        if not own:
+        moving = [k for k, one in enumerate(self.stages, 1) if one.kind == "dynamic" and stage in (None, one.name)]
+        if not moving:
             raise InputError(f"error: no stage {'' if stage is None else repr(stage) + ' '}moves in time")
-        return self._collection(f"stage-{own[-1]:02}.pvd")
+        return self._collection(f"stage-{moving[-1]:02}.pvd")
 
     def _collection(self, name: str) -> tuple[tuple[float, Path], ...]:
         folder = self._need("frames") / "paraview"
         if not (folder / name).exists():
             return ()
         sets = ElementTree.parse(folder / name).iter("DataSet")
-        return tuple((float(own.get("timestep", "nan")), folder / own.get("file", "")) for own in sets)
+        return tuple((float(frame.get("timestep", "nan")), folder / frame.get("file", "")) for frame in sets)
 
     def frame(self, number: int = -1) -> Any:
         """A frame as a PyVista mesh; the last one by default."""

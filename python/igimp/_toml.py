@@ -39,7 +39,7 @@ def value(given: Any) -> str:
     if isinstance(given, Mapping):
         return "{ " + ", ".join(f"{key(k)} = {value(v)}" for k, v in given.items()) + " }"
     if isinstance(given, (list, tuple)):
-        return "[" + ", ".join(value(own) for own in given) + "]"
+        return "[" + ", ".join(value(item) for item in given) + "]"
     if hasattr(given, "tolist"):  # numpy
         return value(given.tolist())
     raise TypeError(f"a case file knows no {type(given).__name__}: {given!r}")
@@ -55,19 +55,19 @@ def document(case: Mapping[str, Any]) -> str:
 def table(entries: Mapping[str, Any], path: tuple[str, ...], lines: list[str]) -> None:
     """A table: its own values first, then those tables within it that stand under their own heads."""
 
-    def has_head(own: Any) -> bool:
-        if isinstance(own, Mapping):
+    def has_head(entry: Any) -> bool:
+        if isinstance(entry, Mapping):
             return len(path) < 2
-        return not path and isinstance(own, (list, tuple)) and bool(own) and all(isinstance(o, Mapping) for o in own)
+        return not path and isinstance(entry, (list, tuple)) and bool(entry) and all(isinstance(o, Mapping) for o in entry)
 
-    inner = {k: own for k, own in entries.items() if has_head(own)}
-    lines.extend(f"{key(k)} = {value(own)}" for k, own in entries.items() if k not in inner)
-    for name, own in inner.items():
+    inner = {k: entry for k, entry in entries.items() if has_head(entry)}
+    lines.extend(f"{key(k)} = {value(entry)}" for k, entry in entries.items() if k not in inner)
+    for name, entry in inner.items():
         head = ".".join((*path, key(name)))
-        if isinstance(own, Mapping):
+        if isinstance(entry, Mapping):
             lines.extend(["", f"[{head}]"])
-            table(own, (*path, key(name)), lines)
+            table(entry, (*path, key(name)), lines)
         else:
-            for item in own:
+            for item in entry:
                 lines.extend(["", f"[[{head}]]"])
                 lines.extend(f"{key(k)} = {value(v)}" for k, v in item.items())

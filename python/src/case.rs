@@ -114,23 +114,23 @@ impl CaseFile {
 
     /// What the case will cost: its text, and its numbers as JSON.
     fn check(&self, py: Python<'_>) -> PyResult<(String, String)> {
-        let told = py.detach(|| {
+        let cost = py.detach(|| {
             let case = self.file.any_case();
             in_any_dimension!(case, case => size::size(case, &self.name)).map_err(Raised::from)
         });
-        let told = told.map_err(|raised| raised.exception(py))?;
+        let cost = cost.map_err(|raised| raised.exception(py))?;
         let numbers = json!({
-            "particles": told.size.particles,
-            "cells": told.size.cells,
-            "unknowns": told.size.unknowns,
-            "bytes": told.bytes,
-            "most_bytes": told.most_bytes,
-            "seconds": told.time.seconds,
-            "open_ended": told.time.open_ended,
-            "threads": told.time.threads,
-            "solver": told.size.systems.method,
+            "particles": cost.size.particles,
+            "cells": cost.size.cells,
+            "unknowns": cost.size.unknowns,
+            "bytes": cost.bytes,
+            "most_bytes": cost.most_bytes,
+            "seconds": cost.time.seconds,
+            "open_ended": cost.time.open_ended,
+            "threads": cost.time.threads,
+            "solver": cost.size.systems.method,
         });
-        Ok((told.text, numbers.to_string()))
+        Ok((cost.text, numbers.to_string()))
     }
 }
 
@@ -148,18 +148,21 @@ impl CaseFile {
 /// Names and summaries of the case files that come with igimp.
 #[pyfunction]
 pub(crate) fn shipped() -> Vec<(&'static str, &'static str)> {
-    SHIPPED.iter().map(|own| (own.name, own.summary)).collect()
+    SHIPPED
+        .iter()
+        .map(|case| (case.name, case.summary))
+        .collect()
 }
 
 /// The text of a case file that comes with igimp.
 #[pyfunction]
 pub(crate) fn template(py: Python<'_>, name: &str) -> PyResult<(PathBuf, &'static str)> {
-    if let Some(own) = find(name) {
-        return Ok((Path::new(own.name).with_extension("toml"), own.text));
+    if let Some(case) = find(name) {
+        return Ok((Path::new(case.name).with_extension("toml"), case.text));
     }
     let rows: Vec<Vec<String>> = SHIPPED
         .iter()
-        .map(|own| vec![own.name.to_owned(), own.summary.to_owned()])
+        .map(|case| vec![case.name.to_owned(), case.summary.to_owned()])
         .collect();
     let near = nearest(name).map_or_else(String::new, |near| format!("did you mean `{near}`?\n"));
     let text = format!(

@@ -108,10 +108,10 @@ pub(crate) fn material_of(
 ) -> PyResult<(MaterialsFile, Material)> {
     let file = MaterialsFile::parse(&name.display().to_string(), text, settings)
         .map_err(|error| Raised::from(error).exception(py))?;
-    let own = chosen(&file.materials, material.as_deref())
+    let chosen = chosen(&file.materials, material.as_deref())
         .map_err(|error| refused(py, &error.problem, &error.names))?
         .clone();
-    Ok((file, own))
+    Ok((file, chosen))
 }
 
 /// Drives a material; `law` is one in Python.
@@ -173,7 +173,7 @@ impl Asked {
         }
         let stress = self.stress.read(py, "stress", Dimension::Stress)?;
         let side = self.side_stress.as_ref();
-        let side = side.map(|own| own.read(py, "side_stress", Dimension::Stress));
+        let side = side.map(|side| side.read(py, "side_stress", Dimension::Stress));
         let request = Request {
             drive,
             stress: [stress, side.transpose()?.unwrap_or(stress)],
@@ -200,7 +200,10 @@ impl Measured {
         name: &Path,
     ) -> PyResult<Data> {
         let law = (material.law()).map_err(|error| refused(py, &error.to_string(), ""))?;
-        let variables = law.internal_variables().iter().map(|own| own.name);
+        let variables = law
+            .internal_variables()
+            .iter()
+            .map(|variable| variable.name);
         let variables: Vec<_> = variables.collect();
         let read = match self {
             Self::File(path) => read_data(&beside(name, path), drive, &variables),

@@ -55,8 +55,8 @@ impl Fit {
     /// The parameters.
     fn parameters(&self) -> Vec<Row> {
         let key = |place: &usize| self.0.parameters[*place].key.clone();
-        let rows = self.0.parameters.iter().map(|own| {
-            let (known, error, interval, with) = match &own.known {
+        let rows = self.0.parameters.iter().map(|row| {
+            let (known, error, interval, with) = match &row.known {
                 Known::Well { error, interval } => (
                     "standard error",
                     Some(*error),
@@ -76,9 +76,9 @@ impl Fit {
                     ("not determined", None, None, with)
                 }
             };
-            let (key, unit) = (own.key.clone(), own.unit.clone());
+            let (key, unit) = (row.key.clone(), row.unit.clone());
             (
-                key, unit, own.start, own.value, known, error, interval, with,
+                key, unit, row.start, row.value, known, error, interval, with,
             )
         });
         rows.collect()
@@ -144,12 +144,12 @@ fn of_test(py: Python<'_>, error: PyErr, at: usize) -> PyErr {
 
 /// A standard deviation that is stated.
 fn deviation(py: Python<'_>, name: &str, text: &str) -> PyResult<(Measure, f64)> {
-    let own = Measure::of_name(name).ok_or_else(|| {
+    let measure = Measure::of_name(name).ok_or_else(|| {
         let names = Measure::ALL.map(Measure::name).join(", ");
         let problem = format!("`scatter`: `{name}` is no quantity");
         refused(py, &problem, &format!("quantities: {names}"))
     })?;
-    let value = own
+    let value = measure
         .value(text)
         .filter(|value| *value > 0.0 && value.is_finite());
     let value = value.ok_or_else(|| {
@@ -160,7 +160,7 @@ fn deviation(py: Python<'_>, name: &str, text: &str) -> PyResult<(Measure, f64)>
             "a positive value with its unit, such as \"2 kPa\" or \"0.1 %\"",
         )
     })?;
-    Ok((own, value))
+    Ok((measure, value))
 }
 
 /// Why there is no fit, as the program says it.

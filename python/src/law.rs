@@ -59,8 +59,16 @@ pub(crate) fn give<const D: usize>(
     (material, law): (&str, Py<PyAny>),
     trouble: &Trouble,
 ) -> PyResult<()> {
-    let Some(place) = case.materials.iter().position(|own| own.name == material) else {
-        let names: Vec<&str> = case.materials.iter().map(|own| own.name.as_str()).collect();
+    let Some(place) = case
+        .materials
+        .iter()
+        .position(|given| given.name == material)
+    else {
+        let names: Vec<&str> = case
+            .materials
+            .iter()
+            .map(|given| given.name.as_str())
+            .collect();
         let text = format!(
             "error: there is no material `{material}`\n  help: materials: {}",
             names.join(", ")
@@ -112,11 +120,11 @@ impl InPython {
         elasticity: Elasticity,
         trouble: Trouble,
     ) -> PyResult<Self> {
-        let own = law.bind(py);
+        let given = law.bind(py);
         Ok(Self {
-            symmetric: own.getattr("symmetric")?.extract()?,
-            yields: own.getattr("yields")?.extract()?,
-            identity: own.call_method0("identity")?.extract()?,
+            symmetric: given.getattr("symmetric")?.extract()?,
+            yields: given.getattr("yields")?.extract()?,
+            identity: given.call_method0("identity")?.extract()?,
             material: material.to_owned(),
             law,
             elasticity,
@@ -133,7 +141,7 @@ impl InPython {
     ) -> PyResult<(Vec<f64>, Vec<f64>)> {
         let n = strains.len();
         let flat = PyArray1::from_vec(py, strains.as_flattened().to_vec());
-        let past: Vec<f64> = histories.iter().map(|own| own.eps_p_eq).collect();
+        let past: Vec<f64> = histories.iter().map(|history| history.eps_p_eq).collect();
         let arguments = (
             flat.reshape([n, 3])?,
             PyArray1::from_vec(py, past),
@@ -167,7 +175,7 @@ impl InPython {
     ) -> ReturnMap {
         let trial = self.elasticity.stress(strain);
         let tau: Principal = std::array::from_fn(|a| tau[a]);
-        let scale = trial.iter().fold(0.0_f64, |most, own| most.max(own.abs()));
+        let scale = trial.iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
         let is_trial = (0..3).all(|a| (trial[a] - tau[a]).abs() <= 1e-12 * scale);
         let lost = std::array::from_fn(|a| trial[a] - tau[a]);
         let delta_eps_p = if is_trial {
@@ -205,8 +213,8 @@ impl ConstitutiveModel for InPython {
         history: &History,
         context: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
-        let own = self.return_maps(&[*eps_e_trial], &[*history], context)?;
-        own.into_iter().next().ok_or(MaterialError::NonFinite {
+        let maps = self.return_maps(&[*eps_e_trial], &[*history], context)?;
+        maps.into_iter().next().ok_or(MaterialError::NonFinite {
             quantity: "stress of the law in Python",
         })
     }
@@ -250,7 +258,7 @@ impl Strength for InPython {
     }
 
     fn stress_scale(&self, tau: &Principal) -> f64 {
-        tau.iter().fold(0.0, |most, own| most.max(own.abs()))
+        tau.iter().fold(0.0, |most, stress| most.max(stress.abs()))
     }
 
     fn utilisation(&self, _: &Principal, _: &History) -> f64 {

@@ -26,7 +26,7 @@ use crate::arrays::{self, Arrays};
 use crate::case::CaseFile;
 use crate::law::{Trouble, give};
 use crate::raised::{self, Raised};
-use crate::relay::{Relay, Stage, Told};
+use crate::relay::{Relay, Seen, Stage};
 
 /// Bytes of the stack of a run, as much as that of a program.
 const STACK: usize = 16 << 20;
@@ -43,7 +43,7 @@ pub(crate) struct March {
 /// What Python holds of a run.
 #[derive(Debug)]
 struct Ends {
-    told: Option<Receiver<Told>>,
+    events: Option<Receiver<Seen>>,
     go_on: Sender<()>,
     /// Whether the run waits for the word to go on.
     waits: bool,
@@ -96,7 +96,7 @@ impl March {
         let trouble = Trouble::new(Arc::clone(&interrupt));
         let mut any = case.file.any_case().clone();
         for (material, law) in laws {
-            in_any_dimension!(&mut any, own => give(py, own, (&material, law), &trouble))?;
+            in_any_dimension!(&mut any, case => give(py, case, (&material, law), &trouble))?;
         }
         let target = out.map(|folder| {
             any.output_mut().folder.clone_from(&folder);
@@ -120,10 +120,10 @@ impl March {
             threads,
             interrupt: Arc::clone(&interrupt),
         };
-        let (told, hears) = channel();
+        let (events, hears) = channel();
         let (go_on, waits) = channel();
         let relay = Relay {
-            told,
+            events,
             go_on: waits,
             lines: Lines::default(),
             whole: Whole::of(&any),
@@ -139,7 +139,7 @@ impl March {
             interrupt,
             trouble,
             ends: Mutex::new(Ends {
-                told: Some(hears),
+                events: Some(hears),
                 go_on,
                 waits: false,
                 thread: Some(thread),
@@ -156,21 +156,21 @@ impl March {
         py: Python<'py>,
         seconds: f64,
     ) -> PyResult<Option<(String, Option<Bound<'py, PyDict>>)>> {
-        let told = py.detach(|| {
+        let event = py.detach(|| {
             let mut ends = self.ends.lock().unwrap_or_else(PoisonError::into_inner);
             if std::mem::take(&mut ends.waits) {
                 // A run that ended waits for no word.
                 let _ = ends.go_on.send(());
             }
             let patience = Duration::from_secs_f64(seconds.clamp(0.0, 3600.0));
-            let told = ends.told.as_ref().map(|told| told.recv_timeout(patience));
-            ends.waits = matches!(told, Some(Ok(_)));
-            told
+            let event = (ends.events.as_ref()).map(|events| events.recv_timeout(patience));
+            ends.waits = matches!(event, Some(Ok(_)));
+            event
         });
-        match told {
-            Some(Ok(Told { what, body })) => {
+        match event {
+            Some(Ok(Seen { text, body })) => {
                 let body = body.map(|arrays| arrays.into_dict(py)).transpose()?;
-                Ok(Some((what, body)))
+                Ok(Some((text, body)))
             }
             Some(Err(RecvTimeoutError::Timeout)) => Ok(Some((String::new(), None))),
             Some(Err(RecvTimeoutError::Disconnected)) | None => Ok(None),
@@ -185,22 +185,22 @@ impl March {
     /// Tells no more events: the run goes on without a word.
     fn leave(&self) {
         let mut ends = self.ends.lock().unwrap_or_else(PoisonError::into_inner);
-        ends.told = None;
+        ends.events = None;
         let _ = ends.go_on.send(());
     }
 
     /// Whether this is the thread of the run, in which a law in Python is asked: it cannot wait for its own end.
     fn is_own_thread(&self) -> bool {
         let ends = self.ends.lock().unwrap_or_else(PoisonError::into_inner);
-        let own = ends.thread.as_ref().map(|own| own.thread().id());
-        own == Some(std::thread::current().id())
+        let id = ends.thread.as_ref().map(|run| run.thread().id());
+        id == Some(std::thread::current().id())
     }
 
     /// Waits for the end of the run and hands over what it found, once.
     fn found<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let ended = py.detach(|| {
             let mut ends = self.ends.lock().unwrap_or_else(PoisonError::into_inner);
-            ends.told = None;
+            ends.events = None;
             let _ = ends.go_on.send(());
             let thread = ends.thread.take();
             drop(ends);
@@ -271,8 +271,8 @@ where
         if order.start == Start::Afresh {
             target.expectation = Expectation::of(case).ok();
         }
-        let told = target.expectation.as_ref();
-        if let Some(text) = told.and_then(|told| lacks_memory(told.bytes, told.most_bytes)) {
+        let cost = target.expectation.as_ref();
+        if let Some(text) = cost.and_then(|cost| lacks_memory(cost.bytes, cost.most_bytes)) {
             let event = engine::Event::Warning { text: &text };
             engine::Listener::<D>::on_event(relay, &event);
         }

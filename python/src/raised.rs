@@ -133,13 +133,13 @@ impl From<CaseError> for Raised {
 
 /// Problems as JSON, for the exception and for those who look at warnings.
 pub(crate) fn as_json(diagnostics: &[Diagnostic]) -> String {
-    let each = diagnostics.iter().map(|own| {
+    let each = diagnostics.iter().map(|problem| {
         json!({
-            "is_error": own.is_error,
-            "message": own.message,
-            "help": own.help,
-            "setting": own.place.as_ref().and_then(|place| place.override_number),
-            "bytes": own.place.as_ref().map(|place| [place.bytes.start, place.bytes.end]),
+            "is_error": problem.is_error,
+            "message": problem.message,
+            "help": problem.help,
+            "setting": problem.place.as_ref().and_then(|place| place.override_number),
+            "bytes": problem.place.as_ref().map(|place| [place.bytes.start, place.bytes.end]),
         })
     });
     serde_json::Value::Array(each.collect()).to_string()

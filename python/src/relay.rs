@@ -11,9 +11,9 @@ use crate::arrays::Arrays;
 
 /// Something that happened.
 #[derive(Debug)]
-pub(crate) struct Told {
+pub(crate) struct Seen {
     /// Numbers and names, as JSON.
-    pub(crate) what: String,
+    pub(crate) text: String,
     /// The body, after a step whose body was asked for.
     pub(crate) body: Option<Arrays>,
 }
@@ -21,7 +21,7 @@ pub(crate) struct Told {
 /// Listens to a run in its thread. The run waits until Python has looked at what it was told.
 #[derive(Debug)]
 pub(crate) struct Relay {
-    pub(crate) told: Sender<Told>,
+    pub(crate) events: Sender<Seen>,
     pub(crate) go_on: Receiver<()>,
     pub(crate) lines: Lines,
     pub(crate) whole: Whole,
@@ -46,7 +46,7 @@ impl<const D: usize> Listener<D> for Relay {
     fn on_event(&mut self, event: &Event<'_, D>) {
         let line = self.lines.line(event);
         let share = self.whole.after(event);
-        let (kind, own) = match event {
+        let (kind, details) = match event {
             // Python sees a step before it is recorded: if it wants no more, the run ends at this very step.
             Event::Equilibrium { number, accepted } => {
                 if self.with_body {
@@ -101,19 +101,19 @@ impl<const D: usize> Listener<D> for Relay {
             steps,
             trial,
         } = &self.stage;
-        let what = json!({
+        let text = json!({
             "event": kind,
             "line": line,
             "share": share,
             "stage": { "index": number, "of": of, "name": name, "kind": stage_kind, "steps": steps, "trial": trial },
-            "own": own,
+            "details": details,
         });
-        let told = Told {
-            what: what.to_string(),
+        let seen = Seen {
+            text: text.to_string(),
             body: self.body.take(),
         };
         // Nobody listens any more: the run goes on to where it may end.
-        if self.told.send(told).is_ok() {
+        if self.events.send(seen).is_ok() {
             let _ = self.go_on.recv();
         }
     }

@@ -85,12 +85,12 @@ def test_names_that_are_not_there_are_told(tmp_path):
 
 
 def test_the_size_of_a_case_is_told(slope):
-    told = slope.check()
-    assert "slope.toml is fine" in str(told) and "factor of safety" in str(told)
-    assert told.particles > 100 and told.bytes > 0 and told.seconds > 0
+    cost = slope.check()
+    assert "slope.toml is fine" in str(cost) and "factor of safety" in str(cost)
+    assert cost.particles > 100 and cost.bytes > 0 and cost.seconds > 0
     assert slope.dimensions == 2 and slope.materials == ("clay", "rock")
     assert slope.stages == ("initial stresses", "factor of safety", "run-out")
-    assert "<table>" in slope._repr_html_() and "<pre>" in told._repr_html_()
+    assert "<table>" in slope._repr_html_() and "<pre>" in cost._repr_html_()
 
 
 def test_a_study_of_the_mesh_is_told_with_all_its_meshes(slope):

@@ -35,10 +35,10 @@ def test_failure_has_its_closed_form():
 
 
 def test_a_law_in_python_is_driven():
-    own = igimp.element(CLAY, "simple-shear-undrained", strain=0.05, steps=20, small_strain=True)
+    ours = igimp.element(CLAY, "simple-shear-undrained", strain=0.05, steps=20, small_strain=True)
     law = VonMises(30e3)
     given = igimp.element(CLAY, "simple-shear-undrained", strain=0.05, steps=20, small_strain=True, law=law)
-    ours, theirs = column(own, "tau_xy [kPa]"), column(given, "tau_xy [kPa]")
+    ours, theirs = column(ours, "tau_xy [kPa]"), column(given, "tau_xy [kPa]")
     assert ours[-1] == pytest.approx(30, rel=1e-6)
     # What is told is of the law that is driven.
     assert given.text.startswith("soil: law in Python, simple shear undrained")
@@ -63,7 +63,7 @@ def test_files_values_and_pictures(tmp_path):
     assert column(stronger, "q [kPa]")[-1] > column(weaker, "q [kPa]")[-1]
     pictures = stronger.save(tmp_path / "results")
     assert set(pictures) >= {"stress-strain", "stress-path"}
-    assert all(own.svg.is_file() and own.png.is_file() for own in pictures.values())
+    assert all(picture.svg.is_file() and picture.png.is_file() for picture in pictures.values())
     assert (tmp_path / "results" / "element.csv").is_file()
     assert "triaxial drained" in str(stronger)
 

@@ -43,8 +43,8 @@ def measured():
 
 
 def cells_of(measured):
-    own = zip(SIDES, measured)
-    return [{"stress": f"{side} kPa", "data": {"strain_yy [%]": STRAINS, "q [kPa]": q}} for side, q in own]
+    tests = zip(SIDES, measured)
+    return [{"stress": f"{side} kPa", "data": {"strain_yy [%]": STRAINS, "q [kPa]": q}} for side, q in tests]
 
 
 def test_values_errors_and_correlations_are_those_of_scipy(measured):
@@ -54,13 +54,13 @@ def test_values_errors_and_correlations_are_those_of_scipy(measured):
     errors = np.sqrt(np.diag(covariance))
     assert list(fit.parameters) == KEYS and not fit.has_kink
     np.testing.assert_allclose([fit[key] for key in KEYS], best, rtol=1e-5)
-    np.testing.assert_allclose([own.error for own in fit.parameters.values()], errors, rtol=1e-4)
+    np.testing.assert_allclose([row.error for row in fit.parameters.values()], errors, rtol=1e-4)
     np.testing.assert_allclose(fit.correlation, covariance / np.outer(errors, errors), atol=1e-4)
     young = fit.parameters["young"]
     assert young.unit == "MPa" and young.start == 20
-    for own in fit.parameters.values():
-        half = student.ppf(0.975, measured.size - len(KEYS)) * own.error
-        np.testing.assert_allclose(own.interval, [own.value - half, own.value + half], rtol=1e-6)
+    for row in fit.parameters.values():
+        half = student.ppf(0.975, measured.size - len(KEYS)) * row.error
+        np.testing.assert_allclose(row.interval, [row.value - half, row.value + half], rtol=1e-6)
     # The curves go through the computed values that stand beside the measurements.
     for side, q, test in zip(SIDES, measured, fit.tests):
         np.testing.assert_allclose(np.asarray(test.data["measured: q [kPa]"]), q, rtol=1e-12)
@@ -89,12 +89,12 @@ def test_data_are_files_dicts_and_frames_alike(measured, tmp_path):
     columns = {"strain_yy [%]": STRAINS, "q [kPa]": measured[1]}
     pandas.DataFrame(columns).to_csv(tmp_path / "cell.csv", index=False)
     (tmp_path / "sand.toml").write_text(
-        "igimp = 1\n[materials.sand]\n" + "".join(f"{key} = {own!r}\n".replace("'", '"') for key, own in SAND.items())
+        "igimp = 1\n[materials.sand]\n" + "".join(f"{key} = {value!r}\n".replace("'", '"') for key, value in SAND.items())
     )
     of_file = igimp.fit(tmp_path / "sand.toml", ["young"], {"data": "cell.csv"}, steps=20, small_strain=True)
     for data in (columns, pandas.DataFrame(columns)):
-        own = igimp.fit(SAND, ["young"], {"data": data}, steps=20, small_strain=True)
-        assert own["young"] == of_file["young"]
+        found = igimp.fit(SAND, ["young"], {"data": data}, steps=20, small_strain=True)
+        assert found["young"] == of_file["young"]
     # What was found drives the same curve, by the keys of a file.
     found = of_file.values("sand")
     again = igimp.element(tmp_path / "sand.toml", values=found, strain=0.06, steps=20, small_strain=True)

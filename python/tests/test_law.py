@@ -53,10 +53,10 @@ def clay():
 
 
 def test_an_elastic_law_gives_what_the_engine_gives(column):
-    own = column.run(progress=False).body
+    built_in = column.run(progress=False).body
     name = column.materials[0]
     law = column.with_laws({name: Elastic()}).run(progress=False).body
-    assert np.allclose(law.sigma, own.sigma, rtol=1e-9, atol=1e-9 * abs(own.sigma).max())
+    assert np.allclose(law.sigma, built_in.sigma, rtol=1e-9, atol=1e-9 * abs(built_in.sigma).max())
     assert law.regime.max() == 0
 
 
@@ -77,7 +77,7 @@ def test_a_plastic_law_takes_the_steps_of_the_engine(clay):
 def test_results_tell_of_the_law_that_ran(column, tmp_path):
     (name,) = column.materials
     found = column.with_laws({name: Elastic()}).run(out=tmp_path / "r", progress=False)
-    (materials,) = [own for own in found.summary["setup"] if own["title"] == "Materials"]
+    (materials,) = [part for part in found.summary["setup"] if part["title"] == "Materials"]
     assert materials["rows"][0][1] == "law in Python" and "Elastic()" in materials["rows"][0][5]
     assert "law in Python" in (tmp_path / "r" / "report.html").read_text()
 

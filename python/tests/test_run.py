@@ -18,7 +18,7 @@ def test_memory_and_folder_hold_the_same(column, tmp_path):
     kept = column.run(progress=False)
     written = column.run(out=tmp_path / "column", progress=False)
     assert kept.exit_code == written.exit_code == 0 and kept.ending == "done"
-    assert [own.met for own in kept.checks] == [own.met for own in written.checks]
+    assert [check.met for check in kept.checks] == [check.met for check in written.checks]
     for name in ("x", "sigma", "displacement", "eps_p_eq", "number"):
         assert np.array_equal(getattr(kept.body, name), getattr(written.body, name))
     read = igimp.open(tmp_path / "column")
@@ -62,7 +62,7 @@ def test_a_factor_of_safety_is_an_interval(folder):
 
 def test_pictures_report_and_frames_are_found(folder):
     assert folder.report.exists()
-    assert folder.figures and all(own.svg.exists() and own.png.exists() for own in folder.figures.values())
+    assert folder.figures and all(figure.svg.exists() and figure.png.exists() for figure in folder.figures.values())
     assert "<img" in folder.figures._repr_html_() and "factor of safety" in folder._repr_html_()
     assert folder.frames and folder.frames[-1][1].exists()
     history = folder.monitors["crest"]
@@ -96,30 +96,30 @@ def test_want_of_equilibrium_is_a_result(column):
     with pytest.raises(igimp.NotConverged):
         found.raise_for_failure()
     # A check of a stage that did not come to its end is told as the program tells it.
-    asked = {own.name: own for own in found.checks}["height over initial height"]
+    asked = {check.name: check for check in found.checks}["height over initial height"]
     assert asked.verdict == "not reached" and asked.standing == "not-reached" and not asked.met
-    assert str(found).count("NOT REACHED") == sum(own.verdict == "not reached" for own in found.checks)
+    assert str(found).count("NOT REACHED") == sum(check.verdict == "not reached" for check in found.checks)
     assert "NOT REACHED" in found._repr_html_()
 
 
 def test_a_check_is_told_in_the_unit_of_its_case():
     # By hand: 1 kPa is 1000 Pa.
-    own = {"quantity": "q", "expected": 45e3, "source": "s", "unit": {"name": "kPa", "in_si": 1000.0}}
+    stated = {"quantity": "q", "expected": 45e3, "source": "s", "unit": {"name": "kPa", "in_si": 1000.0}}
 
     def check(measured, band, **row):
-        return igimp.Check.of({"check": {**own, "measured": measured, "band": band}, **row})
+        return igimp.Check.of({"check": {**stated, "measured": measured, "band": band}, **row})
 
     held = check(44e3, {"between": [40e3, 50e3]}, **{"pass": True}, standing="held")
     assert (held.value, held.reference, held.verdict) == (44e3, 45e3, "met")
     assert str(held) == "q: 44 kPa, expected 45 kPa, 40 … 50 kPa (s)"
     lost = check(None, {"at-most": 50e3}, **{"pass": False}, standing="not-reached")
-    assert (lost.verdict, lost.told, lost.band) == ("not reached", "-", "≤ 50 kPa")
+    assert (lost.verdict, lost.printed, lost.band) == ("not reached", "-", "≤ 50 kPa")
     safe = check(1.6e8, {"at-least": 45e3}, **{"pass": True}, standing="nothing-fails")
-    assert (safe.verdict, safe.told) == ("met", "> 1000")
+    assert (safe.verdict, safe.printed) == ("met", "> 1000")
     # Summaries of before say neither.
     old = {"quantity": "q", "expected": 2.0, "source": "s", "measured": 3.0, "band": {"relative": 0.01}}
     old = igimp.Check.of({"check": old, "pass": False})
-    assert (old.verdict, old.told, old.band, old.unit) == ("missed", "3", "± 1 %", "")
+    assert (old.verdict, old.printed, old.band, old.unit) == ("missed", "3", "± 1 %", "")
 
 
 def test_a_missed_reference_is_told(column):
@@ -139,7 +139,7 @@ def test_steps_are_seen_and_may_end_the_run(slope):
 
     found = slope.run(progress=False, callback=look)
     assert len(seen) == 4 and found.interrupted and found.ending == "interrupted"
-    assert [own.number for own in seen] == [1, 2, 3, 4] and seen[0].stage == "initial stresses"
+    assert [step.number for step in seen] == [1, 2, 3, 4] and seen[0].stage == "initial stresses"
     assert seen[-1].residual < 1e-6 and seen[-1].body.x.shape[1] == 2
     assert seen[0].load_factor < seen[-1].load_factor <= 1
 
@@ -235,14 +235,14 @@ def test_progress_is_lines_or_a_bar(column, capsys):
 def test_a_study_of_the_mesh_is_an_object(column):
     found = column.run(meshes=2, progress=False)
     study = found.mesh_study
-    assert study.meshes == ("h", "h/2") and all(len(own.values) == 2 for own in study)
+    assert study.meshes == ("h", "h/2") and all(len(result.values) == 2 for result in study)
     assert "<table>" in study._repr_html_()
 
 
 def test_tables_are_dicts_of_arrays_without_pandas(folder, monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
     history = folder.monitors["crest"]
-    assert isinstance(history, dict) and all(isinstance(own, np.ndarray) for own in history.values())
+    assert isinstance(history, dict) and all(isinstance(column, np.ndarray) for column in history.values())
 
 
 def test_a_motion_has_velocity_energy_and_times(tmp_path):

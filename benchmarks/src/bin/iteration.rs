@@ -75,9 +75,9 @@ fn table(arguments: &Arguments) -> BenchResult {
     for state in 0..STATES.len() {
         for cells in &arguments.cells {
             for solver in &arguments.solver {
-                let mut own = Command::new(std::env::current_exe()?);
-                own.args(["--row", &state.to_string(), "--cells", &cells.to_string()]);
-                own.args([
+                let mut row = Command::new(std::env::current_exe()?);
+                row.args(["--row", &state.to_string(), "--cells", &cells.to_string()]);
+                row.args([
                     "--solver",
                     solver,
                     "--threads",
@@ -85,7 +85,7 @@ fn table(arguments: &Arguments) -> BenchResult {
                     "--elastic",
                     &arguments.elastic.to_string(),
                 ]);
-                own.status()?;
+                row.status()?;
             }
         }
     }

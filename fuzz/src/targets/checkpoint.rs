@@ -32,10 +32,10 @@ pub(super) fn complete(paths: &[PathBuf], known: Vec<Input>) -> Vec<Input> {
     let is_base = |path: &PathBuf| path.file_name().is_some_and(|name| name == BASE);
     let base = paths.iter().position(is_base).map(|at| known[at].clone());
     let base = base.unwrap_or_default();
-    let whole = |own: Input| {
+    let whole = |run: Input| {
         let mut input = base.clone();
-        let is_sealed = !own.parts.contains_key(MANIFEST);
-        input.parts.extend(own.parts);
+        let is_sealed = !run.parts.contains_key(MANIFEST);
+        input.parts.extend(run.parts);
         if let Some(bytes) = input.parts.get_mut(MANIFEST)
             && let Ok(text) = std::str::from_utf8(bytes)
         {

@@ -66,11 +66,11 @@ pub(crate) fn run(scope: &mut Scope) -> BenchResult {
                 of_motion.time.over(&of_statics.time),
                 of_motion.alone.over(&of_statics.alone),
             ];
-            for (what, ratio) in ["step-over-statics", "correction-over-statics"]
+            for (name, ratio) in ["step-over-statics", "correction-over-statics"]
                 .iter()
                 .zip(&ratios)
             {
-                let name = format!("{}/{what}/{}", still.name, threads::name(count));
+                let name = format!("{}/{name}/{}", still.name, threads::name(count));
                 scope.report.row("motion", &name, particles, "-", ratio);
             }
             let milliseconds = |rounds: &Rounds| format!("{:.2}", rounds.median() / 1e6);
