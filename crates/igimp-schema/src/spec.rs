@@ -371,9 +371,7 @@ impl Read for Measured {
         let value = node.number().ok_or(Wrong)?;
         let (dimension, unit) = match &node.value {
             Value::Quantity(_, text) => (
-                Quantity::parse(text)
-                    .ok()
-                    .and_then(|quantity| quantity.dimension),
+                Quantity::parse(text).ok().and_then(|read| read.dimension),
                 unit_of(text),
             ),
             _ => (None, None),

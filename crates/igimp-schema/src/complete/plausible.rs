@@ -243,7 +243,7 @@ pub fn check(tree: &Node, problems: &mut Problems) {
             "materials" => {
                 let named = part.entries().iter();
                 named
-                    .map(|entry| (Some(&entry.key[..]), &entry.node))
+                    .map(|item| (Some(&item.key[..]), &item.node))
                     .collect()
             }
             _ => of_list.collect(),
@@ -312,12 +312,8 @@ impl Plausible {
         let written = || found.iter().filter(|stated| stated.value != 0.0);
         let size = |stated: &&Stated| stated.value.abs();
         let by_size = |a: &&Stated, b: &&Stated| size(a).total_cmp(&size(b));
-        let high = written()
-            .max_by(by_size)
-            .filter(|stated| size(stated) > most);
-        let low = written()
-            .min_by(by_size)
-            .filter(|stated| size(stated) < least);
+        let high = written().max_by(by_size).filter(|item| size(item) > most);
+        let low = written().min_by(by_size).filter(|item| size(item) < least);
         for (stated, bound) in [(high, "up to "), (low, "down to ")] {
             let Some(stated) = stated else { continue };
             let subject =
@@ -404,19 +400,14 @@ fn check_loads(tree: &Node, problems: &mut Problems) {
 
 /// Whether two tables hold the same but for their names.
 fn is_same(a: &Node, b: &Node) -> bool {
-    let entries = |of: &Node| {
-        of.entries()
-            .iter()
-            .filter(|entry| entry.key != "name")
-            .count()
-    };
-    let all = || a.entries().iter().filter(|entry| entry.key != "name");
+    let entries = |of: &Node| of.entries().iter().filter(|row| row.key != "name").count();
+    let all = || a.entries().iter().filter(|row| row.key != "name");
     match (&a.value, &b.value) {
         (Value::Table(_), Value::Table(_)) => {
             entries(a) == entries(b)
-                && all().all(|entry| {
-                    b.get(&entry.key)
-                        .is_some_and(|other| is_same(&entry.node, other))
+                && all().all(|row| {
+                    b.get(&row.key)
+                        .is_some_and(|other| is_same(&row.node, other))
                 })
         }
         (Value::List(a), Value::List(b)) => {

@@ -54,9 +54,7 @@ impl Powers {
 
     /// The powers of a dimension; none of a plain number.
     pub fn of(dimension: Option<Dimension>) -> Self {
-        dimension.map_or_else(Self::default, |dimension| {
-            Self::of_unit(dimension.si_unit())
-        })
+        dimension.map_or_else(Self::default, |kind| Self::of_unit(kind.si_unit()))
     }
 
     /// The powers of a quotient.
