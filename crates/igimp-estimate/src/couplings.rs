@@ -78,8 +78,8 @@ impl<'g, const D: usize> Couplings<'g, D> {
         }
         let mut starts = vec![0];
         let mut coupled = Vec::new();
-        for (node, &own) in number.iter().enumerate() {
-            if own == u32::MAX {
+        for (node, &block) in number.iter().enumerate() {
+            if block == u32::MAX {
                 continue;
             }
             let place = self.grid.node_place(node);
@@ -108,18 +108,18 @@ impl<'g, const D: usize> Couplings<'g, D> {
         let nodes = || {
             (0..extent.iter().product()).map(move |mut k: usize| {
                 extent.map(|extent| {
-                    let own = k % extent;
+                    let offset = k % extent;
                     k /= extent;
-                    own
+                    offset
                 })
             })
         };
-        for own in nodes() {
-            let place: [usize; D] = std::array::from_fn(|axis| first[axis] + own[axis]);
+        for node in nodes() {
+            let place: [usize; D] = std::array::from_fn(|axis| first[axis] + node[axis]);
             let marks = &mut around[self.grid.node_index(place)];
             for other in nodes() {
                 let code = (0..D).rev().fold(0, |code, axis| {
-                    SIDE * code + other[axis] + REACH - own[axis]
+                    SIDE * code + other[axis] + REACH - node[axis]
                 });
                 *marks |= 1 << code;
             }
@@ -137,7 +137,7 @@ mod tests {
     use igimp_material::{Elasticity, HenckyElastic, TangentKind};
     use igimp_shape::Axis;
 
-    /// What is foreseen is what the assembly finds for particles that have moved.
+    /// The foreseen couplings are those that the assembly finds for particles that have moved.
     #[test]
     fn couplings_are_those_of_the_assembly() {
         let axes = [6, 4, 5].map(|cells| Axis::uniform(0.0, 1.0, cells).unwrap());

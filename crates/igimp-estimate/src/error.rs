@@ -1,4 +1,4 @@
-//! Why the cost of a case cannot be told, or is more than can be had.
+//! Reasons why a case has no estimate, or needs more than can be had.
 
 use igimp_assembly::AssemblyError;
 use igimp_geometry::SeedError;
@@ -32,7 +32,7 @@ pub enum EstimateError {
         name: &'static str,
         /// Its value.
         value: String,
-        /// What it should be.
+        /// Its expected form.
         expected: NoAmount,
     },
     /// The run cannot have the memory that it needs.
@@ -41,11 +41,11 @@ pub enum EstimateError {
          fewer points per cell or fewer threads need less"
     )]
     Memory {
-        /// What it is thought to need, in words.
+        /// The estimated need, in words.
         needed: String,
-        /// What can be had, in words.
+        /// The memory at hand, in words.
         limit: String,
-        /// Who sets the limit.
+        /// The source of the limit.
         by: &'static str,
     },
 }

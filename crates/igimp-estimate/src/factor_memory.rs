@@ -28,7 +28,7 @@ const UNKNOWN: f64 = 8.0 * 1_073_741_824.0;
 pub struct FactorMemory {
     /// How much \[bytes\].
     pub bytes: usize,
-    /// Who says so, as the end of a sentence.
+    /// Its source, as the end of a sentence.
     pub by: String,
     /// Whether another machine, or another environment, would allow another amount.
     pub is_of_machine: bool,
@@ -145,10 +145,10 @@ mod tests {
         );
     }
 
-    // GOAL: a limit is told where it decided, and nowhere else.
+    // GOAL: a limit is named where it decided, and nowhere else.
     // ORACLE: the words of the two.
     #[test]
-    fn a_limit_is_told_where_it_decides() {
+    fn a_limit_is_named_where_it_decides() {
         let memory = resolve(None, Some("1 GiB"), MACHINE).unwrap();
         let factors = 2 << 30;
         let decided = Reason::Memory {

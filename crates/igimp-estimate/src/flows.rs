@@ -1,4 +1,4 @@
-//! What the flows of a case take that are computed before its first stage.
+//! Cost of the flows of a case that are computed before its first stage.
 //!
 //! Fitted to dams of 400 to 100 000 heads in the plane and of 1 300 to 30 000 in space: time and memory grow little faster than the heads.
 //! Upright dams take half as long as is said here, a sloping one with a drain twice as long. A flow in time takes steps that its error
@@ -29,8 +29,8 @@ impl Flows {
     pub(super) fn of<const D: usize>(case: &Case<D>, nodes: usize) -> Self {
         let [mut steady, mut moments] = [0.0; 2];
         for condition in &case.water {
-            if let PoreSource::Seepage(own) = &condition.source {
-                match own.in_time {
+            if let PoreSource::Seepage(flow) = &condition.source {
+                match flow.in_time {
                     Some(_) => moments += 1.0,
                     None => steady += 1.0,
                 }

@@ -68,7 +68,7 @@ pub struct Estimate {
     pub unknowns: usize,
     /// How its linear systems will be solved.
     pub systems: Systems,
-    /// What flows of water take that are computed.
+    /// The cost of computed flows of water.
     pub flows: Flows,
     /// Memory of a particle, and of an unknown with its share of what the linear solver keeps \[bytes\].
     pub per_item: [f64; 2],
@@ -80,7 +80,7 @@ pub struct Estimate {
     pub work: f64,
 }
 
-/// What the bodies of a case touch, all of them there.
+/// Nodes that the bodies of a case touch, all of them there.
 struct Survey<'g, const D: usize> {
     /// By node: whether soil touches it, and soil whose water flows.
     touched: Vec<bool>,
@@ -94,14 +94,17 @@ struct Survey<'g, const D: usize> {
 
 impl<'g, const D: usize> Survey<'g, D> {
     fn of(case: &Case<D>, grid: &'g Grid<D>) -> Result<Self, EstimateError> {
-        let mut own = Self {
+        let mut survey = Self {
             touched: vec![false; grid.node_count()],
             pressed: vec![false; grid.node_count()],
             particles: Vec::new(),
             coupled: 0,
             couplings: (D == 3).then(|| Couplings::new(grid)),
         };
-        let consolidates = case.stages.iter().any(|own| own.consolidation.is_some());
+        let consolidates = case
+            .stages
+            .iter()
+            .any(|stage| stage.consolidation.is_some());
         let (mut scratch, mut list) = (Scratch::default(), Vec::new());
         for body in &case.bodies {
             let drainage = &case.materials[body.material].drainage;
@@ -112,24 +115,25 @@ impl<'g, const D: usize> Survey<'g, D> {
                 let (basis, domain) = (&*case.method.basis, (&seed.x, &seed.half_length));
                 supports(grid, basis, domain.0, domain.1, &mut scratch, &mut list)?;
                 for support in &list {
-                    own.touched[support.node] = true;
-                    own.pressed[support.node] |= flows;
+                    survey.touched[support.node] = true;
+                    survey.pressed[support.node] |= flows;
                 }
-                if let Some(couplings) = &mut own.couplings {
+                if let Some(couplings) = &mut survey.couplings {
                     couplings.add(domain.0, domain.1);
                 }
             }
-            own.particles.push(seeds.len());
-            own.coupled += if flows { seeds.len() } else { 0 };
+            survey.particles.push(seeds.len());
+            survey.coupled += if flows { seeds.len() } else { 0 };
         }
-        Ok(own)
+        Ok(survey)
     }
 
     /// The most particles that are there at once.
     fn most_particles(&self, case: &Case<D>) -> usize {
         let count = |there: &[bool]| -> usize {
-            let own = std::iter::zip(&self.particles, there);
-            own.map(|(count, &there)| if there { *count } else { 0 })
+            let bodies = std::iter::zip(&self.particles, there);
+            bodies
+                .map(|(count, &there)| if there { *count } else { 0 })
                 .sum()
         };
         let at_start: Vec<bool> = case.bodies.iter().map(|body| body.from_start).collect();
@@ -172,7 +176,7 @@ pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, EstimateErro
     } else {
         [PER_PARTICLE, PER_UNKNOWN]
     };
-    let nodes = survey.touched.iter().filter(|own| **own).count();
+    let nodes = survey.touched.iter().filter(|touched| **touched).count();
     let flows = Flows::of(case, nodes);
     let of_pressures = PER_COUPLED[usize::from(D == 3)] * survey.coupled as f64;
     let solving =
@@ -314,8 +318,8 @@ fn free<const D: usize>(case: &Case<D>, x: [f64; D]) -> u8 {
     let near = |a: f64, b: f64, axis: usize| (a - b).abs() < 1e-6 * cell[axis];
     let sides = &case.boundaries;
     let mut held = [false; D];
-    for (axis, own) in sides.sides.iter().enumerate() {
-        for (side, at) in std::iter::zip(own, [lower[axis], upper[axis]]) {
+    for (axis, ends) in sides.sides.iter().enumerate() {
+        for (side, at) in std::iter::zip(ends, [lower[axis], upper[axis]]) {
             if near(x[axis], at, axis) {
                 held[axis] |= *side != Side::Free;
                 for component in &mut held {
@@ -330,8 +334,8 @@ fn free<const D: usize>(case: &Case<D>, x: [f64; D]) -> u8 {
             fixed.lower[axis] - slack <= x[axis] && x[axis] <= fixed.upper[axis] + slack
         });
         if inside {
-            for (own, fixed) in std::iter::zip(&mut held, fixed.fix) {
-                *own |= fixed;
+            for (component, fixed) in std::iter::zip(&mut held, fixed.fix) {
+                *component |= fixed;
             }
         }
     }
@@ -395,7 +399,7 @@ pub(crate) mod tests {
         assert!((large - BASE - 10.5 * drawing).abs() < 1.0);
     }
 
-    /// What is said of an item, times the number of items, is what solving takes.
+    /// The cost of an item, times the number of items, is that of solving.
     #[test]
     fn items_add_up_to_what_solving_takes() {
         let size = estimate(&case()).unwrap();

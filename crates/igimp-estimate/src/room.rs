@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_fit_is_told_with_its_bound() {
+    fn memory_that_cannot_fit_names_its_bound() {
         let limit = Limit {
             bytes: 4e8,
             by: "the limit of the address space (ulimit -v)",

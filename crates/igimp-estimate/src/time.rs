@@ -83,7 +83,7 @@ pub fn shares<const D: usize>(case: &Case<D>) -> Vec<f64> {
         .map(|stage| planned(case, stage).corrections)
         .collect();
     let all: f64 = corrections.iter().sum();
-    corrections.iter().map(|own| own / all).collect()
+    corrections.iter().map(|part| part / all).collect()
 }
 
 /// The time by the same model of the steps and corrections that a run took \[s\]: what tells a computer
@@ -111,8 +111,8 @@ const FLOW_STEPS: f64 = 60.0;
 
 /// The steps of a stage in which water flows, none longer than its longest; none where no water flows.
 fn steps_of_flow(stage: &Stage) -> f64 {
-    stage.consolidation.as_ref().map_or(0.0, |own| {
-        let least = own.longest_step.map_or(0.0, |step| own.duration / step);
+    stage.consolidation.as_ref().map_or(0.0, |flow| {
+        let least = flow.longest_step.map_or(0.0, |step| flow.duration / step);
         least.max(FLOW_STEPS)
     })
 }
@@ -139,7 +139,7 @@ fn planned<const D: usize>(case: &Case<D>, stage: &Stage) -> StepsTaken {
                 ReductionPath::Reduce => (steps + 3.0, 4.0),
             }
         }
-        StageKind::Dynamic(own) => (steps.max(steps_of_time(case, own)), 0.0),
+        StageKind::Dynamic(motion) => (steps.max(steps_of_time(case, motion)), 0.0),
         _ => (steps.max(steps_of_flow(stage)), 0.0),
     };
     let to_collapse =
@@ -149,7 +149,7 @@ fn planned<const D: usize>(case: &Case<D>, stage: &Stage) -> StepsTaken {
         StageKind::Gravity { .. } | StageKind::Load { .. } if to_collapse => 5.0,
         StageKind::Gravity { .. } | StageKind::Load { .. } => 3.7,
         StageKind::Displacement { .. } | StageKind::Rigid(_) => 6.5,
-        StageKind::Dynamic(own) => failing_in_motion(own).map_or(4.0, |[_, by_step]| by_step),
+        StageKind::Dynamic(motion) => failing_in_motion(motion).map_or(4.0, |[_, by_step]| by_step),
         StageKind::Wait => 3.0,
         _ => 5.0,
     };
@@ -166,8 +166,8 @@ fn planned<const D: usize>(case: &Case<D>, stage: &Stage) -> StepsTaken {
 }
 
 /// Steps over height in cells and corrections of soil that fails in motion, where a stage of motion is to see that.
-fn failing_in_motion(own: &Dynamic) -> Option<[f64; 2]> {
-    match (own.reduction.is_some(), own.at_rest.is_some()) {
+fn failing_in_motion(motion: &Dynamic) -> Option<[f64; 2]> {
+    match (motion.reduction.is_some(), motion.at_rest.is_some()) {
         (true, _) => Some(SLIDE),
         (_, true) => Some(COLLAPSE),
         _ => None,
@@ -177,27 +177,27 @@ fn failing_in_motion(own: &Dynamic) -> Option<[f64; 2]> {
 /// The height of soil, from the lowest place of its bodies to the highest \[m\].
 fn height<const D: usize>(case: &Case<D>) -> f64 {
     let bounds = case.bodies.iter().map(|body| body.region.bounds());
-    let (lowest, highest) = bounds.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), own| {
-        (low.min(own.0[D - 1]), high.max(own.1[D - 1]))
+    let (lowest, highest) = bounds.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), ends| {
+        (low.min(ends.0[D - 1]), high.max(ends.1[D - 1]))
     });
     (highest - lowest).max(0.0)
 }
 
 /// The steps of a stage that takes time: by the cells that waves cross, or by the way of soil that fails; none longer than the intervals of its
 /// record.
-fn steps_of_time<const D: usize>(case: &Case<D>, own: &Dynamic) -> f64 {
+fn steps_of_time<const D: usize>(case: &Case<D>, motion: &Dynamic) -> f64 {
     let speeds = case
         .materials
         .iter()
         .map(|material| material.wave_speed(case.gravity));
     let fastest = speeds.fold(0.0, f64::max);
     let cell = (case.grid.smallest_cell().into_iter()).fold(f64::INFINITY, f64::min);
-    let by_motion = failing_in_motion(own).map_or(
-        own.duration * fastest / (CELLS_PER_STEP * cell),
+    let by_motion = failing_in_motion(motion).map_or(
+        motion.duration * fastest / (CELLS_PER_STEP * cell),
         |[by_height, _]| by_height * height(case) / cell,
     );
-    let record = own.ground_motion.as_ref();
-    let by_record = record.map_or(0.0, |motion| motion.steps(own.duration));
+    let record = motion.ground_motion.as_ref();
+    let by_record = record.map_or(0.0, |record| record.steps(motion.duration));
     by_motion.max(by_record)
 }
 
@@ -221,7 +221,7 @@ fn is_open_ended(stage: &Stage) -> bool {
     matches!(
         stage.kind,
         StageKind::RunOut(_) | StageKind::StrengthReduction(_)
-    ) || matches!(&stage.kind, StageKind::Dynamic(own) if own.at_rest.is_some())
+    ) || matches!(&stage.kind, StageKind::Dynamic(motion) if motion.at_rest.is_some())
         || stop.displacement.is_some()
         || stop.no_equilibrium
         || stop.load_grows_less_than.is_some()
@@ -257,7 +257,7 @@ fn of_stages<const D: usize>(
     }
     let [picture, field] = PICTURE;
     let (pictures, fields) = pictures(case);
-    let each = |[own, part]: [f64; 2]| own + part * particles;
+    let each = |[base, part]: [f64; 2]| base + part * particles;
     let output = BEGINNING
         + picture * pictures
         + field * fields * particles
@@ -405,11 +405,11 @@ mod tests {
         let stage = case
             .stages
             .iter_mut()
-            .find(|own| own.consolidation.is_some());
+            .find(|stage| stage.consolidation.is_some());
         let stage = stage.unwrap();
-        let own = stage.consolidation.as_mut().unwrap();
+        let flow = stage.consolidation.as_mut().unwrap();
         let day = 86_400.0;
-        (own.duration, own.longest_step) = (60_000.0 * day, Some(5.0 * day));
+        (flow.duration, flow.longest_step) = (60_000.0 * day, Some(5.0 * day));
         let stage = stage.clone();
         let taken = planned(&case, &stage);
         assert!((taken.steps - 12_000.0).abs() < 1e-6, "{}", taken.steps);

@@ -17,13 +17,13 @@ pub fn exceeded(summary: &Summary) -> Vec<String> {
     let Some(expected) = &summary.estimate else {
         return Vec::new();
     };
-    let mut told = Vec::new();
+    let mut remarks = Vec::new();
     let threads = expected.threads.max(1) as f64;
     let used = summary
         .cpu_seconds
         .map_or(summary.seconds, |cpu| cpu / threads);
     if used > FACTOR * expected.seconds && used - expected.seconds > LEAST_SECONDS {
-        told.push(format!(
+        remarks.push(format!(
             "the run took {}, {:.1} times the estimate of {}: more steps were cut, or more corrections \
              needed, than is usual",
             time::readable(used),
@@ -37,14 +37,14 @@ pub fn exceeded(summary: &Summary) -> Vec<String> {
         && peak > FACTOR * estimated
         && peak - estimated > LEAST_MEMORY
     {
-        told.push(format!(
+        remarks.push(format!(
             "the run needed {} of memory, {:.1} times the estimate of {}",
             readable(peak * 1_048_576.0),
             peak / estimated,
             readable(bytes),
         ));
     }
-    told
+    remarks
 }
 
 /// Says so if a run will not fit into the memory that is available, or not if iterations are given up for factors: what it is
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_beyond_its_estimate_is_told_in_words() {
+    fn a_run_beyond_its_estimate_is_reported() {
         insta::assert_snapshot!(exceeded(&summary(480.0, 800.0)).join("\n"), @r"
         the run took 4 min, 2.4 times the estimate of 2 min: more steps were cut, or more corrections needed, than is usual
         the run needed 800 MiB of memory, 2.0 times the estimate of 400 MiB
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_beyond_all_memory_is_told_beforehand() {
+    fn a_run_beyond_all_memory_is_reported_beforehand() {
         if available().is_none() {
             println!("skipped: the system does not tell its memory");
             return;

@@ -11,29 +11,29 @@ const STEPS: i64 = 4;
 /// Puts them into the tree. What is not stated as it should be stays, for the checks to find.
 pub(super) fn expand(tree: &mut Node) {
     let courses: Vec<(String, Vec<Node>)> = (tree.items_at("water").iter())
-        .filter_map(|own| Some((own.text_at("name")?.to_owned(), times(own)?.to_vec())))
+        .filter_map(|water| Some((water.text_at("name")?.to_owned(), times(water)?.to_vec())))
         .collect();
-    if let Some(Value::List(water)) = tree.get_mut("water").map(|own| &mut own.value) {
-        replace(water, |own| {
-            let times = times(own)?;
-            Some(times.iter().map(|time| condition_at(own, time)).collect())
+    if let Some(Value::List(water)) = tree.get_mut("water").map(|node| &mut node.value) {
+        replace(water, |row| {
+            let times = times(row)?;
+            Some(times.iter().map(|time| condition_at(row, time)).collect())
         });
     }
-    if let Some(Value::List(stages)) = tree.get_mut("stages").map(|own| &mut own.value) {
-        replace(stages, |own| Some(searches(own, in_time(own, &courses)?)));
+    if let Some(Value::List(stages)) = tree.get_mut("stages").map(|node| &mut node.value) {
+        replace(stages, |row| Some(searches(row, in_time(row, &courses)?)));
     }
 }
 
 /// Puts those that are made in the place of those that they are made of, as long as they are not too many.
 fn replace(list: &mut Vec<Node>, made_of: impl Fn(&Node) -> Option<Vec<Node>>) {
     let mut made = 0;
-    for own in std::mem::take(list) {
-        match made_of(&own).filter(|own| made + own.len() <= MOST) {
+    for item in std::mem::take(list) {
+        match made_of(&item).filter(|several| made + several.len() <= MOST) {
             Some(several) => {
                 made += several.len();
                 list.extend(several);
             }
-            None => list.push(own),
+            None => list.push(item),
         }
     }
 }
@@ -50,8 +50,8 @@ fn times(condition: &Node) -> Option<&[Node]> {
 fn in_time<'a>(stage: &Node, courses: &'a [(String, Vec<Node>)]) -> Option<&'a [Node]> {
     let water = stage.text_at("in_time")?;
     stage.text_at("name")?;
-    let own = courses.iter().find(|(name, _)| name == water)?;
-    Some(&own.1)
+    let course = courses.iter().find(|(name, _)| name == water)?;
+    Some(&course.1)
 }
 
 /// A name at a time, of characters that names may have.
@@ -65,8 +65,8 @@ fn name_at(name: &str, time: &Node) -> String {
 /// Sets the value of a key, or adds it.
 fn set(table: &mut Node, key: &str, value: Value) {
     let place = table.place;
-    if let Some(own) = table.get_mut(key) {
-        own.value = value;
+    if let Some(node) = table.get_mut(key) {
+        node.value = value;
     } else if let Some(entries) = table.entries_mut() {
         entries.push(Entry {
             key: key.to_owned(),
@@ -78,14 +78,14 @@ fn set(table: &mut Node, key: &str, value: Value) {
 
 fn remove(table: &mut Node, keys: &[&str]) {
     if let Some(entries) = table.entries_mut() {
-        entries.retain(|own| !keys.contains(&own.key.as_str()));
+        entries.retain(|entry| !keys.contains(&entry.key.as_str()));
     }
 }
 
 /// The condition of one time.
-fn condition_at(own: &Node, time: &Node) -> Node {
-    let mut found = own.clone();
-    let name = name_at(own.text_at("name").unwrap_or_default(), time);
+fn condition_at(water: &Node, time: &Node) -> Node {
+    let mut found = water.clone();
+    let name = name_at(water.text_at("name").unwrap_or_default(), time);
     set(&mut found, "name", Value::Text(name));
     if let Some(seepage) = found.get_mut("seepage") {
         remove(seepage, &["times"]);
@@ -95,14 +95,14 @@ fn condition_at(own: &Node, time: &Node) -> Node {
 }
 
 /// A stage that brings the water, and a search, by time; each water follows that of the time before.
-fn searches(own: &Node, times: &[Node]) -> Vec<Node> {
-    let text = |key: &str| own.text_at(key).unwrap_or_default();
+fn searches(stage: &Node, times: &[Node]) -> Vec<Node> {
+    let text = |key: &str| stage.text_at(key).unwrap_or_default();
     let mut found: Vec<Node> = Vec::new();
-    let mut from = own.get("start_from").map(|own| own.value.clone());
+    let mut from = stage.get("start_from").map(|node| node.value.clone());
     for time in times {
         let name = name_at(text("name"), time);
         let water_name = format!("{name} (water)");
-        let mut water = Node::written(Value::Table(Vec::new()), own.place);
+        let mut water = Node::written(Value::Table(Vec::new()), stage.place);
         set(&mut water, "name", Value::Text(water_name.clone()));
         set(&mut water, "type", Value::Text("construction".to_owned()));
         if let Some(from) = from.replace(Value::Text(water_name)) {
@@ -116,7 +116,7 @@ fn searches(own: &Node, times: &[Node]) -> Vec<Node> {
         set(&mut water, "drained", Value::Flag(true));
         set(&mut water, "geometry", Value::Text("given".to_owned()));
         set(&mut water, "steps", Value::Integer(STEPS));
-        let mut search = own.clone();
+        let mut search = stage.clone();
         remove(&mut search, &["in_time", "start_from"]);
         set(&mut search, "name", Value::Text(name));
         found.extend([water, search]);

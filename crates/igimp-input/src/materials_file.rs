@@ -20,7 +20,7 @@ pub struct MaterialsFile {
     pub materials: Vec<Material>,
     /// Warnings, ready to print; empty when there are none.
     pub warnings: String,
-    /// What is written in the file, with the overrides.
+    /// The tree of the file, with the overrides.
     tree: Node,
     /// Name and text of the file, and the overrides.
     origin: (String, String, Vec<String>),
@@ -88,11 +88,11 @@ impl MaterialsFile {
         Self::parse(name, text, &overrides)
     }
 
-    /// What is written of a key of a material, such as `softening.cu.residual`: a quantity as text, or a number. Nothing of tables and
+    /// The written value of a key of a material, such as `softening.cu.residual`: a quantity as text, or a number. Nothing of tables and
     /// lists, and of keys that are left out.
     pub fn written(&self, material: &str, key: &str) -> Option<String> {
-        let own = self.tree.get("materials")?.get(material)?;
-        let node = key.split('.').try_fold(own, |table, key| table.get(key))?;
+        let root = self.tree.get("materials")?.get(material)?;
+        let node = key.split('.').try_fold(root, |table, key| table.get(key))?;
         let number = || node.number().map(|number| number.to_string());
         node.text().map(str::to_owned).or_else(number)
     }

@@ -40,7 +40,7 @@ pub enum InputError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         #[source]
         source: std::io::Error,
     },
@@ -206,9 +206,9 @@ impl CaseFile {
 
     /// Warnings in a sentence each, as they stand in summaries and reports: what is wrong, and what to do about it.
     pub fn told(&self) -> Vec<String> {
-        let told = self.diagnostics.iter();
-        told.map(|own| {
-            [std::slice::from_ref(&own.message), &own.help]
+        let all = self.diagnostics.iter();
+        all.map(|warning| {
+            [std::slice::from_ref(&warning.message), &warning.help]
                 .concat()
                 .join("; ")
         })
@@ -239,8 +239,8 @@ impl CaseFile {
 
     fn explain_mesh(&self, parts: usize) -> String {
         let mut mesh = self.completed.clone();
-        let own = mesh.get("grid").and_then(|grid| grid.count_at("refine"));
-        let refine = own.unwrap_or(1) * parts;
+        let stated = mesh.get("grid").and_then(|grid| grid.count_at("refine"));
+        let refine = stated.unwrap_or(1) * parts;
         for (table, key, count) in [("grid", "refine", refine), ("mesh_study", "meshes", 1)] {
             if let Some(node) = mesh.get_mut(table).and_then(|table| table.get_mut(key)) {
                 node.value = Value::Integer(i64::try_from(count).unwrap_or(i64::MAX));

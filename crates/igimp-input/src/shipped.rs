@@ -8,7 +8,7 @@ use crate::{CaseFile, InputError};
 pub struct Shipped {
     /// Name, the file's without extension.
     pub name: &'static str,
-    /// What it shows, in a line.
+    /// Its subject, in a line.
     pub summary: &'static str,
     /// The file.
     pub text: &'static str,

@@ -1,6 +1,6 @@
 //! Checks a tree against the schema and completes it with defaults.
 //!
-//! What is wrong becomes [`Value::Invalid`], so that one slip is reported once.
+//! A wrong value becomes [`Value::Invalid`], so that one slip is reported once.
 
 pub mod plausible;
 mod retired;
@@ -118,7 +118,7 @@ impl Completer<'_> {
                 problem.help(format!("write [{key}] in single brackets"));
             }
             (Kind::Number(_) | Kind::Quantity(..), Value::Table(_))
-                if OF_PROFILES.iter().any(|own| node.get(own).is_some()) =>
+                if OF_PROFILES.iter().any(|inner| node.get(inner).is_some()) =>
             {
                 problem.help(format!(
                     "`{key}` is one for all soil of a material: where it varies, layers with a material each"
@@ -230,11 +230,11 @@ impl Completer<'_> {
             key_place: node.entry(of.tag).map_or(node.place, |e| e.key_place),
             node: tag,
         });
-        let own: Vec<_> = match found {
+        let after: Vec<_> = match found {
             Some(case) => case.fields.iter().chain(of.after).filter(applies).collect(),
             None => Vec::new(),
         };
-        self.fields(node, &own, &meant, false, &mut entries);
+        self.fields(node, &after, &meant, false, &mut entries);
         Node {
             value: Value::Table(entries),
             ..*node

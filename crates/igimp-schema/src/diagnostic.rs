@@ -35,16 +35,16 @@ impl Problem {
     }
 }
 
-/// What is wrong with a case file, in one place of it.
+/// A problem of a case file, in one place of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// Whether the case cannot be run; a warning otherwise.
     pub is_error: bool,
-    /// What is wrong, in the words of the file.
+    /// The problem, in the words of the file.
     pub message: String,
     /// Where; none for what concerns the whole file, such as a missing table.
     pub place: Option<DiagnosticPlace>,
-    /// What to do about it, a line each.
+    /// Remedies, a line each.
     pub help: Vec<String>,
 }
 

@@ -58,7 +58,7 @@ pub fn explain(completed: &Node) -> String {
     out
 }
 
-/// What a table of this form is about.
+/// The subject of a table of this form.
 fn doc_of(node: &Node, of: &Variants) -> &'static str {
     let case = node.text_at(of.tag).and_then(|name| of.find(name));
     case.map_or(of.doc, |case| case.doc)
@@ -82,8 +82,8 @@ fn variants(out: &mut String, node: &Node, of: &'static Variants, bodies: Bodies
         commented(out, &format!("{} = {value}", of.tag), &comment);
     }
     let case = node.text_at(of.tag).and_then(|name| of.find(name));
-    let own = case.map_or(&[][..], |case| case.fields);
-    for field in own.iter().chain(of.after).filter(applies) {
+    let fields = case.map_or(&[][..], |case| case.fields);
+    for field in fields.iter().chain(of.after).filter(applies) {
         line(out, field, node.get(field.key));
     }
 }

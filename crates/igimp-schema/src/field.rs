@@ -4,7 +4,7 @@ use crate::spec::{Choice, choice};
 use crate::tree::read::Read;
 use crate::tree::{Node, Wrong};
 
-/// What kind of number a field is: fields of a kind share an axis.
+/// The kind of number of a field: fields of a kind share an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Dimension {
     /// A displacement \[m\].
@@ -91,7 +91,7 @@ struct Declaration {
     in_frames: InFrames,
 }
 
-/// What the axes of an analysis are called in print.
+/// The names of the axes of an analysis in print.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
     /// Plane strain: x level, y upright, z out of the plane.
@@ -273,7 +273,7 @@ impl Field {
         self.declaration().name
     }
 
-    /// What kind of number it is.
+    /// Its kind of number.
     pub fn dimension(self) -> Dimension {
         self.declaration().dimension
     }
@@ -303,7 +303,7 @@ impl Field {
 
     /// Whether it is one of total stress that has a counterpart of effective stress.
     pub fn is_total(self) -> bool {
-        Self::ALL.iter().any(|own| own.of_total() == Some(self))
+        Self::ALL.iter().any(|field| field.of_total() == Some(self))
     }
 
     /// The field of total stress that it is without water; none of a field that is none of effective stress.
@@ -321,7 +321,7 @@ impl Field {
         format!("{}_[{}]{sign}", self.name(), self.dimension().unit())
     }
 
-    /// What it is where the axes are called so, in words and signs with the index marks of figures.
+    /// Its title where the axes are called so, in words and signs with the index marks of figures.
     pub fn title_in(self, axes: Axes) -> &'static str {
         let (in_plane, space) = self.declaration().titles;
         match (axes, in_plane) {
@@ -331,7 +331,7 @@ impl Field {
         }
     }
 
-    /// What it is in plane strain.
+    /// Its title in plane strain.
     pub fn title(self) -> &'static str {
         self.title_in(Axes::Plane)
     }

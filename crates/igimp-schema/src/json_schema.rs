@@ -94,15 +94,15 @@ fn object<'a>(
         required.push(tag.to_owned());
     }
     for field in fields {
-        let own = property(field);
+        let value = property(field);
         if matches!(field.presence, Presence::Required(_)) && field.scope == Scope::Any {
             required.push(field.key.to_owned());
         }
-        let own = match properties.remove(field.key) {
-            Some(other) => json!({ "anyOf": [other, own] }),
-            None => own,
+        let value = match properties.remove(field.key) {
+            Some(other) => json!({ "anyOf": [other, value] }),
+            None => value,
         };
-        properties.insert(field.key.to_owned(), own);
+        properties.insert(field.key.to_owned(), value);
     }
     json!({
         "type": "object",

@@ -38,7 +38,7 @@ pub fn check_name(name: &str, place: Place, problems: &mut Problems) -> bool {
 /// The names of one kind of thing, by index.
 #[derive(Debug)]
 pub struct Names {
-    /// What is named, such as `material`.
+    /// The kind named, such as `material`.
     of: &'static str,
     list: Vec<Option<String>>,
     index: HashMap<String, usize>,
@@ -112,25 +112,25 @@ impl Names {
             .unwrap_or("")
     }
 
-    /// The index that the value of a key names, when the table has the key; reports, in the name
-    /// of `who`, when there is none.
+    /// The index that the value of a key names, when the table has the key; reports, in a sentence
+    /// that `lead` begins, when there is none.
     ///
     /// # Errors
     /// [`Wrong`] when the table has the key and its value names nothing; the problem is reported.
     pub fn find_optional(
         &self,
         value: Option<&At<String>>,
-        who: &str,
+        lead: &str,
         problems: &mut Problems,
     ) -> Result<Option<usize>, Wrong> {
         match value {
             None => Ok(None),
-            Some(value) => self.find(value, who, problems).map(Some).ok_or(Wrong),
+            Some(value) => self.find(value, lead, problems).map(Some).ok_or(Wrong),
         }
     }
 
-    /// The index that a value names; reports, in the name of `who`, when there is none.
-    pub fn find(&self, value: &At<String>, who: &str, problems: &mut Problems) -> Option<usize> {
+    /// The index that a value names; reports, in a sentence that `lead` begins, when there is none.
+    pub fn find(&self, value: &At<String>, lead: &str, problems: &mut Problems) -> Option<usize> {
         let (name, place) = (value.as_str(), value.place);
         if let Some(index) = self.position(name) {
             return Some(index);
@@ -139,7 +139,7 @@ impl Names {
             return None;
         }
         let (of, shown) = (self.of, clip(name, 40));
-        let message = format!("{who} the {of} `{shown}`, which is not defined");
+        let message = format!("{lead} the {of} `{shown}`, which is not defined");
         if problems.are_many() {
             problems.error(place, message);
             return None;

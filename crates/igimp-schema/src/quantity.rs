@@ -17,11 +17,11 @@ pub use units::Dimension;
 pub struct Quantity {
     /// Value in the SI unit of its dimension.
     pub value: f64,
-    /// What it measures; none: a plain number.
+    /// Its dimension; none: a plain number.
     pub dimension: Option<Dimension>,
 }
 
-/// What is wrong with the text of a quantity.
+/// The fault in the text of a quantity.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum QuantityError {
     /// It does not begin with a number.
@@ -47,9 +47,9 @@ pub enum QuantityError {
     /// The unit measures something else.
     #[error("wrong kind of unit: expected {} such as {}", expected.name(), expected.usual_unit())]
     WrongKind {
-        /// What is expected.
+        /// The expected dimension.
         expected: Dimension,
-        /// What the unit measures.
+        /// The dimension of the unit.
         found: Dimension,
         /// Value in SI units of what was found.
         value: f64,
@@ -67,7 +67,7 @@ pub enum QuantityError {
 }
 
 impl QuantityError {
-    /// What to write instead.
+    /// The remedy, with an example.
     pub fn help(&self, expected: Option<Dimension>) -> String {
         let example = expected.unwrap_or(Dimension::Stress).example();
         match self {

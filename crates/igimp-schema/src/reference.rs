@@ -202,7 +202,7 @@ fn rows(out: &mut String, fields: &mut dyn Iterator<Item = &'static Field>, long
     out.push('\n');
 }
 
-/// What a value may be, in a few words.
+/// The values that a kind admits, in a few words.
 fn value(kind: &'static Kind, long: &mut Long) -> String {
     match kind {
         Kind::Text => "text".to_owned(),

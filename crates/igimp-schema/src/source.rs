@@ -172,9 +172,9 @@ fn window(line: &[char], at: usize) -> (String, usize) {
 mod tests {
     use super::*;
 
-    fn at(text: &str, what: &str) -> Snippet {
-        let start = text.find(what).unwrap();
-        Source::new("a", text, false).snippet(Place::new(0, &(start..start + what.len())))
+    fn at(text: &str, part: &str) -> Snippet {
+        let start = text.find(part).unwrap();
+        Source::new("a", text, false).snippet(Place::new(0, &(start..start + part.len())))
     }
 
     #[test]

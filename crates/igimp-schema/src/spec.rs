@@ -9,7 +9,7 @@ use super::tree::{Node, Value, Wrong};
 /// A table with known keys.
 #[derive(Debug)]
 pub struct Struct {
-    /// What it is about, in a line.
+    /// Its subject, in a line.
     pub doc: &'static str,
     /// Its keys.
     pub fields: &'static [Field],
@@ -20,11 +20,11 @@ pub struct Struct {
 pub struct Field {
     /// The key.
     pub key: &'static str,
-    /// What its value may be.
+    /// The kind of its value.
     pub kind: Kind,
     /// Whether it has to be written.
     pub presence: Presence,
-    /// What it means, in a line.
+    /// Its meaning, in a line.
     pub doc: &'static str,
     /// The analyses that know it.
     pub scope: Scope,
@@ -85,11 +85,11 @@ pub enum Presence {
 /// A table with a key that says which further keys there are.
 #[derive(Debug)]
 pub struct Variants {
-    /// What it is about, in a line.
+    /// Its subject, in a line.
     pub doc: &'static str,
     /// The key that tells the variants apart.
     pub tag: &'static str,
-    /// What that key means.
+    /// The meaning of that key.
     pub tag_doc: &'static str,
     /// Keys of all variants that stand before the tag.
     pub before: &'static [Field],
@@ -104,7 +104,7 @@ pub struct Variants {
 pub struct Variant {
     /// Value of the tag.
     pub name: &'static str,
-    /// What it is, in a line.
+    /// A description, in a line.
     pub doc: &'static str,
     /// Its own keys.
     pub fields: &'static [Field],
@@ -115,7 +115,7 @@ pub struct Variant {
 pub struct Choice {
     /// The text.
     pub name: &'static str,
-    /// What it means.
+    /// Its meaning.
     pub doc: &'static str,
 }
 
@@ -150,7 +150,7 @@ impl Range {
             }
     }
 
-    /// What the range asks for; reads on from "must be".
+    /// The requirement of the range; reads on from "must be".
     pub fn requirement(self) -> &'static str {
         match self {
             Self::Any => "finite",
@@ -163,7 +163,7 @@ impl Range {
     }
 }
 
-/// What a value may be.
+/// The kind of a value.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
     /// Any text.
@@ -186,7 +186,7 @@ pub enum Kind {
     AnyQuantity,
     /// A text out of a few.
     Choice(&'static [Choice]),
-    /// Either of these, told apart by their types.
+    /// Either of these, by their types.
     Either(&'static [Kind]),
     /// A vector: as many values as the analysis has dimensions.
     Vector(&'static Kind),
@@ -201,7 +201,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// What is expected, with an article and an example.
+    /// The expected value, with an article and an example.
     pub fn expectation(&self) -> String {
         match self {
             Self::Text => "a text in quotes".to_owned(),
@@ -360,7 +360,7 @@ pub(crate) const fn choice(name: &'static str, doc: &'static str) -> Choice {
 pub struct Measured {
     /// Its value, in SI units.
     pub value: f64,
-    /// What it measures; none: a plain number.
+    /// Its dimension; none: a plain number.
     pub dimension: Option<Dimension>,
     /// The unit that it is written in, and its value in SI units; none: a plain number.
     pub unit: Option<(&'static str, f64)>,
@@ -371,7 +371,7 @@ impl Read for Measured {
         let value = node.number().ok_or(Wrong)?;
         let (dimension, unit) = match &node.value {
             Value::Quantity(_, text) => (
-                Quantity::parse(text).ok().and_then(|own| own.dimension),
+                Quantity::parse(text).ok().and_then(|read| read.dimension),
                 unit_of(text),
             ),
             _ => (None, None),

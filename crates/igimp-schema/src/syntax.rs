@@ -74,11 +74,11 @@ fn report(source: &Source, error: &Error, problems: &mut Problems) {
             problem.help("keep one of them");
         }
     } else {
-        let (what, expected) = match error.message().split_once(", expected ") {
-            Some((what, expected)) => (what, Some(expected)),
+        let (reason, expected) = match error.message().split_once(", expected ") {
+            Some((reason, expected)) => (reason, Some(expected)),
             None => (error.message(), None),
         };
-        let problem = problems.error(place, format!("this is not TOML: {what}"));
+        let problem = problems.error(place, format!("this is not TOML: {reason}"));
         if let Some(expected) = expected.filter(|expected| *expected != "nothing") {
             problem.help(format!("expected {expected}"));
         }

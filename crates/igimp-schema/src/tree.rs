@@ -131,7 +131,7 @@ impl Node {
         }
     }
 
-    /// What kind of value it is, with an article.
+    /// The kind of its value, with an article.
     pub fn kind(&self) -> &'static str {
         match &self.value {
             Value::Text(_) | Value::Quantity(..) => "a text",

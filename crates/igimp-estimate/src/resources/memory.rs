@@ -14,7 +14,7 @@ impl Before {
         Self(resident_mib("VmRSS:"))
     }
 
-    /// What came on top, shared among particles and unknowns as in the model of
+    /// The memory on top, shared among particles and unknowns as in the model of
     /// [`estimate`](fn@crate::estimate): one number is measured, and its split is the model's.
     pub fn share(self, peak_mib: Option<f64>, size: &Estimate) -> Option<MemoryShare> {
         let used = (peak_mib? - self.0?) * 1_048_576.0;
@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_held_is_at_most_the_peak() {
+    fn held_memory_is_at_most_the_peak() {
         let held = vec![1_u8; 1 << 20];
         if let (Some(now), Some(peak)) = (Before::now().0, peak_mib()) {
             assert!(now > 0.0 && now <= peak + 1.0, "{now} {peak}");

@@ -1,4 +1,4 @@
-//! What a run takes of the machine.
+//! Resources of the machine that a run takes.
 
 pub mod memory;
 pub mod processor;

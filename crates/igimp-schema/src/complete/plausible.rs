@@ -13,7 +13,7 @@ struct Plausible {
     key: &'static str,
     /// Smallest and largest, in SI units, without the sign.
     between: [f64; 2],
-    /// What SI values are divided by in print, and the unit after that.
+    /// The divisor of SI values in print, and the unit after that.
     unit: (f64, &'static str),
     help: &'static str,
 }
@@ -227,7 +227,7 @@ const OF_PROFILE: [&str; 6] = [
 const DEPTH: f64 = 10.0;
 /// Density of water with what it carries, at least and at most \[kg/m³\].
 const WATER: [f64; 2] = [700.0, 1600.0];
-/// Gravity by which unit weights are told \[m/s²\].
+/// Gravity of unit weights where the case has none \[m/s²\].
 const GRAVITY: f64 = 9.81;
 
 /// Checks the values that are written in a completed file; zero is plausible for all of them.
@@ -237,12 +237,14 @@ pub fn check(tree: &Node, problems: &mut Problems) {
             continue;
         };
         let of_list = part.items().iter();
-        let of_list = of_list.map(|own| (own.text_at("name"), own));
+        let of_list = of_list.map(|item| (item.text_at("name"), item));
         let items: Vec<(Option<&str>, &Node)> = match plausible.part {
             "case" => vec![(None, part)],
             "materials" => {
                 let named = part.entries().iter();
-                named.map(|own| (Some(&own.key[..]), &own.node)).collect()
+                named
+                    .map(|item| (Some(&item.key[..]), &item.node))
+                    .collect()
             }
             _ => of_list.collect(),
         };
@@ -272,7 +274,7 @@ impl Plausible {
         (key, place, varies): (&str, Place, bool),
         found: &mut Vec<Stated>,
     ) {
-        let is_own = key == self.key;
+        let is_key = key == self.key;
         let mut add = |value: f64, place: Place, varies: bool| {
             found.push(Stated {
                 value,
@@ -280,21 +282,21 @@ impl Plausible {
                 varies,
             });
         };
-        if let Some(value) = node.number().filter(|_| is_own) {
+        if let Some(value) = node.number().filter(|_| is_key) {
             add(value, place, varies);
         }
-        let gradient = node.entry("gradient").filter(|_| is_own);
-        if let Some((own, value)) = gradient.and_then(|own| Some((own, own.node.number()?)))
+        let gradient = node.entry("gradient").filter(|_| is_key);
+        if let Some((entry, value)) = gradient.and_then(|entry| Some((entry, entry.node.number()?)))
             && DEPTH * value > self.between[1]
         {
-            add(DEPTH * value, own.node.place, true);
+            add(DEPTH * value, entry.node.place, true);
         }
         for item in node.items() {
             self.numbers(item, (key, place, varies), found);
         }
-        for entry in node.entries().iter().filter(|own| own.node.written) {
+        for entry in node.entries().iter().filter(|entry| entry.node.written) {
             let (inner, place) = (&entry.key[..], entry.node.place);
-            let at = if is_own && OF_PROFILE.contains(&inner) {
+            let at = if is_key && OF_PROFILE.contains(&inner) {
                 let is_list = matches!(entry.node.value, Value::List(_));
                 (key, place, is_list || inner.starts_with("at_"))
             } else {
@@ -307,25 +309,25 @@ impl Plausible {
     /// Warns of the greatest and the smallest number outside the range, once of each.
     fn report(&self, name: Option<&str>, found: &[Stated], problems: &mut Problems) {
         let [least, most] = self.between;
-        let written = || found.iter().filter(|own| own.value != 0.0);
-        let size = |own: &&Stated| own.value.abs();
+        let written = || found.iter().filter(|stated| stated.value != 0.0);
+        let size = |stated: &&Stated| stated.value.abs();
         let by_size = |a: &&Stated, b: &&Stated| size(a).total_cmp(&size(b));
-        let high = written().max_by(by_size).filter(|own| size(own) > most);
-        let low = written().min_by(by_size).filter(|own| size(own) < least);
-        for (own, bound) in [(high, "up to "), (low, "down to ")] {
-            let Some(own) = own else { continue };
+        let high = written().max_by(by_size).filter(|item| size(item) > most);
+        let low = written().min_by(by_size).filter(|item| size(item) < least);
+        for (stated, bound) in [(high, "up to "), (low, "down to ")] {
+            let Some(stated) = stated else { continue };
             let subject =
                 name.map_or_else(String::new, |name| format!("`{}` has ", clip(name, 40)));
             let (scale, unit) = self.unit;
-            let told = format!("{} {unit}", number(own.value / scale));
-            let equals = if own.varies { bound } else { "= " };
+            let printed = format!("{} {unit}", number(stated.value / scale));
+            let equals = if stated.varies { bound } else { "= " };
             problems
                 .warning(
-                    own.place,
+                    stated.place,
                     format!(
                         "{subject}{} {equals}{}, outside the range of soil, rock and structures",
                         self.key,
-                        told.trim_end()
+                        printed.trim_end()
                     ),
                 )
                 .help(self.help);
@@ -336,17 +338,17 @@ impl Plausible {
 /// Warns of water that is far lighter or heavier than water under the gravity of the case.
 fn check_water(tree: &Node, problems: &mut Problems) {
     let Some(case) = tree.get("case") else { return };
-    let own = case.get("water_unit_weight").filter(|own| own.written);
-    let Some((own, weight)) = own.and_then(|own| Some((own, own.number()?))) else {
+    let node = case.get("water_unit_weight").filter(|node| node.written);
+    let Some((node, weight)) = node.and_then(|node| Some((node, node.number()?))) else {
         return;
     };
     let gravity = case.get("gravity").and_then(Node::number);
-    let gravity = gravity.filter(|own| *own > 0.0).unwrap_or(GRAVITY);
+    let gravity = gravity.filter(|value| *value > 0.0).unwrap_or(GRAVITY);
     let density = weight / gravity;
     if !(WATER[0]..=WATER[1]).contains(&density) {
         problems
             .warning(
-                own.place,
+                node.place,
                 format!(
                     "water_unit_weight = {} kN/m3 is not that of water",
                     number(weight / 1e3)
@@ -363,12 +365,12 @@ fn check_water(tree: &Node, problems: &mut Problems) {
 /// Warns of pressures that pull, and of loads that are stated twice.
 fn check_loads(tree: &Node, problems: &mut Problems) {
     let loads = tree.items_at("loads");
-    for (index, own) in loads.iter().enumerate() {
-        let Some(name) = own.text_at("name") else {
+    for (index, load) in loads.iter().enumerate() {
+        let Some(name) = load.text_at("name") else {
             continue;
         };
-        let pressure = own.get("pressure");
-        let pulls = pressure.filter(|own| own.number().is_some_and(|value| value < 0.0));
+        let pressure = load.get("pressure");
+        let pulls = pressure.filter(|node| node.number().is_some_and(|value| value < 0.0));
         if let Some(pressure) = pulls {
             problems
                 .warning(
@@ -380,11 +382,11 @@ fn check_loads(tree: &Node, problems: &mut Problems) {
                 )
                 .help("pressures are positive into the soil");
         }
-        let same = loads[..index].iter().find(|other| is_same(own, other));
-        if let Some(other) = same.and_then(|own| own.text_at("name")) {
+        let same = loads[..index].iter().find(|other| is_same(load, other));
+        if let Some(other) = same.and_then(|same| same.text_at("name")) {
             problems
                 .warning(
-                    own.place,
+                    load.place,
                     format!(
                         "load `{}` is load `{}` once more",
                         clip(name, 40),
@@ -398,14 +400,14 @@ fn check_loads(tree: &Node, problems: &mut Problems) {
 
 /// Whether two tables hold the same but for their names.
 fn is_same(a: &Node, b: &Node) -> bool {
-    let entries = |of: &Node| of.entries().iter().filter(|own| own.key != "name").count();
-    let all = || a.entries().iter().filter(|own| own.key != "name");
+    let entries = |of: &Node| of.entries().iter().filter(|row| row.key != "name").count();
+    let all = || a.entries().iter().filter(|row| row.key != "name");
     match (&a.value, &b.value) {
         (Value::Table(_), Value::Table(_)) => {
             entries(a) == entries(b)
-                && all().all(|own| {
-                    b.get(&own.key)
-                        .is_some_and(|other| is_same(&own.node, other))
+                && all().all(|row| {
+                    b.get(&row.key)
+                        .is_some_and(|other| is_same(&row.node, other))
                 })
         }
         (Value::List(a), Value::List(b)) => {

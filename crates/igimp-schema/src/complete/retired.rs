@@ -9,11 +9,11 @@ const RETIRED: [(&str, &str, &str); 3] = [
 
 const LOCKING: &str = "`bbar` is `locking` now: locking = \"b-bar\" for bbar = true, \"none\" for bbar = false, and \"shared-strain\" is the default";
 
-/// What took the place of a key of a table; the name of the table may not be known.
+/// The successor of a key of a table; the name of the table may not be known.
 pub(super) fn remedy(table: Option<&str>, key: &str) -> Option<&'static str> {
     let is_meant =
-        |own: &&(&str, &str, &str)| own.1 == key && table.is_none_or(|table| table == own.0);
-    RETIRED.iter().find(is_meant).map(|own| own.2)
+        |row: &&(&str, &str, &str)| row.1 == key && table.is_none_or(|table| table == row.0);
+    RETIRED.iter().find(is_meant).map(|row| row.2)
 }
 
 #[cfg(test)]
@@ -24,10 +24,10 @@ mod tests {
     // ORACLE: the change log.
     #[test]
     fn a_key_that_went_names_its_successor() {
-        let told = remedy(Some("grid"), "bbar").unwrap();
-        assert!(told.contains("locking = \"b-bar\""), "{told}");
-        assert_eq!(remedy(Some("grid"), "b_bar"), Some(told));
-        assert_eq!(remedy(Some("grid"), "b-bar"), Some(told));
+        let help = remedy(Some("grid"), "bbar").unwrap();
+        assert!(help.contains("locking = \"b-bar\""), "{help}");
+        assert_eq!(remedy(Some("grid"), "b_bar"), Some(help));
+        assert_eq!(remedy(Some("grid"), "b-bar"), Some(help));
         assert_eq!(remedy(Some("solver"), "bbar"), None);
         assert_eq!(remedy(Some("grid"), "cell"), None);
     }

@@ -1,4 +1,4 @@
-//! What a quotient of quantities measures, as powers of base units.
+//! The dimension of a quotient of quantities, as powers of base units.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -44,8 +44,8 @@ impl Powers {
                     "Pa" => [1, -1, -2],
                     _ => [0; 3],
                 };
-                for (own, by) in total.iter_mut().zip(base) {
-                    *own += sign * power * by;
+                for (sum, by) in total.iter_mut().zip(base) {
+                    *sum += sign * power * by;
                 }
             }
         }
@@ -54,7 +54,7 @@ impl Powers {
 
     /// The powers of a dimension; none of a plain number.
     pub fn of(dimension: Option<Dimension>) -> Self {
-        dimension.map_or_else(Self::default, |own| Self::of_unit(own.si_unit()))
+        dimension.map_or_else(Self::default, |kind| Self::of_unit(kind.si_unit()))
     }
 
     /// The powers of a quotient.
@@ -65,7 +65,7 @@ impl Powers {
 
     /// The dimension with these powers that is usual.
     pub fn dimension(self) -> Option<Dimension> {
-        let same = |own: &&Dimension| Self::of(Some(**own)) == self;
+        let same = |named: &&Dimension| Self::of(Some(**named)) == self;
         NAMED.iter().find(same).copied()
     }
 }
@@ -118,7 +118,7 @@ mod tests {
         for one in NAMED {
             let same = NAMED
                 .iter()
-                .filter(|own| Powers::of(Some(**own)) == Powers::of(Some(one)));
+                .filter(|named| Powers::of(Some(**named)) == Powers::of(Some(one)));
             assert_eq!(same.count(), 1, "{one:?}");
         }
     }

@@ -1,6 +1,6 @@
 //! Units that a case file may use, and what they measure.
 
-/// What a quantity measures.
+/// The dimension of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
     /// Length \[m\].
@@ -175,7 +175,7 @@ enum Scale {
 pub(crate) struct Unit {
     /// As it is written, with plain digits for powers.
     pub symbol: &'static str,
-    /// What it measures.
+    /// Its dimension.
     pub dimension: Dimension,
     scale: Scale,
 }

@@ -260,7 +260,7 @@ macro_rules! pieces {
     };
 }
 
-/// What may be written for a kind.
+/// The kind that a declaration writes.
 macro_rules! kind {
     (text []) => { $crate::spec::Kind::Text };
     (name []) => { $crate::spec::Kind::Name };
@@ -387,7 +387,7 @@ macro_rules! read {
 
 pub(crate) use {choices, field_type, key, kind, pieces, read, rust_type, schema, table, variants};
 
-/// What arrays of fields are filled from.
+/// The filler of arrays of fields.
 const BLANK: Field = optional("", Kind::Flag, "", "");
 
 /// Number of fields of all pieces.
@@ -405,11 +405,11 @@ pub(crate) const fn joined<const N: usize>(pieces: &[&[Field]]) -> [Field; N] {
     let mut fields = [BLANK; N];
     let (mut at, mut k) = (0, 0);
     while k < pieces.len() {
-        let mut own = 0;
-        while own < pieces[k].len() {
-            fields[at] = pieces[k][own];
+        let mut j = 0;
+        while j < pieces[k].len() {
+            fields[at] = pieces[k][j];
             at += 1;
-            own += 1;
+            j += 1;
         }
         k += 1;
     }

@@ -53,7 +53,7 @@ impl RecordUnit {
             Self::CentimetrePerSecond,
             Self::MillimetrePerSecond,
         ];
-        all.into_iter().find(|own| own.name() == text)
+        all.into_iter().find(|unit| unit.name() == text)
     }
 
     /// All of them, as they are written.
@@ -71,7 +71,7 @@ choices! {
 }
 
 choices! {
-    /// What lies below the soil.
+    /// The base below the soil.
     BaseKind;
     Rigid "rigid", "rock that moves by the record, whatever the soil does";
     Compliant "compliant",

@@ -3,7 +3,7 @@
 use super::MANY;
 use super::declare::{choices, schema, table, variants};
 
-/// What books call a field, and its keys here: of these the one that the material has is meant.
+/// Names of fields in books, and their keys here: of these the one that the material has is meant.
 pub static SYMBOLS: [(&str, &[&str]); 34] = [
     ("gamma", &["unit_weight"]),
     ("γ", &["unit_weight"]),
@@ -58,12 +58,12 @@ impl Model {
     /// The keys of linear elasticity, if the model has them.
     pub fn stiffness(&self) -> Option<&Stiffness> {
         match self {
-            Self::Elastic(own) => own.as_ref().ok().map(|own| &own.stiffness),
-            Self::VonMises(own) => own.as_ref().ok().map(|own| &own.stiffness),
-            Self::Tresca(own) => own.as_ref().ok().map(|own| &own.stiffness),
-            Self::MohrCoulomb(own) => own.as_ref().ok().map(|own| &own.stiffness),
-            Self::DruckerPrager(own) => own.as_ref().ok().map(|own| &own.stiffness),
-            Self::HoekBrown(own) => own.as_ref().ok().map(|own| &own.stiffness),
+            Self::Elastic(keys) => keys.as_ref().ok().map(|keys| &keys.stiffness),
+            Self::VonMises(keys) => keys.as_ref().ok().map(|keys| &keys.stiffness),
+            Self::Tresca(keys) => keys.as_ref().ok().map(|keys| &keys.stiffness),
+            Self::MohrCoulomb(keys) => keys.as_ref().ok().map(|keys| &keys.stiffness),
+            Self::DruckerPrager(keys) => keys.as_ref().ok().map(|keys| &keys.stiffness),
+            Self::HoekBrown(keys) => keys.as_ref().ok().map(|keys| &keys.stiffness),
             Self::CamClay(_) | Self::HardeningSoil(_) => None,
         }
     }
@@ -71,8 +71,8 @@ impl Model {
     /// The keys of an undrained strength, if the model has them.
     pub fn undrained(&self) -> Option<&Undrained> {
         match self {
-            Self::VonMises(Ok(own)) => Some(&own.strength),
-            Self::Tresca(Ok(own)) => Some(&own.strength),
+            Self::VonMises(Ok(keys)) => Some(&keys.strength),
+            Self::Tresca(Ok(keys)) => Some(&keys.strength),
             _ => None,
         }
     }
@@ -80,8 +80,8 @@ impl Model {
     /// The keys of cohesion and friction, if the model has them.
     pub fn frictional(&self) -> Option<&Frictional> {
         match self {
-            Self::MohrCoulomb(Ok(own)) => Some(&own.strength),
-            Self::DruckerPrager(Ok(own)) => Some(&own.strength),
+            Self::MohrCoulomb(Ok(keys)) => Some(&keys.strength),
+            Self::DruckerPrager(Ok(keys)) => Some(&keys.strength),
             _ => None,
         }
     }
@@ -336,7 +336,7 @@ table! {
 }
 
 choices! {
-    /// What a material does with the water in its pores.
+    /// The behaviour of water in a material's pores.
     Drainage;
     Drained "drained", "water comes and goes: strength and stiffness are those of effective stress";
     Undrained "undrained", "the same, and changes of volume make excess pore pressure";

@@ -203,7 +203,7 @@ choices! {
 }
 
 choices! {
-    /// What counts as failure.
+    /// The criterion of failure.
     Criterion;
     NoEquilibrium "no-equilibrium", "no equilibrium is found";
 }
@@ -251,7 +251,7 @@ impl Stage {
         common.start_from.as_ref().ok()?.as_ref()
     }
 
-    /// What it installs.
+    /// The members that it installs.
     pub fn installs(&self) -> &[At<String>] {
         let common = self.common.as_ref();
         common.map_or(&[], |common| listed(&common.install))
@@ -260,7 +260,7 @@ impl Stage {
     /// The keys of a stage of construction, if it is one.
     pub fn construction(&self) -> Option<&Construction> {
         match &*self.form {
-            StageForm::Construction(own) => own.as_ref().ok(),
+            StageForm::Construction(keys) => keys.as_ref().ok(),
             _ => None,
         }
     }
@@ -268,12 +268,12 @@ impl Stage {
     /// The loads that it applies or pushes.
     pub fn loads(&self) -> Vec<&At<String>> {
         match &*self.form {
-            StageForm::Load(Ok(own)) => {
-                let one = own.load.iter().flatten();
-                let several = own.loads.iter().flatten().flat_map(|loads| loads.iter());
+            StageForm::Load(Ok(keys)) => {
+                let one = keys.load.iter().flatten();
+                let several = keys.loads.iter().flatten().flat_map(|loads| loads.iter());
                 one.chain(several).collect()
             }
-            StageForm::Displacement(Ok(own)) => own.load.iter().collect(),
+            StageForm::Displacement(Ok(keys)) => keys.load.iter().collect(),
             _ => Vec::new(),
         }
     }
@@ -281,9 +281,9 @@ impl Stage {
     /// How it moves rigid bodies.
     pub fn moves(&self) -> &[Result<At<Move>, Wrong>] {
         match &*self.form {
-            StageForm::Rigid(Ok(own)) => (own.bodies.as_ref()).map_or(&[], |list| list.as_slice()),
-            StageForm::Dynamic(Ok(own)) => {
-                (own.bodies.as_ref()).map_or(&[], |list| list.as_slice())
+            StageForm::Rigid(Ok(keys)) => keys.bodies.as_ref().map_or(&[], |list| list.as_slice()),
+            StageForm::Dynamic(Ok(keys)) => {
+                (keys.bodies.as_ref()).map_or(&[], |list| list.as_slice())
             }
             _ => &[],
         }

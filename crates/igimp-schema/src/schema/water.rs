@@ -31,7 +31,7 @@ points! {
 }
 
 table! {
-    OWN: OwnWater, "A body with a pore pressure of its own: one of `level`, `line`, `r_u`, `u` and `dry`.";
+    BODY_WATER: BodyWater, "A body with a pore pressure of its own: one of `level`, `line`, `r_u`, `u` and `dry`.";
     body: reference("body"), required "\"clay\"", "the body";
     tables: part(TABLES: WaterTables);
     pressures: part(PRESSURES: WaterPressures);
@@ -129,5 +129,5 @@ table! {
     pond: flag, derived "true with `level` and `outside`, false otherwise",
         "whether water above the ground is meant: a pond that presses on it";
     carried: flag, default "false", "whether soil carries the pressure of the place where it started along";
-    bodies: each(table(OWN: OwnWater), 0, MOST_THINGS), default "[]", "bodies with a pressure of their own";
+    bodies: each(table(BODY_WATER: BodyWater), 0, MOST_THINGS), default "[]", "bodies with a pressure of their own";
 }

@@ -100,7 +100,7 @@ impl<T: Read> ReadKey for At<T> {
 
 impl<T: Read> ReadKey for Option<At<T>> {
     fn read_key(entry: Option<&Entry>) -> Result<Self, Wrong> {
-        entry.map(|own| At::read_key(Some(own))).transpose()
+        entry.map(|entry| At::read_key(Some(entry))).transpose()
     }
 }
 

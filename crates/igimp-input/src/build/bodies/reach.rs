@@ -13,11 +13,11 @@ pub(super) fn ever<'a, const D: usize>(
     sequence: &'a Sequence,
 ) -> Option<impl Iterator<Item = &'a BodyPart<D>>> {
     let is_there = |body: usize| {
-        (sequence.scenes()).any(|scene| scene.present.get(body).is_some_and(|own| *own))
+        (sequence.scenes()).any(|scene| scene.present.get(body).is_some_and(|there| *there))
     };
     (bodies.iter().all(Option::is_some)).then(|| {
-        let own = bodies.iter().flatten().enumerate();
-        own.filter(move |(body, _)| is_there(*body))
+        let all = bodies.iter().flatten().enumerate();
+        all.filter(move |(body, _)| is_there(*body))
             .map(|(_, part)| part)
     })
 }
@@ -31,7 +31,7 @@ pub(crate) fn meets_box<const D: usize>(
     let sides = std::iter::zip(lower, upper).map(|(a, b)| b - a);
     let least = MET * sides.product::<f64>();
     ever(bodies, sequence)
-        .is_none_or(|mut own| own.any(|part| part.region.within(lower, upper).volume > least))
+        .is_none_or(|mut parts| parts.any(|part| part.region.within(lower, upper).volume > least))
 }
 
 /// Whether soil ever reaches the lower or the upper side of the grid along an axis; so it does where a body is not known.
@@ -50,7 +50,7 @@ pub(crate) fn meets_side<const D: usize>(
             lower[axis] <= ends[0][axis] + near
         }
     };
-    ever(bodies, sequence).is_none_or(|mut own| own.any(reaches))
+    ever(bodies, sequence).is_none_or(|mut parts| parts.any(reaches))
 }
 
 /// Whether soil is ever at a place on an axis; so it is where a body is not known.
@@ -64,5 +64,5 @@ pub(crate) fn meets_plane<const D: usize>(
         let near = 1e-6 * (upper[axis] - lower[axis]);
         lower[axis] - near <= at && at <= upper[axis] + near
     };
-    ever(bodies, sequence).is_none_or(|mut own| own.any(holds))
+    ever(bodies, sequence).is_none_or(|mut parts| parts.any(holds))
 }

@@ -1,6 +1,6 @@
 //! Which bodies are there at the end of every stage, of what, and which water: what construction stages lead to.
 //!
-//! What a stage names wrongly changes nothing here; it is reported where the stage is built.
+//! A wrong name in a stage changes nothing here; it is reported where the stage is built.
 
 use std::rc::Rc;
 
@@ -11,7 +11,7 @@ use igimp_schema::schema::stages::{Construction, Stage};
 use crate::build::AllNames;
 use crate::build::Thing;
 
-/// What is there at a time.
+/// Bodies, materials and water at a time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Scene {
     /// By body.
@@ -23,21 +23,21 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// What a stage of construction makes of it.
-    fn build(&mut self, own: &Construction, names: &AllNames) {
-        for (list, is_there) in [(own.placed(), true), (own.removed(), false)] {
+    /// Changes it as a stage of construction does.
+    fn build(&mut self, stage: &Construction, names: &AllNames) {
+        for (list, is_there) in [(stage.placed(), true), (stage.removed(), false)] {
             for body in list.iter().filter_map(|name| names.bodies.position(name)) {
                 self.present[body] = is_there;
             }
         }
-        for change in own.changes().iter().flatten() {
+        for change in stage.changes().iter().flatten() {
             let body = names.bodies.position(&change.body);
             let material = names.materials.position(&change.material);
             if let (Some(body), Some(material)) = (body, material) {
                 self.material[body] = Some(material);
             }
         }
-        let water = own.water_condition();
+        let water = stage.water_condition();
         let water = water.and_then(|name| names.water.position(name));
         self.water = water.or(self.water);
     }
@@ -50,23 +50,23 @@ pub(crate) struct Sequence {
     pub(crate) start: Rc<Scene>,
     /// At the end of each stage.
     pub(crate) ends: Vec<Rc<Scene>>,
-    /// What each stage starts from; none: from the start.
+    /// The stage that each starts from; none: from the start.
     from: Vec<Option<usize>>,
 }
 
 impl Sequence {
     pub(crate) fn new<const D: usize>(
-        (own, stages): (&[Thing<Body>], &[Thing<Stage>]),
+        (tables, stages): (&[Thing<Body>], &[Thing<Stage>]),
         has_water: bool,
         names: &AllNames,
         bodies: &[Option<BodyPart<D>>],
     ) -> Self {
         let later = placed(stages);
-        let is_there = |own: &Thing<Body>| {
-            (own.as_ref()).is_none_or(|own| !later.contains(&own.name.as_str()))
+        let is_there = |table: &Thing<Body>| {
+            (table.as_ref()).is_none_or(|body| !later.contains(&body.name.as_str()))
         };
         let start = Scene {
-            present: own.iter().map(is_there).collect(),
+            present: tables.iter().map(is_there).collect(),
             material: bodies
                 .iter()
                 .map(|body| body.as_ref().map(|body| body.material))
@@ -79,13 +79,13 @@ impl Sequence {
             from: Vec::new(),
         };
         for (index, stage) in stages.iter().enumerate() {
-            let stated = stage.as_ref().and_then(|own| own.start_from());
+            let stated = stage.as_ref().and_then(|stage| stage.start_from());
             let from = stated.and_then(|name| names.stages.position(name));
             let from = from.filter(|from| *from < index);
             let before = from.map_or(&sequence.start, |from| &sequence.ends[from]);
             let mut shared = Rc::clone(before);
-            if let Some(own) = stage.as_ref().and_then(|own| own.construction()) {
-                Rc::make_mut(&mut shared).build(own, names);
+            if let Some(construction) = stage.as_ref().and_then(|stage| stage.construction()) {
+                Rc::make_mut(&mut shared).build(construction, names);
             }
             sequence.ends.push(shared);
             sequence.from.push(from);
@@ -93,7 +93,7 @@ impl Sequence {
         sequence
     }
 
-    /// What a stage starts from.
+    /// The scene that a stage starts from.
     pub(crate) fn before(&self, stage: usize) -> &Rc<Scene> {
         self.from[stage].map_or(&self.start, |from| &self.ends[from])
     }
@@ -115,7 +115,7 @@ impl Sequence {
             .any(|scene| scene.present[a] && scene.present[b])
     }
 
-    /// What is there when a condition of the water is first in force; at the start if it never is.
+    /// The scene when a condition of the water is first in force; at the start if it never is.
     pub(crate) fn first_with(&self, water: usize) -> &Scene {
         let mut scenes = self.scenes();
         scenes
@@ -128,7 +128,7 @@ impl Sequence {
 pub(crate) fn placed(stages: &[Thing<Stage>]) -> Vec<&str> {
     let stages = stages.iter().flatten();
     stages
-        .filter_map(|own| own.construction())
+        .filter_map(|stage| stage.construction())
         .flat_map(Construction::placed)
         .map(|name| name.as_str())
         .collect()

@@ -27,7 +27,7 @@ const UPRIGHT: f64 = 0.7;
 /// Share of a face that has to be held \[-\].
 const HELD: f64 = 0.5;
 
-/// What may hold a face, beside the supports of the grid.
+/// Holds of a face, beside the supports of the grid.
 pub(crate) struct Holds<'a, const D: usize> {
     boundaries: Option<&'a Boundaries<D>>,
     rigid: &'a [Option<RigidPart<D>>],
@@ -127,17 +127,17 @@ fn slice<const D: usize>(
     let (mut area, mut width) = (0.0, 0.0_f64);
     let (mut foot, mut yields) = (f64::INFINITY, false);
     for part in parts {
-        let own = part.region.within(lower, upper).volume / (to - from);
+        let section = part.region.within(lower, upper).volume / (to - from);
         let (least, most) = part.region.bounds();
         let across = (0..D - 1).filter(|&other| other != axis);
         width = width.max(across.map(|other| most[other] - least[other]).product());
-        if own <= 0.0 {
+        if section <= 0.0 {
             continue;
         }
-        area += own;
+        area += section;
         foot = foot.min(least[D - 1]);
         let material = materials.get(part.material).and_then(Option::as_ref);
-        yields |= material.is_some_and(|own| own.strength != Strength::Elastic);
+        yields |= material.is_some_and(|soil| soil.strength != Strength::Elastic);
     }
     Slice {
         foot,
@@ -173,7 +173,7 @@ fn near_face<const D: usize>(
     let soil: Vec<Slice> = (0..PARTS).map(soil).collect();
     let (nearest, farthest) = (soil.first()?, soil.last()?);
     let rise = farthest.height - nearest.height;
-    let rises = soil.windows(2).map(|own| own[1].height - own[0].height);
+    let rises = soil.windows(2).map(|pair| pair[1].height - pair[0].height);
     let (step, most) = (rises.enumerate()).max_by(|a, b| a.1.total_cmp(&b.1))?;
     let is_face = rise > least_height(frame) && most > UPRIGHT * rise && farthest.yields;
     is_face.then(|| Face {
@@ -230,7 +230,7 @@ fn is_held<const D: usize>(
 ) -> bool {
     let (axis, at) = (face.axis, face.at);
     let cell = frame.axes[axis].cell_at(at);
-    let boxes = holds.boundaries.map_or(&[][..], |own| &own.boxes);
+    let boxes = holds.boundaries.map_or(&[][..], |sides| &sides.boxes);
     let mut rigid = holds.rigid.iter().flatten().map(RigidPart::bounds);
     let presses = |load: &Load<D>| match &load.kind {
         LoadKind::Pressure { from, to, .. } => {
@@ -243,11 +243,11 @@ fn is_held<const D: usize>(
         let [from, to] = [face.foot, face.foot + face.height];
         upper[D - 1].min(to) - lower[D - 1].max(from) > HELD * face.height
     };
-    boxes.iter().any(|own| {
-        own.fix[axis]
-            && own.lower[axis] <= at + cell
-            && own.upper[axis] >= at - cell
-            && is_as_high(&own.lower, &own.upper)
+    boxes.iter().any(|fixed| {
+        fixed.fix[axis]
+            && fixed.lower[axis] <= at + cell
+            && fixed.upper[axis] >= at - cell
+            && is_as_high(&fixed.lower, &fixed.upper)
     }) || rigid.any(|(lower, upper)| {
         let is_there = if face.is_upper {
             lower[axis] <= at + cell && upper[axis] > at

@@ -27,7 +27,7 @@ pub(crate) struct Site {
     surface: Vec<[[f64; 2]; 2]>,
 }
 
-/// What checks of places ask of the soil.
+/// The soil as checks of places see it.
 pub(crate) trait Soil<const D: usize> {
     /// Whether all bodies are known.
     fn is_known(&self) -> bool;
@@ -167,7 +167,7 @@ impl Site {
             .map(|(number, (_, polygon))| (number, polygon))
     }
 
-    /// What there is as the first stage begins.
+    /// The site as the first stage begins.
     pub(crate) fn at_start(&self) -> Self {
         let first = self.scenes.first().cloned();
         let mut start = Self {

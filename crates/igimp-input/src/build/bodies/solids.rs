@@ -10,7 +10,7 @@ use igimp_schema::text::{clip, number};
 use igimp_schema::tree::read::At;
 
 use super::corners;
-use crate::build::bodies::surfaces::{Who, closed_surface, ground};
+use crate::build::bodies::surfaces::{Label, closed_surface, ground};
 
 /// Where two solids are sought to overlap, the box around what they may share is cut so many times into eight.
 const DEPTH: u32 = 5;
@@ -18,31 +18,31 @@ const DEPTH: u32 = 5;
 const SHARED: f64 = 1.01;
 
 /// The solid of a body, less what is taken out of it.
-pub(crate) fn solid(own: &At<Body>, problems: &mut Problems) -> Option<Solid> {
-    let name = &clip(&own.name, 40);
-    let who = Who { name, taken: None };
-    let whole = own.shape.as_ref().ok();
-    let whole = whole.and_then(|shape| self::shape(shape, own.place, &who, problems));
-    let minus_keys = own.minus.iter().flatten().flat_map(|minus| minus.iter());
+pub(crate) fn solid(body: &At<Body>, problems: &mut Problems) -> Option<Solid> {
+    let name = &clip(&body.name, 40);
+    let label = Label { name, taken: None };
+    let whole = body.shape.as_ref().ok();
+    let whole = whole.and_then(|shape| self::shape(shape, body.place, &label, problems));
+    let minus_keys = body.minus.iter().flatten().flat_map(|minus| minus.iter());
     let mut taken = Vec::new();
-    for (own, number) in std::iter::zip(minus_keys.clone(), 1..) {
-        let who = Who {
+    for (cut, number) in std::iter::zip(minus_keys.clone(), 1..) {
+        let label = Label {
             name,
             taken: Some(number),
         };
-        let own = own.as_ref().ok();
-        taken.push(own.and_then(|own| shape(&own.shape, own.place, &who, problems)));
+        let cut = cut.as_ref().ok();
+        taken.push(cut.and_then(|cut| shape(&cut.shape, cut.place, &label, problems)));
     }
     let (of, minus) = (whole?, taken.into_iter().collect::<Option<Vec<_>>>()?);
     if minus.is_empty() {
         return Some(of);
     }
     let of = Box::new(of);
-    for (taken, own) in std::iter::zip(&minus, minus_keys.flatten()) {
+    for (taken, cut) in std::iter::zip(&minus, minus_keys.flatten()) {
         let (a, b) = (of.bounds(), taken.bounds());
         if (0..3).any(|axis| a.1[axis] <= b.0[axis] || b.1[axis] <= a.0[axis]) {
             problems
-                .warning(own.place, format!("nothing of this lies in {who}"))
+                .warning(cut.place, format!("nothing of this lies in {label}"))
                 .help("it takes nothing out");
         }
     }
@@ -50,26 +50,26 @@ pub(crate) fn solid(own: &At<Body>, problems: &mut Problems) -> Option<Solid> {
 }
 
 /// The solid of the one key that says a shape.
-fn shape(own: &Shape, place: Place, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
+fn shape(shape: &Shape, place: Place, label: &Label<'_>, problems: &mut Problems) -> Option<Solid> {
     let stated = [
-        own.cuboid.as_ref().map(|own| ("box", own.place)),
-        own.polygon.as_ref().map(|own| ("polygon", own.place)),
-        own.plan.as_ref().map(|own| ("plan", own.place)),
-        own.cylinder.as_ref().map(|own| ("cylinder", own.place)),
-        own.sphere.as_ref().map(|own| ("sphere", own.place)),
-        own.surface.as_ref().map(|own| ("surface", own.place)),
+        shape.cuboid.as_ref().map(|at| ("box", at.place)),
+        shape.polygon.as_ref().map(|at| ("polygon", at.place)),
+        shape.plan.as_ref().map(|at| ("plan", at.place)),
+        shape.cylinder.as_ref().map(|at| ("cylinder", at.place)),
+        shape.sphere.as_ref().map(|at| ("sphere", at.place)),
+        shape.surface.as_ref().map(|at| ("surface", at.place)),
     ];
     let stated: Vec<(&str, Place)> = stated.into_iter().flatten().collect();
     let [(key, key_place)] = stated[..] else {
         let (message, help) = if stated.is_empty() {
             (
-                format!("{who} has no shape"),
+                format!("{label} has no shape"),
                 "write one of box, polygon (with across), plan (with between), cylinder, sphere and surface",
             )
         } else {
             let keys: Vec<&str> = stated.iter().map(|(key, _)| *key).collect();
             (
-                format!("{who} has several shapes: {}", keys.join(", ")),
+                format!("{label} has several shapes: {}", keys.join(", ")),
                 "keep one of them; what is taken out of a body stands in `minus`",
             )
         };
@@ -80,80 +80,80 @@ fn shape(own: &Shape, place: Place, who: &Who<'_>, problems: &mut Problems) -> O
         (
             "across",
             "polygon",
-            own.across.as_ref().map(|own| own.place),
+            shape.across.as_ref().map(|at| at.place),
             "say from where to where on y it reaches, as in across = [\"0 m\", \"1 m\"]",
         ),
         (
             "between",
             "plan",
-            own.between.as_ref().map(|own| own.place),
+            shape.between.as_ref().map(|at| at.place),
             "say its bottom and top, as in between = [\"0 m\", { raster = \"ground.asc\", unit = \"m\" }]",
         ),
     ];
     for (needed, by, stated, help) in beside {
         match (stated, key == by) {
             (None, true) => {
-                let message = format!("the {by} of {who} needs `{needed}`");
+                let message = format!("the {by} of {label} needs `{needed}`");
                 problems.error(key_place, message).help(help);
                 return None;
             }
             (Some(extra), false) => {
                 problems
                     .error(extra, format!("`{needed}` goes with `{by}`"))
-                    .help(format!("{who} is a {key}"));
+                    .help(format!("{label} is a {key}"));
                 return None;
             }
             _ => {}
         }
     }
-    solid_of(own, who, problems)
+    solid_of(shape, label, problems)
 }
 
 /// The solid of a shape of which one key is stated.
-fn solid_of(own: &Shape, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
-    if let Some(own) = &own.cuboid {
-        return cuboid(own, who, problems);
+fn solid_of(shape: &Shape, label: &Label<'_>, problems: &mut Problems) -> Option<Solid> {
+    if let Some(block) = &shape.cuboid {
+        return cuboid(block, label, problems);
     }
-    if let (Some(polygon), Some(across)) = (&own.polygon, &own.across) {
-        let polygon = corners(polygon, who.name, problems);
-        let between = ascending(across, who, problems);
+    if let (Some(polygon), Some(across)) = (&shape.polygon, &shape.across) {
+        let polygon = corners(polygon, label.name, problems);
+        let between = ascending(across, label, problems);
         return Some(Solid::Prism(Prism::new(polygon?, 1, between?)));
     }
-    if let (Some(plan), Some(between)) = (&own.plan, &own.between) {
-        return ground(plan, between, who, problems);
+    if let (Some(plan), Some(between)) = (&shape.plan, &shape.between) {
+        return ground(plan, between, label, problems);
     }
-    if let Some(own) = &own.cylinder {
+    if let Some(cylinder) = &shape.cylinder {
         return Some(Solid::Cylinder(Cylinder {
-            between: ascending(&own.between, who, problems)?,
-            axis: match *own.axis {
+            between: ascending(&cylinder.between, label, problems)?,
+            axis: match *cylinder.axis {
                 Axis::X => 0,
                 Axis::Y => 1,
                 Axis::Z => 2,
             },
-            centre: *own.centre,
-            radius: *own.radius,
+            centre: *cylinder.centre,
+            radius: *cylinder.radius,
         }));
     }
-    if let Some(own) = &own.sphere {
+    if let Some(sphere) = &shape.sphere {
         return Some(Solid::Sphere(Sphere {
-            centre: *own.centre,
-            radius: *own.radius,
+            centre: *sphere.centre,
+            radius: *sphere.radius,
         }));
     }
-    let surface = own.surface.as_ref()?;
-    closed_surface(surface, who, problems).map(Solid::Surface)
+    let surface = shape.surface.as_ref()?;
+    closed_surface(surface, label, problems).map(Solid::Surface)
 }
 
-fn cuboid(own: &At<Cuboid>, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
-    let (a, b) = (*own.from, *own.to);
+fn cuboid(block: &At<Cuboid>, label: &Label<'_>, problems: &mut Problems) -> Option<Solid> {
+    let (a, b) = (*block.from, *block.to);
     let lower: [f64; 3] = std::array::from_fn(|axis| a[axis].min(b[axis]));
     let upper: [f64; 3] = std::array::from_fn(|axis| a[axis].max(b[axis]));
     if let Some(axis) = (0..3).find(|&axis| lower[axis] >= upper[axis]) {
         let axis = ["x", "y", "z"][axis];
         problems
             .error(
-                own.place,
-                format!("the box of {who} has no extent along {axis}"),
+                block.place,
+                format!("the box of {label} has no extent along {axis}"),
             )
             .help("its two corners are opposite ones");
         return None;
@@ -162,15 +162,15 @@ fn cuboid(own: &At<Cuboid>, who: &Who<'_>, problems: &mut Problems) -> Option<So
 }
 
 /// Two places in their order.
-fn ascending(own: &At<[f64; 2]>, who: &Who<'_>, problems: &mut Problems) -> Option<[f64; 2]> {
-    let [from, to] = **own;
+fn ascending(ends: &At<[f64; 2]>, name: &Label<'_>, problems: &mut Problems) -> Option<[f64; 2]> {
+    let [from, to] = **ends;
     if from < to {
         return Some([from, to]);
     }
     problems
         .error(
-            own.place,
-            format!("{who} reaches from {} m to {} m", number(from), number(to)),
+            ends.place,
+            format!("{name} reaches from {} m to {} m", number(from), number(to)),
         )
         .help("the first place is the lower one");
     None

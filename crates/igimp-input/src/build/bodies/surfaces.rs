@@ -17,13 +17,13 @@ use crate::build::bodies::{Polygon, corners};
 
 /// The closed surface of a table.
 pub(crate) fn closed_surface(
-    own: &At<Surface>,
-    who: &dyn Display,
+    table: &At<Surface>,
+    label: &dyn Display,
     problems: &mut Problems,
 ) -> Option<Arc<ClosedSurface>> {
-    let (Some(vertices), Some(triangles)) = (&own.vertices, &own.triangles) else {
+    let (Some(vertices), Some(triangles)) = (&table.vertices, &table.triangles) else {
         problems
-            .error(own.place, format!("the surface of {who} is not stated"))
+            .error(table.place, format!("the surface of {label} is not stated"))
             .help("write surface = { file = \"block.stl\", unit = \"m\" }, or its vertices and triangles");
         return None;
     };
@@ -58,8 +58,8 @@ pub(crate) fn closed_surface(
                     "export it once more"
                 }
             };
-            let message = format!("the surface of {who} encloses no body: {error}");
-            problems.error(own.place, message).help(help);
+            let message = format!("the surface of {label} encloses no body: {error}");
+            problems.error(table.place, message).help(help);
             None
         }
     }
@@ -69,11 +69,11 @@ pub(crate) fn closed_surface(
 pub(crate) fn ground(
     plan: &At<Polygon>,
     between: &At<[Found<Either<f64, Terrain>>; 2]>,
-    who: &Who<'_>,
+    label: &Label<'_>,
     problems: &mut Problems,
 ) -> Option<Solid> {
-    let polygon = corners(plan, who.name, problems);
-    let [bottom, top] = (between.each_ref()).map(|own| height(own.as_ref().ok()?, who, problems));
+    let polygon = corners(plan, label.name, problems);
+    let [bottom, top] = (between.each_ref()).map(|end| height(end.as_ref().ok()?, label, problems));
     let (bottom, top) = (bottom?, top?);
     let polygon = polygon?;
     if let (Height::Level(from), Height::Level(to)) = (&bottom, &top) {
@@ -83,7 +83,7 @@ pub(crate) fn ground(
                 .error(
                     between.place,
                     format!(
-                        "{who} reaches from {} m up to {} m",
+                        "{label} reaches from {} m up to {} m",
                         number(from),
                         number(to)
                     ),
@@ -107,7 +107,7 @@ pub(crate) fn ground(
                 LayerError::NoArea => "its corners lie on one line",
             };
             problems
-                .error(between.place, format!("{who} cannot be made: {error}"))
+                .error(between.place, format!("{label} cannot be made: {error}"))
                 .help(help);
             None
         }
@@ -115,35 +115,33 @@ pub(crate) fn ground(
 }
 
 fn height(
-    own: &At<Either<f64, Terrain>>,
-    who: &dyn Display,
+    stated: &At<Either<f64, Terrain>>,
+    label: &dyn Display,
     problems: &mut Problems,
 ) -> Option<Height> {
-    match &**own {
+    match &**stated {
         Either::First(level) => Some(Height::Level(*level)),
-        Either::Second(own_terrain) => {
-            terrain(own_terrain, own.place, who, problems).map(Height::Terrain)
-        }
+        Either::Second(table) => terrain(table, stated.place, label, problems).map(Height::Terrain),
     }
 }
 
 /// A surface of the ground, or of water in it, that is stated at a place.
 pub(crate) fn terrain(
-    own: &Terrain,
+    table: &Terrain,
     place: Place,
-    who: &dyn Display,
+    label: &dyn Display,
     problems: &mut Problems,
 ) -> Option<Arc<Ground>> {
     let mut refuse = |error: &dyn Display, help: &str| {
-        let message = format!("a surface of {who} cannot be used: {error}");
+        let message = format!("a surface of {label} cannot be used: {error}");
         problems.error(place, message).help(help);
     };
-    let terrain = match (&own.points, &own.x, &own.y, &own.rows) {
+    let terrain = match (&table.points, &table.x, &table.y, &table.rows) {
         (Some(points), None, None, None) => {
             let Either::Second(points) = &**points else {
                 return None;
             };
-            let points: Vec<[f64; 3]> = points.iter().map(|own| **own).collect();
+            let points: Vec<[f64; 3]> = points.iter().map(|point| **point).collect();
             Ground::through(&points)
         }
         (None, Some(x), Some(y), Some(rows)) => {
@@ -166,7 +164,7 @@ pub(crate) fn terrain(
                 .map(|row| row.into_iter().map(Some).collect())
                 .collect();
             // A table from a file of points has no such key.
-            let holes = own.holes.iter().flat_map(|holes| holes.iter());
+            let holes = table.holes.iter().flat_map(|holes| holes.iter());
             for hole in holes {
                 let [i, j] = **hole;
                 let Some(height) = rows.get_mut(j).and_then(|row| row.get_mut(i)) else {
@@ -202,19 +200,19 @@ pub(crate) fn terrain(
 
 /// The numbers of a list.
 pub(crate) fn plain(list: &[At<f64>]) -> Vec<f64> {
-    list.iter().map(|own| **own).collect()
+    list.iter().map(|value| **value).collect()
 }
 
-/// Whose shape it is.
+/// The printed name of a shape.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Who<'a> {
+pub(crate) struct Label<'a> {
     /// Name of the body.
     pub name: &'a str,
     /// The number of what is taken out of it, from 1.
     pub(crate) taken: Option<usize>,
 }
 
-impl Display for Who<'_> {
+impl Display for Label<'_> {
     fn fmt(&self, to: &mut Formatter<'_>) -> fmt::Result {
         match self.taken {
             None => write!(to, "body `{}`", self.name),

@@ -25,7 +25,7 @@ const ROUND_OFF: f64 = 1e-6;
 
 /// Warns of gaps in the plane, one for two bodies.
 pub(super) fn check(
-    own: &[Thing<Body>],
+    tables: &[Thing<Body>],
     frame: &Frame<2>,
     (bodies, site, sequence): (&[&BodyPart<2>], &Site, &Sequence),
     problems: &mut Problems,
@@ -46,10 +46,10 @@ pub(super) fn check(
             let Some(gap) = pieces.iter().find(|piece| is_gap(piece)) else {
                 continue;
             };
-            let place = own[second].as_ref().map(polygon_place);
+            let place = tables[second].as_ref().map(polygon_place);
             let names = [&a.name, &b.name].map(|name| clip(name, 40));
             let to_millimetres = gap.middle.map(|x| (x * 1e3).round() / 1e3);
-            let text = told(gap.distance, &names, &point(to_millimetres));
+            let text = sentence(gap.distance, &names, &point(to_millimetres));
             problems.warning(place, text).help(remedy(&names));
         }
     }
@@ -57,11 +57,11 @@ pub(super) fn check(
 
 /// Whether a place between two bodies, or in a notch of one, is bare at some time when both are there.
 fn is_bare((site, sequence): (&Site, &Sequence), [a, b]: [usize; 2], place: [f64; 2]) -> bool {
-    let mut scenes = (sequence.scenes()).filter(|own| own.present[a] && own.present[b]);
-    scenes.any(|own| !site.is_inside(Some(&own.present), place))
+    let mut scenes = (sequence.scenes()).filter(|scene| scene.present[a] && scene.present[b]);
+    scenes.any(|scene| !site.is_inside(Some(&scene.present), place))
 }
 
-fn told(width: f64, [a, b]: &[String; 2], place: &str) -> String {
+fn sentence(width: f64, [a, b]: &[String; 2], place: &str) -> String {
     let width = short(width);
     if a == b {
         format!("a gap of {width} m, narrower than a cell, cuts into body `{a}` at {place}")
@@ -80,7 +80,7 @@ fn remedy([a, b]: &[String; 2]) -> &'static str {
 
 /// Warns of a gap in space, of one at each time.
 pub(crate) fn check_in_space(
-    own: &[Thing<Body>],
+    tables: &[Thing<Body>],
     (bodies, sequence): (&[Option<BodyPart<3>>], &Sequence),
     soil: &Solids,
     problems: &mut Problems,
@@ -114,18 +114,18 @@ pub(crate) fn check_in_space(
             let mut at = gap.at;
             at[gap.axis] = along;
             let mut all = soil.regions.iter().enumerate();
-            all.position(|(body, own)| scene.present[body] && own.encloses(at))
+            all.position(|(body, region)| scene.present[body] && region.encloses(at))
         });
         let [Some(a), Some(b)] = found else { continue };
         let [first, second] = [a.min(b), a.max(b)];
-        let name = |body: usize| bodies[body].as_ref().map_or("", |own| &own.name);
+        let name = |body: usize| bodies[body].as_ref().map_or("", |part| &part.name);
         let names = [first, second].map(|body| clip(name(body), 40));
-        let place = own[second].as_ref().map(|own| own.place);
+        let place = tables[second].as_ref().map(|body| body.place);
         let rounded = gap.at.map(|x| (1e6 * x).round() / 1e6);
         problems
             .warning(
                 place,
-                told((1e6 * width).round() / 1e6, &names, &point(rounded)),
+                sentence((1e6 * width).round() / 1e6, &names, &point(rounded)),
             )
             .help(remedy(&names));
     }

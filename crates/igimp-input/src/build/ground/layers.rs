@@ -39,7 +39,7 @@ const SINKS: f64 = 0.3;
 /// γH/E below which round-off shows in the strains \[-\].
 const STIFF: f64 = 1e-6;
 
-/// What the warnings look at.
+/// Data of the warnings.
 pub(crate) struct Layers<'a> {
     /// The file.
     pub(crate) tree: &'a Node,
@@ -99,13 +99,13 @@ fn holds_water(soil: &Material) -> bool {
 }
 
 /// Whether soil has all the strength of another one, and more.
-fn is_stronger(own: &Strength, other: &Strength) -> bool {
+fn is_stronger(soil: &Strength, other: &Strength) -> bool {
     let parameters = |of: &Strength| [of.cohesive(), of.friction_angle()].map(|p| p.unwrap_or(0.0));
-    match (own, other) {
+    match (soil, other) {
         (Strength::Elastic, other) => *other != Strength::Elastic,
         (_, Strength::Elastic) => false,
         _ => {
-            let [mine, its] = [own, other].map(parameters);
+            let [mine, its] = [soil, other].map(parameters);
             let pairs = || std::iter::zip(mine, its);
             pairs().any(|(mine, its)| mine > its) && pairs().all(|(mine, its)| mine >= its)
         }
@@ -123,12 +123,12 @@ fn check_pairs(
     let [width, height] = frame.axes.each_ref().map(|axis| axis.extremes()[0]);
     let narrow = NARROW * width.min(height);
     let grid = Root::<2>::grid(layers.tree).ok();
-    let fit = (grid.as_ref()).and_then(|own| Some(**own.wishes.as_ref().ok()?.fit.as_ref()?));
+    let fit = (grid.as_ref()).and_then(|grid| Some(**grid.wishes.as_ref().ok()?.fit.as_ref()?));
     let is_fitted = matches!(fit, Some(Fit::Layers | Fit::All));
-    let is_shared = (grid.iter()).any(|own| {
-        own.mixed_cells
+    let is_shared = (grid.iter()).any(|grid| {
+        grid.mixed_cells
             .as_ref()
-            .is_ok_and(|own| **own == MixedCells::Mean)
+            .is_ok_and(|mixed| **mixed == MixedCells::Mean)
     });
     let mut neighbours = vec![Neighbours::default(); bodies.len()];
     for (second, b) in bodies.iter().enumerate() {
@@ -165,7 +165,7 @@ fn check_pairs(
                     (within.error(ordered), within)
                 })
                 .max_by(|a, b| a.0.total_cmp(&b.0));
-            let by_water = soils.iter().any(|own| holds_water(own));
+            let by_water = soils.iter().any(|soil| holds_water(soil));
             if let Some((_, within)) = worst.as_ref().filter(|_| unlike_for_water(soils)) {
                 within.warn_of_flow(&names, Report { place, problems });
             }
@@ -186,17 +186,17 @@ fn check_pairs(
 
 /// Whether water flows through two soils as they consolidate, and through one much faster.
 fn unlike_for_water(soils: [&Material; 2]) -> bool {
-    let flows = |own: &Material| matches!(own.drainage, Drainage::Undrained { flows: true, .. });
-    let [a, b] = soils.map(|own| own.permeability.filter(|_| flows(own)));
-    let fast = |own: Soil| own.along.max(own.across);
+    let flows = |soil: &Material| matches!(soil.drainage, Drainage::Undrained { flows: true, .. });
+    let [a, b] = soils.map(|soil| soil.permeability.filter(|_| flows(soil)));
+    let fast = |soil: Soil| soil.along.max(soil.across);
     let ratio = |(a, b)| (fast(a) / fast(b)).ln().abs();
-    a.zip(b).is_some_and(|own| ratio(own) > UNLIKE.ln())
+    a.zip(b).is_some_and(|pair| ratio(pair) > UNLIKE.ln())
 }
 
-/// Permeabilities that differ by this factor in a cell are told of \[-\].
+/// Permeabilities that differ by this factor in a cell are reported \[-\].
 const UNLIKE: f64 = 3.0;
 
-/// What a body touches.
+/// Neighbours of a body.
 #[derive(Clone, Copy, Debug, Default)]
 struct Neighbours {
     has_any: bool,
@@ -208,11 +208,11 @@ struct Neighbours {
 
 impl Neighbours {
     /// Takes a neighbour in: of soils and moduli the own one first.
-    fn sees(&mut self, [own, other]: [&Material; 2], [mine, its]: [f64; 2]) {
+    fn sees(&mut self, [soil, other]: [&Material; 2], [mine, its]: [f64; 2]) {
         self.has_any = true;
-        self.has_stiffer |= its > mine || is_stronger(&other.strength, &own.strength);
-        self.has_same |= std::ptr::eq(own, other);
-        let never_yields = own.strength == Strength::Elastic || mine > FAR_STIFFER * its;
+        self.has_stiffer |= its > mine || is_stronger(&other.strength, &soil.strength);
+        self.has_same |= std::ptr::eq(soil, other);
+        let never_yields = soil.strength == Strength::Elastic || mine > FAR_STIFFER * its;
         let is_soil = other.strength != Strength::Elastic;
         self.far_softer += usize::from(never_yields && mine > its && is_soil);
     }
@@ -259,7 +259,7 @@ impl Within {
     fn error(&self, moduli: [f64; 2]) -> f64 {
         let share = self.across.map_or(0.5, |(_, share)| share);
         let mean = share * moduli[0] + (1.0 - share) * moduli[1];
-        let errors = moduli.map(|own| (own / mean - 1.0).abs());
+        let errors = moduli.map(|modulus| (modulus / mean - 1.0).abs());
         errors[0].max(errors[1])
     }
 
@@ -334,9 +334,7 @@ fn width_across_slants(outline: &[[f64; 2]]) -> f64 {
     let sides = std::iter::zip(outline, outline.iter().cycle().skip(1));
     let widths = sides.filter_map(|(a, b)| {
         let side = [b[0] - a[0], b[1] - a[1]];
-        let slants = side
-            .iter()
-            .all(|own| own.abs() > 1e-9 * side[0].hypot(side[1]));
+        let slants = side.iter().all(|x| x.abs() > 1e-9 * side[0].hypot(side[1]));
         let off = |c: &[f64; 2]| (side[0] * (c[1] - a[1]) - side[1] * (c[0] - a[0])).abs();
         let farthest = outline.iter().map(off).fold(0.0, f64::max);
         slants.then(|| farthest / side[0].hypot(side[1]))
@@ -350,9 +348,9 @@ fn thinnest(site: &Site, frame: &Frame<2>, outline: &[[f64; 2]]) -> Option<(f64,
         let [from, to] = largest_run(outline, axis);
         let spans =
             from <= frame.lower[axis] + site.round_off && to >= frame.upper[axis] - site.round_off;
-        let own = &frame.axes[axis];
-        let is_single = own.cells() == 1;
-        (!spans && !is_single).then(|| (own.place(to) - own.place(from), axis, [from, to]))
+        let along = &frame.axes[axis];
+        let is_single = along.cells() == 1;
+        (!spans && !is_single).then(|| (along.place(to) - along.place(from), axis, [from, to]))
     });
     runs.min_by(|a, b| a.0.total_cmp(&b.0))
 }
@@ -367,26 +365,26 @@ fn check_thickness(
     problems: &mut Problems,
 ) {
     for (index, body) in bodies.iter().enumerate() {
-        let own = &neighbours[index];
+        let beside = &neighbours[index];
         let thin = thinnest(layers.site, frame, body.polygon());
         let thin = thin.filter(|(cells, ..)| *cells < ENOUGH - 1e-6);
         let place = layers.own[index].as_ref().map(polygon_place);
         let name = clip(&body.name, 40);
         if let Some((cells, 0, ends)) = thin
-            && own.far_softer > 0
-            && !own.has_stiffer
+            && beside.far_softer > 0
+            && !beside.has_stiffer
             && is_between_soil(layers, index, ends)
         {
             warn_of_wall(&name, cells, Report { place, problems });
             continue;
         }
-        if own.has_same || own.has_any && !own.has_stiffer {
+        if beside.has_same || beside.has_any && !beside.has_stiffer {
             continue;
         }
         let [width, height] = frame.axes.each_ref().map(|axis| axis.extremes()[0]);
         let across = width_across_slants(body.polygon());
         let slanting = (across / width.min(height), across);
-        let (told, needed, (cells, thickness)) = match thin {
+        let (remark, needed, (cells, thickness)) = match thin {
             Some((cells, _, [from, to])) => ("where three are needed", ENOUGH, (cells, to - from)),
             None if slanting.0 < ENOUGH_ACROSS_SLOPES => (
                 "across its slope, where four are needed",
@@ -398,7 +396,7 @@ fn check_thickness(
         problems
             .warning(
                 place,
-                format!("body `{name}` is {} cells thick, {told}", short(cells)),
+                format!("body `{name}` is {} cells thick, {remark}", short(cells)),
             )
             .help("neither its bending nor sliding along it is resolved")
             .help(format!(
@@ -442,14 +440,14 @@ fn searched_in_another_shape(stages: &[Option<Stage>]) -> bool {
     let searches = |stage: &Stage| matches!(stage.kind, StageKind::StrengthReduction(_));
     let raises = |stage: &Stage| match &stage.kind {
         StageKind::Gravity { .. } | StageKind::Construction(_) => true,
-        StageKind::StrengthReduction(own) => own.path == ReductionPath::Gravity,
+        StageKind::StrengthReduction(search) => search.path == ReductionPath::Gravity,
         _ => false,
     };
     stages().any(searches)
         && stages().any(|stage| raises(stage) && stage.geometry == Geometry::Moving)
 }
 
-/// Whether weight is raised on the given geometry, where displacements are told as if they were small.
+/// Whether weight is raised on the given geometry, where displacements are those of small strain.
 fn raises_on_given(stages: &[Option<Stage>]) -> bool {
     stages.iter().flatten().any(|stage| {
         matches!(stage.kind, StageKind::Gravity { .. }) && stage.geometry == Geometry::Given
@@ -486,10 +484,10 @@ pub(crate) fn check_stiffness<const D: usize>(
         .iter()
         .map(|body| levels(body)[1])
         .fold(f64::MIN, f64::max);
-    let stated = Root::<D>::materials(tree).map_or_else(|_| Vec::new(), |own| own.value.0);
+    let stated = Root::<D>::materials(tree).map_or_else(|_| Vec::new(), |list| list.value.0);
     for (index, material) in materials.iter().enumerate() {
-        let own = bodies.iter().filter(|body| body.material == index);
-        let Some(body) = own.min_by(|a, b| levels(a)[0].total_cmp(&levels(b)[0])) else {
+        let filled = bodies.iter().filter(|body| body.material == index);
+        let Some(body) = filled.min_by(|a, b| levels(a)[0].total_cmp(&levels(b)[0])) else {
             continue;
         };
         let lowest = levels(body)[0];
@@ -499,12 +497,12 @@ pub(crate) fn check_stiffness<const D: usize>(
         let weight = material.unit_weight_at(&middle, &ground);
         let young = material.young_at(&middle, &ground);
         let ratio = weight * (top - lowest) / young;
-        let own = stated.get(index).and_then(|own| own.value.as_ref().ok());
-        let place = (own.and_then(|own| own.form.stiffness()))
-            .and_then(|own| own.young.as_ref().ok())
-            .map(|own| own.place);
+        let table = stated.get(index).and_then(|item| item.value.as_ref().ok());
+        let place = (table.and_then(|table| table.form.stiffness()))
+            .and_then(|keys| keys.young.as_ref().ok())
+            .map(|at| at.place);
         let shape = [changes_shape, raises_on_given(stages)]
-            .map(|own| own && material.strength != Strength::Elastic);
+            .map(|counts| counts && material.strength != Strength::Elastic);
         let report = Report { place, problems };
         warn_of_stiffness(material, (young, ratio, top - lowest), shape, report);
     }
@@ -520,13 +518,13 @@ fn warn_of_stiffness(
 ) {
     let name = clip(&material.name, 40);
     let kpa_at = |bound: f64| short(1e-3 * young * ratio / bound);
-    let told = |what: &str| {
+    let message = |kind: &str| {
         let ratio = short(ratio);
-        format!("`{name}` is {what}: unit_weight * height / young = {ratio}")
+        format!("`{name}` is {kind}: unit_weight * height / young = {ratio}")
     };
     if ratio > SOFT && changes_shape {
         problems
-            .warning(place, told("soft"))
+            .warning(place, message("soft"))
             .help(
                 "on a geometry that moves weight changes the shape of the ground, and the factor of safety is that of the new shape",
             )
@@ -536,7 +534,7 @@ fn warn_of_stiffness(
             ));
     } else if ratio > SINKS && is_given {
         problems
-            .warning(place, told("soft"))
+            .warning(place, message("soft"))
             .help(format!(
                 "on the given geometry weight sinks it by some {} m, and displacements are those of small strain; the factor of safety does not follow it",
                 short(0.5 * ratio * height)
@@ -547,7 +545,7 @@ fn warn_of_stiffness(
             ));
     } else if ratio > 0.0 && ratio < STIFF {
         problems
-            .warning(place, told("stiff"))
+            .warning(place, message("stiff"))
             .help("its strains are so small that round-off shows in the residual")
             .help(format!(
                 "young of {} kPa or less is stiff enough for any soil or rock",

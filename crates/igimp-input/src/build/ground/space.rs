@@ -26,7 +26,7 @@ impl Earth<3> for Solids {
         let parts = parts.filter(|(_, present)| **present);
         let [x, y] = [0, 1].map(|axis| self.places(axis));
         Box::new(Relief {
-            regions: parts.map(|(own, _)| Arc::clone(own)).collect(),
+            regions: parts.map(|(region, _)| Arc::clone(region)).collect(),
             bottom: fills_gaps.then_some(self.lower[2]),
             x,
             y,
@@ -42,8 +42,8 @@ impl Earth<3> for Solids {
             let mut levels = levels.map(|crossing| crossing.level);
             match source {
                 PoreSource::Points(raster) => {
-                    let [low, high] = levels.fold([f64::MAX, f64::MIN], |[low, high], own| {
-                        [low.min(own), high.max(own)]
+                    let [low, high] = levels.fold([f64::MAX, f64::MIN], |[low, high], level| {
+                        [low.min(level), high.max(level)]
                     });
                     let lines = raster.y.iter().copied();
                     let within = lines.filter(|level| low < *level && *level < high);
@@ -91,7 +91,7 @@ struct Relief {
 
 impl Relief {
     fn level(&self, place: &[f64; 3]) -> Option<f64> {
-        let tops = self.regions.iter().filter_map(|own| own.top(place));
+        let tops = self.regions.iter().filter_map(|region| region.top(place));
         tops.reduce(f64::max).or(self.bottom)
     }
 
@@ -102,7 +102,7 @@ impl Relief {
 
     /// Where it drops upright between two levels.
     fn face_between(&self, low: f64, high: f64) -> Option<UprightFace> {
-        let level = |place: &[f64; 3]| self.level(place).map(|own| own.clamp(low, high));
+        let level = |place: &[f64; 3]| self.level(place).map(|height| height.clamp(low, high));
         let all: Vec<Option<f64>> = self.lattice().map(|place| level(&place)).collect();
         let width = self.x.len();
         let place = |k: usize| [self.x[k % width], self.y[k / width], 0.0];
@@ -122,11 +122,11 @@ impl Relief {
                 let near = NEAR * apart;
                 while (to[0] - from[0]).abs().max((to[1] - from[1]).abs()) > near {
                     let middle = [0, 1, 2].map(|axis| 0.5 * (from[axis] + to[axis]));
-                    let Some(own) = level(&middle) else { break };
-                    if (own - ends[0]).abs() > (own - ends[1]).abs() {
-                        (to, ends[1]) = (middle, own);
+                    let Some(height) = level(&middle) else { break };
+                    if (height - ends[0]).abs() > (height - ends[1]).abs() {
+                        (to, ends[1]) = (middle, height);
                     } else {
-                        (from, ends[0]) = (middle, own);
+                        (from, ends[0]) = (middle, height);
                     }
                 }
                 if (ends[0] - ends[1]).abs() > self.tolerance {
@@ -155,7 +155,7 @@ impl Surface for Relief {
             }
             let slopes = [[step, 0.0], [0.0, step]].iter().any(|[x, y]| {
                 let beside = table.table(&[place[0] + x, place[1] + y, 0.0]);
-                beside.is_some_and(|own| (own - level).abs() > 1e-3 * step)
+                beside.is_some_and(|near| (near - level).abs() > 1e-3 * step)
             });
             for (found, counts) in std::iter::zip(&mut found, [true, slopes]) {
                 if counts && found.is_none_or(|(_, most)| by > most) {
@@ -163,8 +163,8 @@ impl Surface for Relief {
                 }
             }
         }
-        found.map(|own| {
-            own.map(|(place, by)| Above {
+        found.map(|most| {
+            most.map(|(place, by)| Above {
                 at: words(&place),
                 by,
             })
@@ -176,7 +176,7 @@ impl Surface for Relief {
             return None;
         };
         let mut grounds = self.lattice().filter(|place| {
-            let mut tops = self.regions.iter().filter_map(|own| own.top(place));
+            let mut tops = self.regions.iter().filter_map(|region| region.top(place));
             tops.next().is_some()
         });
         let bare = grounds.find(|place| terrain.height_at([place[0], place[1]]).is_none());

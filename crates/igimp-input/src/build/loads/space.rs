@@ -19,7 +19,7 @@ impl Bearing<3> for Solids {
     /// It was refused before.
     fn footing(
         &self,
-        _own: &Result<Footing<3>, Wrong>,
+        _footing: &Result<Footing<3>, Wrong>,
         _name: &str,
         _problems: &mut Problems,
     ) -> Option<LoadKind<3>> {
@@ -28,20 +28,20 @@ impl Bearing<3> for Solids {
 
     fn pressure(
         &self,
-        own: &Pressure<3>,
+        load: &Pressure<3>,
         about: (&str, &[&[bool]]),
         problems: &mut Problems,
     ) -> Option<LoadKind<3>> {
-        pressure(own, about, self, problems)
+        pressure(load, about, self, problems)
     }
 
     fn patch(
         &self,
-        own: &Result<Patch, Wrong>,
+        load: &Result<Patch, Wrong>,
         (name, place, _, scenes): (&str, Place, Place, &[&[bool]]),
         problems: &mut Problems,
     ) -> Option<LoadKind<3>> {
-        patch(own.as_ref().ok()?, (name, place), (self, scenes), problems)
+        patch(load.as_ref().ok()?, (name, place), (self, scenes), problems)
     }
 }
 
@@ -54,11 +54,11 @@ fn is_soil(soil: &Solids, present: Option<&[bool]>, at: [f64; 3]) -> bool {
 /// How many places of a rectangle across an axis have soil behind it alone, before it alone, and on both sides; of the bodies that
 /// are there, if they are stated.
 fn soil_beside(
-    own: &Pressure<3>,
+    load: &Pressure<3>,
     normal: usize,
     (soil, present): (&Solids, Option<&[bool]>),
 ) -> [usize; 3] {
-    let (from, to) = (*own.from, *own.to);
+    let (from, to) = (*load.from, *load.to);
     let step = 1e-2 * soil.cell;
     let mut found = [0; 3];
     for k in 0..SAMPLES * SAMPLES {
@@ -85,13 +85,13 @@ fn soil_beside(
 }
 
 fn pressure(
-    own: &Pressure<3>,
+    load: &Pressure<3>,
     (name, scenes): (&str, &[&[bool]]),
     soil: &Solids,
     problems: &mut Problems,
 ) -> Option<LoadKind<3>> {
     const ALL: usize = SAMPLES * SAMPLES;
-    let (from, to) = (*own.from, *own.to);
+    let (from, to) = (*load.from, *load.to);
     let shown = clip(name, 40);
     let flat: Vec<usize> = (0..3)
         .filter(|&axis| (to[axis] - from[axis]).abs() <= soil.round_off)
@@ -99,22 +99,22 @@ fn pressure(
     let &[normal] = &flat[..] else {
         problems
             .error(
-                own.to.place,
+                load.to.place,
                 format!("the corners of the pressure `{shown}` span no rectangle across an axis"),
             )
             .help("two corners that lie across from each other have one coordinate in common");
         return None;
     };
     let scenes = scenes.iter().filter(|_| soil.is_complete);
-    let found = scenes.map(|present| soil_beside(own, normal, (soil, Some(*present))));
+    let found = scenes.map(|present| soil_beside(load, normal, (soil, Some(*present))));
     // A load on soil that is not there is refused where the stage applies it.
-    let mut found: Vec<_> = found.filter(|own| *own != [0; 3]).collect();
+    let mut found: Vec<_> = found.filter(|counts| *counts != [0; 3]).collect();
     if found.is_empty() {
-        found.push(soil_beside(own, normal, (soil, None)));
+        found.push(soil_beside(load, normal, (soil, None)));
     }
-    let is_on = |side: usize| found.iter().all(|own| own[side] == ALL);
+    let is_on = |side: usize| found.iter().all(|counts| counts[side] == ALL);
     if soil.is_complete && !is_on(0) && !is_on(1) {
-        let is_wrong = |own: &&[usize; 3]| own[0] < ALL && own[1] < ALL;
+        let is_wrong = |counts: &&[usize; 3]| counts[0] < ALL && counts[1] < ALL;
         let message = match found.iter().find(is_wrong) {
             Some([0, 0, 0]) => {
                 format!("no body lies along the rectangle of the pressure `{shown}`")
@@ -130,31 +130,31 @@ fn pressure(
             ),
         };
         problems
-            .error(own.from.place, message)
+            .error(load.from.place, message)
             .help("the rectangle lies on a level or upright face of a body");
         return None;
     }
     let mut inward = [0.0; 3];
     inward[normal] = if found[0][0] > 0 { 1.0 } else { -1.0 };
-    if *own.direction == PressureDirection::Down {
+    if *load.direction == PressureDirection::Down {
         inward = [0.0, 0.0, -1.0];
     }
     Some(LoadKind::Pressure {
         from,
         to,
-        traction: inward.map(|component| component * *own.pressure + 0.0),
+        traction: inward.map(|component| component * *load.pressure + 0.0),
     })
 }
 
 /// A pressure on a circle or polygon in plan.
 fn patch(
-    own: &Patch,
+    load: &Patch,
     (name, place): (&str, Place),
     (soil, scenes): (&Solids, &[&[bool]]),
     problems: &mut Problems,
 ) -> Option<LoadKind<3>> {
     let shown = clip(name, 40);
-    let plan = match (&own.circle, &own.plan) {
+    let plan = match (&load.circle, &load.plan) {
         (Some(circle), None) => Plan::Circle {
             centre: *circle.centre,
             radius: *circle.radius,
@@ -163,7 +163,7 @@ fn patch(
             let Either::First(corners) = &plan.value else {
                 return None;
             };
-            let corners: Vec<_> = corners.iter().map(|own| **own).collect();
+            let corners: Vec<_> = corners.iter().map(|corner| **corner).collect();
             let corners = distinct(&corners, soil.round_off);
             let crossing = self_crossing(&corners, soil.round_off);
             let polygon = Plan::Polygon(corners);
@@ -187,9 +187,9 @@ fn patch(
             return None;
         }
     };
-    let (level, pressure) = (*own.level, *own.pressure);
+    let (level, pressure) = (*load.level, *load.pressure);
     if let Some((at, is_buried)) = off_surface(&places(&plan, level, soil), soil, scenes) {
-        let what = if is_buried {
+        let fault = if is_buried {
             "lies inside the soil, not on its surface,"
         } else {
             "does not lie on the surface of a body"
@@ -197,8 +197,8 @@ fn patch(
         let near = at.map(|x| (1e4 * x).round() / 1e4);
         problems
             .error(
-                own.level.place,
-                format!("the patch `{shown}` {what} at {}", point(near)),
+                load.level.place,
+                format!("the patch `{shown}` {fault} at {}", point(near)),
             )
             .help("all of it lies on level surfaces of bodies at its level");
         return None;
@@ -224,8 +224,8 @@ fn off_surface(places: &[[f64; 3]], soil: &Solids, scenes: &[&[bool]]) -> Option
     if !soil.is_complete {
         return None;
     }
-    let scenes = scenes.iter().map(|own| Some(*own));
-    let mut scenes: Vec<_> = scenes.filter(|own| bears(*own)).collect();
+    let scenes = scenes.iter().map(|scene| Some(*scene));
+    let mut scenes: Vec<_> = scenes.filter(|scene| bears(*scene)).collect();
     if scenes.is_empty() {
         scenes.push(None);
     }

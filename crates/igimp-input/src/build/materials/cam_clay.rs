@@ -27,12 +27,12 @@ const POISSON: Limit = (
 
 /// The law of a table, with slopes of natural volumetric strain.
 pub(super) fn strength<const D: usize>(
-    own: &CamClay,
+    clay: &CamClay,
     read: &mut Parameters<'_, '_, D>,
 ) -> Option<Strength> {
-    let volume = 1.0 + own.void_ratio.as_ref().map_or(0.0, |own| **own);
-    let compression = read.read("lambda", &own.lambda, NUMBER, None);
-    let swelling = read.read("kappa", &own.kappa, NUMBER, None);
+    let volume = 1.0 + clay.void_ratio.as_ref().map_or(0.0, |ratio| **ratio);
+    let compression = read.read("lambda", &clay.lambda, NUMBER, None);
+    let swelling = read.read("kappa", &clay.kappa, NUMBER, None);
     for key in ["lambda", "kappa"] {
         read.scale(key, |value| value / volume);
     }
@@ -44,27 +44,27 @@ pub(super) fn strength<const D: usize>(
             .help("clay swells by a fifth to a tenth of what it was compressed by");
         return None;
     }
-    let ocr = read.read("ocr", &own.ocr, NUMBER, Some(OCR));
+    let ocr = read.read("ocr", &clay.ocr, NUMBER, Some(OCR));
     let help = "add friction = \"25 deg\", the angle at the critical state";
     let critical = [
-        ("friction", &own.friction, ANGLE, Some(FRICTION)),
+        ("friction", &clay.friction, ANGLE, Some(FRICTION)),
         (
             "critical_ratio",
-            &own.critical_ratio,
+            &clay.critical_ratio,
             NUMBER,
             Some(CRITICAL_RATIO),
         ),
     ];
-    let critical_ratio = match one_of(critical, (own.lambda.place, help), read)? {
+    let critical_ratio = match one_of(critical, (clay.lambda.place, help), read)? {
         ("friction", angle) => critical_ratio_of(angle),
         (_, ratio) => ratio,
     };
     let help = "add poisson = 0.25: shear stiffness grows with pressure, as the bulk modulus does";
     let shear = [
-        ("poisson", &own.poisson, NUMBER_OR_NONE, Some(POISSON)),
-        ("shear", &own.shear, STRESS, None),
+        ("poisson", &clay.poisson, NUMBER_OR_NONE, Some(POISSON)),
+        ("shear", &clay.shear, STRESS, None),
     ];
-    let shear = match one_of(shear, (own.kappa.place, help), read)? {
+    let shear = match one_of(shear, (clay.kappa.place, help), read)? {
         ("poisson", ratio) => ShearStiffness::Poisson(ratio),
         (_, modulus) => ShearStiffness::Constant(modulus),
     };
@@ -74,7 +74,7 @@ pub(super) fn strength<const D: usize>(
         critical_ratio,
         shear,
         overconsolidation: ocr?.most,
-        reference_pressure: *own.reference_pressure,
+        reference_pressure: *clay.reference_pressure,
     }))
 }
 
@@ -92,9 +92,9 @@ fn one_of<const D: usize>(
             .help("keep one of them");
         return None;
     }
-    for (key, own, terms, limit) in keys {
-        if let Some(own) = own {
-            return Some((key, read.read(key, own, terms, limit)?.most));
+    for (key, stated, terms, limit) in keys {
+        if let Some(stated) = stated {
+            return Some((key, read.read(key, stated, terms, limit)?.most));
         }
     }
     let message = format!("neither `{one}` nor `{other}` is given");

@@ -1,4 +1,4 @@
-//! What materials ask of the grid, the stages and the solver.
+//! Demands of materials on the grid, the stages and the solver.
 
 use igimp_linear::SolverKind;
 use igimp_model::{Case, Material, Softens, Stage, StageKind};
@@ -26,9 +26,9 @@ fn check_where_soft<const D: usize>(
         &mut curves.dilation,
     ] {
         // To the law strains are those of the soil times this.
-        *curve = curve.map(|own| Softens {
-            strain: own.strain * least,
-            ..own
+        *curve = curve.map(|softens| Softens {
+            strain: softens.strain * least,
+            ..softens
         });
     }
     let asked = Material {
@@ -59,7 +59,7 @@ pub(crate) fn check_on_cells<const D: usize>(case: &Case<D>, problems: &mut Prob
     }
     for (index, material) in case.materials.iter().enumerate() {
         check_where_soft(case, (index, cell), problems);
-        let Some(curves) = material.softening.filter(|own| own.band_width.is_some()) else {
+        let Some(curves) = material.softening.filter(|soft| soft.band_width.is_some()) else {
             continue;
         };
         if let Err(why) = material.possible(cell) {
@@ -82,7 +82,7 @@ pub(crate) fn check_lengths<const D: usize>(case: &Case<D>, problems: &mut Probl
         .map(|axis| case.grid.smallest_cell()[axis])
         .fold(0.0, f64::max);
     for material in &case.materials {
-        let Some(own) = material.softening.and_then(|own| own.nonlocal) else {
+        let Some(nonlocal) = material.softening.and_then(|soft| soft.nonlocal) else {
             continue;
         };
         let name = clip(&material.name, 40);
@@ -108,11 +108,11 @@ pub(crate) fn check_lengths<const D: usize>(case: &Case<D>, problems: &mut Probl
                     format!("softening of `{name}` over a length is solved for {why}"),
                 )
                 .help("write `band_width` in place of `length`: strains are scaled to the cells");
-        } else if cell > 0.5 * own.length * (1.0 + 1e-9) {
+        } else if cell > 0.5 * nonlocal.length * (1.0 + 1e-9) {
             let message = format!(
                 "cells of {} m do not resolve the bands of `{name}`, whose softening has a length of {} m",
                 number(cell),
-                number(own.length)
+                number(nonlocal.length)
             );
             problems
                 .warning(None, message)
@@ -129,7 +129,7 @@ pub(crate) fn check_rates<const D: usize>(case: &Case<D>, problems: &mut Problem
     if case.stages.iter().any(takes_time) {
         return;
     }
-    for material in case.materials.iter().filter(|own| own.goes_with_rate()) {
+    for material in case.materials.iter().filter(|soil| soil.goes_with_rate()) {
         let message = format!(
             "the strength of `{}` goes with the rate of strain, and no stage takes time",
             clip(&material.name, 40)

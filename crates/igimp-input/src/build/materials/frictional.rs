@@ -13,7 +13,7 @@ use super::parameters::{ANGLE_OR_NONE, Parameters, STRESS_OR_NONE};
 use super::profiles::{Extent, Property, TABLES, Terms, property};
 use super::{STRENGTH, softening};
 
-/// What may be said of friction that varies.
+/// Terms of friction that varies.
 const FRICTION: Terms = Terms {
     may_vanish: true,
     may_be_nothing: true,
@@ -24,22 +24,22 @@ const FRICTION: Terms = Terms {
 
 /// Cohesion, and tan φ.
 pub(super) fn properties<const D: usize>(
-    own: &Frictional,
+    law: &Frictional,
     extent: Extent<'_, D>,
     problems: &mut Problems,
 ) -> [Option<Property>; 2] {
-    let cohesive = own.cohesion.as_ref().ok();
-    let cohesive = cohesive.and_then(|own| property(own, "cohesion", extent, STRENGTH, problems));
-    [cohesive, friction(own, extent, problems)]
+    let cohesive = law.cohesion.as_ref().ok();
+    let cohesive = cohesive.and_then(|at| property(at, "cohesion", extent, STRENGTH, problems));
+    [cohesive, friction(law, extent, problems)]
 }
 
 /// tan φ, where the angle is one.
 fn friction<const D: usize>(
-    own: &Frictional,
+    law: &Frictional,
     extent: Extent<'_, D>,
     problems: &mut Problems,
 ) -> Option<Property> {
-    let stated = own.friction.as_ref().ok()?;
+    let stated = law.friction.as_ref().ok()?;
     let is_steep = |angle: f64| angle.to_degrees() > 89.999_999;
     let steep = match &**stated {
         Either::First(angle) => is_steep(*angle).then_some(stated.place),
@@ -58,8 +58,8 @@ fn friction<const D: usize>(
 
 /// Refuses undrained soil that dilates as associated flow does; warns of one that `dilates`.
 pub(super) fn never_fails(model: &Model, dilates: bool, problems: &mut Problems) -> Option<()> {
-    if let Model::MohrCoulomb(Ok(own)) = model
-        && let flow = own.flow.as_ref().ok()?
+    if let Model::MohrCoulomb(Ok(law)) = model
+        && let flow = law.flow.as_ref().ok()?
         && **flow == keys::Flow::Davis
     {
         problems
@@ -70,10 +70,10 @@ pub(super) fn never_fails(model: &Model, dilates: bool, problems: &mut Problems)
             .help("leave `flow` out, or model = \"tresca\" with the undrained strength");
         return None;
     }
-    let Some(own) = model.frictional() else {
+    let Some(law) = model.frictional() else {
         return Some(());
     };
-    let dilation = own.dilation.as_ref().ok()?;
+    let dilation = law.dilation.as_ref().ok()?;
     if dilates && !softening::ends_dilation(model) {
         problems
             .warning(
@@ -87,21 +87,21 @@ pub(super) fn never_fails(model: &Model, dilates: bool, problems: &mut Problems)
 
 /// c, φ and ψ.
 fn angles<const D: usize>(
-    own: &Frictional,
+    law: &Frictional,
     [cohesive, friction]: [Option<&Property>; 2],
     read: &mut Parameters<'_, '_, D>,
 ) -> Option<[f64; 3]> {
-    let cohesion = cohesive.map(|own| own.constant);
-    let friction_varies = friction.is_some_and(|own| own.profile.is_some());
+    let cohesion = cohesive.map(|prop| prop.constant);
+    let friction_varies = friction.is_some_and(|prop| prop.profile.is_some());
     // An angle that is stated is kept to the last bit.
-    let stated = own.friction.as_ref().ok().map(|own| &own.value);
-    let friction = friction.and_then(|own| match (&own.profile, stated) {
+    let stated = law.friction.as_ref().ok().map(|at| &at.value);
+    let friction = friction.and_then(|prop| match (&prop.profile, stated) {
         (None, Some(Either::First(angle))) => Some(*angle),
         (None, _) => None,
-        (Some(_), _) => Some(own.constant.atan()),
+        (Some(_), _) => Some(prop.constant.atan()),
     });
-    let stated = own.dilation.as_ref().ok();
-    let dilation = stated.and_then(|own| read.read("dilation", own, ANGLE_OR_NONE, None));
+    let stated = law.dilation.as_ref().ok();
+    let dilation = stated.and_then(|at| read.read("dilation", at, ANGLE_OR_NONE, None));
     if let (Some(friction), Some(dilation)) = (friction, dilation)
         && dilation.most > friction * (1.0 + if friction_varies { 1e-12 } else { 0.0 })
     {
@@ -115,22 +115,22 @@ fn angles<const D: usize>(
     if let (Some(cohesion), Some(friction)) = (cohesion, friction)
         && cohesion == 0.0
     {
-        no_cohesion(read.extent.name, own, friction, read.problems)?;
+        no_cohesion(read.extent.name, law, friction, read.problems)?;
     }
     Some([cohesion?, friction?, dilation?.most.min(friction?)])
 }
 
 /// Drucker–Prager.
 pub(super) fn drucker_prager<const D: usize>(
-    own: &DruckerPrager,
+    law: &DruckerPrager,
     both: [Option<&Property>; 2],
     read: &mut Parameters<'_, '_, D>,
 ) -> Option<Strength> {
-    let parameters = angles(&own.strength, both, read);
-    let rate = match own.rate.as_ref().ok()? {
+    let parameters = angles(&law.strength, both, read);
+    let rate = match law.rate.as_ref().ok()? {
         Some(rate) => {
-            let dilates = parameters.is_some_and(|own| own[2] > 0.0);
-            Some(inertial((rate, dilates), own, both, read.problems)?)
+            let dilates = parameters.is_some_and(|angles| angles[2] > 0.0);
+            Some(inertial((rate, dilates), law, both, read.problems)?)
         }
         None => None,
     };
@@ -139,7 +139,7 @@ pub(super) fn drucker_prager<const D: usize>(
         cohesion,
         friction_angle,
         dilation_angle,
-        cone: match **own.cone.as_ref().ok()? {
+        cone: match **law.cone.as_ref().ok()? {
             keys::Cone::Compression => Cone::Compression,
             keys::Cone::Extension => Cone::Extension,
             keys::Cone::PlaneStrain => Cone::PlaneStrain,
@@ -151,17 +151,17 @@ pub(super) fn drucker_prager<const D: usize>(
 /// Friction that grows with the speed of shear, of soil that keeps its volume and has one strength.
 fn inertial(
     (rate, dilates): (&At<InertialRate>, bool),
-    own: &DruckerPrager,
+    law: &DruckerPrager,
     both: [Option<&Property>; 2],
     problems: &mut Problems,
 ) -> Option<InertialFriction> {
-    let dilation = own.strength.dilation.as_ref().ok()?;
-    let slow = match &**own.strength.friction.as_ref().ok()? {
+    let dilation = law.strength.dilation.as_ref().ok()?;
+    let slow = match &**law.strength.friction.as_ref().ok()? {
         Either::First(angle) => Some(*angle),
         Either::Second(_) => None,
     };
     let fast = &rate.friction;
-    let varies = both.iter().flatten().any(|own| own.profile.is_some());
+    let varies = both.iter().flatten().any(|prop| prop.profile.is_some());
     let refused = match slow {
         _ if dilates => Some((
             dilation.place,
@@ -199,17 +199,17 @@ fn inertial(
 
 /// Mohr–Coulomb.
 pub(super) fn mohr_coulomb<const D: usize>(
-    own: &MohrCoulomb,
+    law: &MohrCoulomb,
     both: [Option<&Property>; 2],
     read: &mut Parameters<'_, '_, D>,
 ) -> Option<Strength> {
     let [cohesive, _] = both;
-    let parameters = angles(&own.strength, both, read);
-    let cutoff = match own.tension_cutoff.as_ref().ok()? {
-        Some(own) => Some(read.read("tension_cutoff", own, STRESS_OR_NONE, None)?),
+    let parameters = angles(&law.strength, both, read);
+    let cutoff = match law.tension_cutoff.as_ref().ok()? {
+        Some(stress) => Some(read.read("tension_cutoff", stress, STRESS_OR_NONE, None)?),
         None => None,
     };
-    let cohesion_varies = cohesive.is_some_and(|own| own.profile.is_some());
+    let cohesion_varies = cohesive.is_some_and(|prop| prop.profile.is_some());
     if let Some(cutoff) = cutoff.filter(|cutoff| cohesion_varies && cutoff.most > 0.0) {
         read.problems
             .error(
@@ -245,7 +245,7 @@ pub(super) fn mohr_coulomb<const D: usize>(
         cohesion,
         friction_angle,
         dilation_angle,
-        flow: match **own.flow.as_ref().ok()? {
+        flow: match **law.flow.as_ref().ok()? {
             keys::Flow::Davis => Flow::Davis,
             keys::Flow::Dilation => Flow::Dilation,
         },
@@ -257,9 +257,9 @@ pub(super) fn mohr_coulomb<const D: usize>(
 const NEARLY_APEX: f64 = 0.8;
 
 /// Refuses soil without cohesion and friction, somewhere or everywhere; warns of soil without cohesion.
-fn no_cohesion(name: &str, own: &Frictional, friction: f64, problems: &mut Problems) -> Option<()> {
+fn no_cohesion(name: &str, law: &Frictional, friction: f64, problems: &mut Problems) -> Option<()> {
     let name = clip(name, 40);
-    let stated = own.friction.as_ref().ok()?;
+    let stated = law.friction.as_ref().ok()?;
     if let Either::Second(table) = &**stated
         && (table.values.iter().flat_map(|values| values.iter())).any(|angle| **angle == 0.0)
     {
@@ -271,7 +271,7 @@ fn no_cohesion(name: &str, own: &Frictional, friction: f64, problems: &mut Probl
             .help("a small cohesion, like cohesion = \"0.1 kPa\"");
         return None;
     }
-    let place = own.cohesion.as_ref().ok()?.place;
+    let place = law.cohesion.as_ref().ok()?.place;
     if friction == 0.0 {
         problems
             .error(place, format!("`{name}` has neither cohesion nor friction"))

@@ -37,30 +37,30 @@ const K0_NORMAL: Limit = (
 
 /// The law of a table.
 pub(super) fn strength<const D: usize>(
-    own: &Keys,
+    soil: &Keys,
     read: &mut Parameters<'_, '_, D>,
 ) -> Option<Strength> {
     let before = read.problems.errors();
-    let cohesion = read.read("cohesion", &own.cohesion, STRESS_OR_NONE, None);
-    let friction = read.read("friction", &own.friction, ANGLE, Some(FRICTION));
-    let dilation = read.read("dilation", &own.dilation, ANGLE_OR_NONE, None);
-    let secant = read.read("e50", &own.e50, STRESS, None);
+    let cohesion = read.read("cohesion", &soil.cohesion, STRESS_OR_NONE, None);
+    let friction = read.read("friction", &soil.friction, ANGLE, Some(FRICTION));
+    let dilation = read.read("dilation", &soil.dilation, ANGLE_OR_NONE, None);
+    let secant = read.read("e50", &soil.e50, STRESS, None);
     let mut modulus = |key, stated: &Option<_>, times: f64| {
         if let Some(stated) = stated {
             return read.read(key, stated, STRESS, None);
         }
         read.follow(key, "e50", |value| times * value);
-        secant.map(|own| own.times(times))
+        secant.map(|e50| e50.times(times))
     };
-    let unloading = modulus("eur", &own.eur, 3.0);
-    let oedometer = modulus("eoed", &own.eoed, 1.0);
-    let poisson = read.read("poisson", &own.poisson, NUMBER_OR_NONE, Some(POISSON));
-    let power = read.read("power", &own.power, NUMBER_OR_NONE, Some(POWER));
-    let failure_ratio = &own.failure_ratio;
+    let unloading = modulus("eur", &soil.eur, 3.0);
+    let oedometer = modulus("eoed", &soil.eoed, 1.0);
+    let poisson = read.read("poisson", &soil.poisson, NUMBER_OR_NONE, Some(POISSON));
+    let power = read.read("power", &soil.power, NUMBER_OR_NONE, Some(POWER));
+    let failure_ratio = &soil.failure_ratio;
     let failure_ratio = read.read("failure_ratio", failure_ratio, NUMBER, Some(FAILURE_RATIO));
-    let ocr = read.read("ocr", &own.ocr, NUMBER, Some(OCR));
-    let k0_normal = match &own.k0_normal {
-        Some(own) => read.read("k0_normal", own, NUMBER, Some(K0_NORMAL))?.most,
+    let ocr = read.read("ocr", &soil.ocr, NUMBER, Some(OCR));
+    let k0_normal = match &soil.k0_normal {
+        Some(at) => read.read("k0_normal", at, NUMBER, Some(K0_NORMAL))?.most,
         None => jaky(friction?.most),
     };
     let parameters = HardeningSoilParameters {
@@ -72,24 +72,24 @@ pub(super) fn strength<const D: usize>(
         oedometer: oedometer?.most,
         poisson: poisson?.most,
         power: power?.most,
-        reference_pressure: *own.reference_pressure,
+        reference_pressure: *soil.reference_pressure,
         failure_ratio: failure_ratio?.most,
         k0_normal,
         overconsolidation: ocr?.most,
     };
-    is_possible(own, &parameters, (before, read)).map(|()| Strength::HardeningSoil(parameters))
+    is_possible(soil, &parameters, (before, read)).map(|()| Strength::HardeningSoil(parameters))
 }
 
 /// Refuses values that go with no others of this soil.
 fn is_possible<const D: usize>(
-    own: &Keys,
+    soil: &Keys,
     parameters: &HardeningSoilParameters,
     (before, read): (usize, &mut Parameters<'_, '_, D>),
 ) -> Option<()> {
     if parameters.dilation_angle > parameters.friction_angle.min(30_f64.to_radians()) {
         read.problems
             .error(
-                own.dilation.place,
+                soil.dilation.place,
                 "the dilation angle is no larger than the friction angle and than 30 deg",
             )
             .help("dense sand has about friction - 30 deg, loose sand and clay 0 deg");
@@ -97,7 +97,7 @@ fn is_possible<const D: usize>(
     if parameters.unloading <= 2.0 * parameters.secant / (2.0 - parameters.failure_ratio) {
         read.problems
             .error(
-                own.eur.as_ref().unwrap_or(&own.e50).place,
+                soil.eur.as_ref().unwrap_or(&soil.e50).place,
                 "`eur` has to be larger than 2 e50/(2 - failure_ratio), the initial stiffness of the hyperbola",
             )
             .help("soils have three to five times e50");
@@ -106,7 +106,7 @@ fn is_possible<const D: usize>(
         return None;
     }
     if HardeningSoil::new(*parameters).is_err() {
-        let stated = own.eoed.as_ref().or(own.k0_normal.as_ref());
+        let stated = soil.eoed.as_ref().or(soil.k0_normal.as_ref());
         let message = format!(
             "no cap gives an oedometer modulus of {} MPa at a ratio of stresses of {} beside `e50` = {} MPa",
             number(1e-6 * parameters.oedometer),
@@ -114,7 +114,7 @@ fn is_possible<const D: usize>(
             number(1e-6 * parameters.secant)
         );
         read.problems
-            .error(stated.unwrap_or(&own.e50).place, message)
+            .error(stated.unwrap_or(&soil.e50).place, message)
             .help("eoed is about e50 in sand and half of it in clay; k0_normal about 1 - sin(friction)");
         return None;
     }

@@ -24,20 +24,20 @@ const DILATION: Limit = (
 
 /// The strength of a table.
 pub(super) fn strength<const D: usize>(
-    own: &HoekBrown,
+    rock: &HoekBrown,
     read: &mut Parameters<'_, '_, D>,
 ) -> Option<Strength> {
-    let intact_strength = read.read("sci", &own.sci, STRESS, None);
-    let gsi = read.read("gsi", &own.gsi, NUMBER, Some(GSI));
-    let intact_ratio = read.read("mi", &own.mi, NUMBER, None);
-    let disturbance = &own.disturbance;
+    let intact_strength = read.read("sci", &rock.sci, STRESS, None);
+    let gsi = read.read("gsi", &rock.gsi, NUMBER, Some(GSI));
+    let intact_ratio = read.read("mi", &rock.mi, NUMBER, None);
+    let disturbance = &rock.disturbance;
     let disturbance = read.read(
         "disturbance",
         disturbance,
         NUMBER_OR_NONE,
         Some(DISTURBANCE),
     );
-    let dilation = read.read("dilation", &own.dilation, ANGLE_OR_NONE, Some(DILATION));
+    let dilation = read.read("dilation", &rock.dilation, ANGLE_OR_NONE, Some(DILATION));
     Some(Strength::HoekBrown(HoekBrownParameters {
         intact_strength: intact_strength?.most,
         gsi: gsi?.most,

@@ -10,7 +10,7 @@ use igimp_schema::tree::read::{At, Either};
 use super::profiles::{Extent, Terms, property};
 use super::{STRENGTH, YOUNG};
 
-/// What may be said of parameters that vary.
+/// Terms of parameters that vary.
 pub(super) const STRESS: Terms = YOUNG;
 pub(super) const STRESS_OR_NONE: Terms = Terms {
     may_be_nothing: true,
@@ -82,12 +82,12 @@ impl<const D: usize> Parameters<'_, '_, D> {
     pub(super) fn read(
         &mut self,
         key: &'static str,
-        own: &Stated,
+        stated: &Stated,
         terms: Terms,
         limit: Option<Limit>,
     ) -> Option<Parameter> {
-        let read = property(own, key, self.extent, terms, self.problems)?;
-        let (least, most, place) = (read.least, read.constant, own.place);
+        let read = property(stated, key, self.extent, terms, self.problems)?;
+        let (least, most, place) = (read.least, read.constant, stated.place);
         if let Some((holds, message, help)) = limit
             && let Some(value) = [most, least].into_iter().find(|value| !holds(*value))
         {
@@ -106,15 +106,15 @@ impl<const D: usize> Parameters<'_, '_, D> {
 
     /// A key that is not stated follows another, by a linear function.
     pub(super) fn follow(&mut self, key: &'static str, other: &str, by: impl Fn(f64) -> f64) {
-        if let Some(own) = self.varied.iter().find(|own| own.0 == other).cloned() {
-            self.varied.push((key, own.1, own.2.scaled(by)));
+        if let Some(entry) = self.varied.iter().find(|entry| entry.0 == other).cloned() {
+            self.varied.push((key, entry.1, entry.2.scaled(by)));
         }
     }
 
     /// Makes of the values of a key those that the law has, by a linear function.
     pub(super) fn scale(&mut self, key: &str, by: impl Fn(f64) -> f64) {
-        for own in self.varied.iter_mut().filter(|own| own.0 == key) {
-            own.2 = own.2.clone().scaled(&by);
+        for entry in self.varied.iter_mut().filter(|entry| entry.0 == key) {
+            entry.2 = entry.2.clone().scaled(&by);
         }
     }
 }

@@ -23,9 +23,9 @@ pub(super) fn check_stiffness(
     let Some(place) = place.filter(|_| stiff < LEAST_STIFFNESS * strong) else {
         return;
     };
-    let stated = |own: &Property| {
-        let to = if own.profile.is_some() { "up to" } else { "=" };
-        format!("{to} {} kPa", number(own.constant / 1e3))
+    let stated = |prop: &Property| {
+        let to = if prop.profile.is_some() { "up to" } else { "=" };
+        format!("{to} {} kPa", number(prop.constant / 1e3))
     };
     let message = format!(
         "`{}` has young {}, {} times its {key} {}: it hardly yields",

@@ -36,8 +36,8 @@ impl<'a, const D: usize> Extent<'a, D> {
     /// The bodies of the material.
     fn of_material(&self) -> impl Iterator<Item = &'a BodyPart<D>> {
         let material = self.material;
-        let own = self.bodies.iter().flatten();
-        own.filter(move |body| body.material == material)
+        let parts = self.bodies.iter().flatten();
+        parts.filter(move |body| body.material == material)
     }
 
     /// Their outlines as seen from the front: polygons in the plane, else the boxes around them.
@@ -79,16 +79,16 @@ fn union(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
-/// What a property must be in the soil, and how it is read and printed.
+/// Demands on a property in the soil, and how it is read and printed.
 #[derive(Clone, Copy)]
 pub(crate) struct Terms {
     /// Whether it may be zero somewhere.
     pub(crate) may_vanish: bool,
     /// Whether it may be zero everywhere.
     pub(crate) may_be_nothing: bool,
-    /// What is kept of a number as read.
+    /// The kept form of a number as read.
     pub(crate) kept: fn(f64) -> f64,
-    /// What was kept, with its unit.
+    /// The kept number, with its unit.
     pub(crate) printed: fn(f64) -> String,
     /// The forms of a table that says how it varies.
     pub(crate) forms: &'static str,
@@ -111,7 +111,7 @@ pub(crate) struct ProfileKeys<'a> {
 
 /// A table that says how a property varies.
 pub(crate) trait Varies {
-    /// What it states.
+    /// The keys that it states.
     fn stated(&self, place: Place) -> ProfileKeys<'_>;
 }
 
@@ -151,8 +151,8 @@ impl Varies for Rows {
 impl ProfileKeys<'_> {
     /// Where a key of a form is stated, if it is.
     fn place_of(&self, key: &str) -> Option<Place> {
-        fn of<T>(own: Option<&At<T>>) -> Option<Place> {
-            own.map(|own| own.place)
+        fn of<T>(at: Option<&At<T>>) -> Option<Place> {
+            at.map(|at| at.place)
         }
         let (growth, points, share) = (self.growth, self.points, self.share);
         match key {
@@ -177,8 +177,8 @@ impl ProfileKeys<'_> {
 
     /// Whether no key is stated.
     fn is_empty(&self) -> bool {
-        let of_files = |own: &keys::Points| {
-            let keys = [&own.raster, &own.unit, &own.length_unit];
+        let of_files = |points: &keys::Points| {
+            let keys = [&points.raster, &points.unit, &points.length_unit];
             keys.into_iter().any(Option::is_some)
         };
         let mut keys = FORMS.iter().flat_map(Form::keys);
@@ -193,13 +193,13 @@ impl ProfileKeys<'_> {
 
 /// The property of a key: a quantity, or a table that says how it varies.
 pub(crate) fn property<T: Varies, const D: usize>(
-    own: &At<Either<f64, T>>,
+    given: &At<Either<f64, T>>,
     key: &str,
     extent: Extent<'_, D>,
     terms: Terms,
     problems: &mut Problems,
 ) -> Option<Property> {
-    let value = match &**own {
+    let value = match &**given {
         Either::First(constant) => {
             let constant = (terms.kept)(*constant);
             return Some(Property {
@@ -208,7 +208,7 @@ pub(crate) fn property<T: Varies, const D: usize>(
                 profile: None,
             });
         }
-        Either::Second(table) => table.stated(own.place),
+        Either::Second(table) => table.stated(given.place),
     };
     let profile = stated(&value, key, extent, terms, problems).ok()?;
     let [least, greatest] = extremes(&profile, extent);
@@ -223,7 +223,7 @@ pub(crate) fn property<T: Varies, const D: usize>(
             value.place_at("values")
         }
     };
-    let told = || {
+    let message = || {
         format!(
             "`{key}` is {} {}, in the soil of `{name}`",
             (terms.printed)(least.value),
@@ -231,7 +231,7 @@ pub(crate) fn property<T: Varies, const D: usize>(
         )
     };
     if !greatest.value.is_finite() || least.value < 0.0 {
-        problems.error(place, told()).help(match &profile {
+        problems.error(place, message()).help(match &profile {
             Profile::Raster(_) => "points that are positive wherever there is soil",
             _ => "a smaller gradient, or `levels` and `values` that stay positive",
         });
@@ -239,7 +239,7 @@ pub(crate) fn property<T: Varies, const D: usize>(
     }
     if least.value == 0.0 && !terms.may_vanish {
         problems
-            .error(place, told())
+            .error(place, message())
             .help("it must be positive wherever there is soil");
         return None;
     }

@@ -19,12 +19,12 @@ pub(super) fn curves(
     problems: &mut Problems,
 ) -> Result<Option<StrengthCurves>, Wrong> {
     match model {
-        Model::VonMises(Ok(own)) => undrained(&own.strength, problems),
-        Model::Tresca(Ok(own)) => undrained(&own.strength, problems),
-        Model::MohrCoulomb(Ok(own)) => {
-            let stated = own.softening.as_ref().map_err(|_| Wrong)?;
+        Model::VonMises(Ok(law)) => undrained(&law.strength, problems),
+        Model::Tresca(Ok(law)) => undrained(&law.strength, problems),
+        Model::MohrCoulomb(Ok(law)) => {
+            let stated = law.softening.as_ref().map_err(|_| Wrong)?;
             match stated {
-                Some(own) => frictional(name, own, strength, problems).map(Some),
+                Some(table) => frictional(name, table, strength, problems).map(Some),
                 None => Ok(None),
             }
         }
@@ -32,34 +32,34 @@ pub(super) fn curves(
     }
 }
 
-/// What an undrained strength goes with; none where it stays.
-fn undrained(own: &Undrained, problems: &mut Problems) -> Result<Option<StrengthCurves>, Wrong> {
-    let softening = own.softening.as_ref().map_err(|_| Wrong)?;
-    let anisotropy = own.anisotropy.as_ref().map_err(|_| Wrong)?;
-    let rate = own.rate.as_ref().map_err(|_| Wrong)?;
+/// The curves of an undrained strength; none where it stays.
+fn undrained(law: &Undrained, problems: &mut Problems) -> Result<Option<StrengthCurves>, Wrong> {
+    let softening = law.softening.as_ref().map_err(|_| Wrong)?;
+    let anisotropy = law.anisotropy.as_ref().map_err(|_| Wrong)?;
+    let rate = law.rate.as_ref().map_err(|_| Wrong)?;
     if softening.is_none() && anisotropy.is_none() && rate.is_none() {
         return Ok(None);
     }
     let curves = match softening {
-        Some(own) => of_undrained(own, problems)?,
+        Some(table) => of_undrained(table, problems)?,
         None => StrengthCurves::default(),
     };
-    let directions = anisotropy.as_ref().map(|own| Directions {
-        simple_shear: *own.simple_shear,
-        passive: *own.passive,
+    let directions = anisotropy.as_ref().map(|table| Directions {
+        simple_shear: *table.simple_shear,
+        passive: *table.passive,
     });
-    if let (Some(own), Some(_)) = (rate, curves.nonlocal) {
+    if let (Some(stated), Some(_)) = (rate, curves.nonlocal) {
         problems
             .error(
-                own.place,
+                stated.place,
                 "`rate` does not go with the `length` of `softening`",
             )
             .help("scale by the `band_width` in place of a `length`, or remove `rate`");
         return Err(Wrong);
     }
-    let rate = rate.as_ref().map(|own| RateEffect {
-        per_log_cycle: *own.per_log_cycle,
-        reference: *own.reference,
+    let rate = rate.as_ref().map(|rate| RateEffect {
+        per_log_cycle: *rate.per_log_cycle,
+        reference: *rate.reference,
     });
     Ok(Some(StrengthCurves {
         directions,
@@ -70,55 +70,55 @@ fn undrained(own: &Undrained, problems: &mut Problems) -> Result<Option<Strength
 
 /// Whether soil that is sheared far dilates no more.
 pub(super) fn ends_dilation(model: &Model) -> bool {
-    let Model::MohrCoulomb(Ok(own)) = model else {
+    let Model::MohrCoulomb(Ok(law)) = model else {
         return false;
     };
-    let stated = own.softening.as_ref().ok().and_then(Option::as_ref);
-    let dilation = stated.and_then(|own| own.dilation.as_ref());
-    dilation.is_some_and(|own| *own.residual == 0.0)
+    let stated = law.softening.as_ref().ok().and_then(Option::as_ref);
+    let dilation = stated.and_then(|table| table.dilation.as_ref());
+    dilation.is_some_and(|curve| *curve.residual == 0.0)
 }
 
-fn decay(own: keys::Decay) -> Decay {
-    match own {
+fn decay(curve: keys::Decay) -> Decay {
+    match curve {
         keys::Decay::Linear => Decay::Linear,
         keys::Decay::Exponential => Decay::Exponential,
     }
 }
 
-fn of_strength(own: &At<StrengthCurve>) -> Softens {
+fn of_strength(table: &At<StrengthCurve>) -> Softens {
     Softens {
-        residual: *own.residual,
-        strain: *own.strain,
-        decay: decay(*own.curve),
+        residual: *table.residual,
+        strain: *table.strain,
+        decay: decay(*table.curve),
     }
 }
 
-fn of_angle(own: &At<AngleCurve>) -> Softens {
+fn of_angle(table: &At<AngleCurve>) -> Softens {
     Softens {
-        residual: *own.residual,
-        strain: *own.strain,
-        decay: decay(*own.curve),
+        residual: *table.residual,
+        strain: *table.strain,
+        decay: decay(*table.curve),
     }
 }
 
 fn of_undrained(
-    own: &At<UndrainedSoftening>,
+    table: &At<UndrainedSoftening>,
     problems: &mut Problems,
 ) -> Result<StrengthCurves, Wrong> {
-    if *own.cu.residual == 0.0 {
+    if *table.cu.residual == 0.0 {
         problems
             .error(
-                own.cu.residual.place,
+                table.cu.residual.place,
                 "soil by total stress has no strength left",
             )
             .help("remoulded clay keeps 1/sensitivity, like residual = 0.1");
         return Err(Wrong);
     }
-    let softens = *own.cu.residual < 1.0;
-    let lengths = [&own.band_width, &own.length, &own.over_nonlocal];
+    let softens = *table.cu.residual < 1.0;
+    let lengths = [&table.band_width, &table.length, &table.over_nonlocal];
     Ok(StrengthCurves {
-        cohesive: Some(of_strength(&own.cu)),
-        band_width: own.band_width.as_ref().map(|own| **own),
+        cohesive: Some(of_strength(&table.cu)),
+        band_width: table.band_width.as_ref().map(|width| **width),
         nonlocal: nonlocal(lengths, softens, problems)?,
         ..StrengthCurves::default()
     })
@@ -126,7 +126,7 @@ fn of_undrained(
 
 fn frictional(
     name: &str,
-    own: &At<FrictionalSoftening>,
+    table: &At<FrictionalSoftening>,
     strength: Option<Strength>,
     problems: &mut Problems,
 ) -> Result<StrengthCurves, Wrong> {
@@ -140,22 +140,22 @@ fn frictional(
     };
     if flow == Flow::Davis {
         problems
-            .error(own.place, "flow = \"davis\" does not go with `softening`")
+            .error(table.place, "flow = \"davis\" does not go with `softening`")
             .help(
                 "leave `flow` out: strengths of Davis are of one dilation angle, which ends here",
             );
         return Err(Wrong);
     }
-    if own.cohesion.is_none() && own.friction.is_none() && own.dilation.is_none() {
+    if table.cohesion.is_none() && table.friction.is_none() && table.dilation.is_none() {
         problems
             .error(
-                own.place,
+                table.place,
                 format!("nothing of `{}` softens", clip(name, 40)),
             )
             .help("cohesion = { residual = 0.2, strain = 0.1 }, `friction`, or `dilation`");
         return Err(Wrong);
     }
-    for (key, angle) in [("friction", &own.friction), ("dilation", &own.dilation)] {
+    for (key, angle) in [("friction", &table.friction), ("dilation", &table.dilation)] {
         if let Some(angle) = angle
             && angle.residual.to_degrees() > 89.0
         {
@@ -170,7 +170,7 @@ fn frictional(
         }
     }
     if friction_angle == 0.0
-        && let Some(friction) = &own.friction
+        && let Some(friction) = &table.friction
     {
         problems
             .error(
@@ -180,17 +180,17 @@ fn frictional(
             .help("remove it, or give the soil `friction`");
         return Err(Wrong);
     }
-    let cohesion_softens = (own.cohesion.as_ref()).is_none_or(|own| *own.residual <= 1.0);
+    let cohesion_softens = (table.cohesion.as_ref()).is_none_or(|curve| *curve.residual <= 1.0);
     let friction_softens =
-        (own.friction.as_ref()).is_none_or(|own| *own.residual <= friction_angle);
-    let lengths = [&own.band_width, &own.length, &own.over_nonlocal];
+        (table.friction.as_ref()).is_none_or(|curve| *curve.residual <= friction_angle);
+    let lengths = [&table.band_width, &table.length, &table.over_nonlocal];
     let nonlocal = nonlocal(lengths, cohesion_softens && friction_softens, problems)?;
     Ok(StrengthCurves {
         nonlocal,
-        cohesive: own.cohesion.as_ref().map(of_strength),
-        friction: own.friction.as_ref().map(of_angle),
-        dilation: own.dilation.as_ref().map(of_angle),
-        band_width: own.band_width.as_ref().map(|own| **own),
+        cohesive: table.cohesion.as_ref().map(of_strength),
+        friction: table.friction.as_ref().map(of_angle),
+        dilation: table.dilation.as_ref().map(of_angle),
+        band_width: table.band_width.as_ref().map(|width| **width),
         ..StrengthCurves::default()
     })
 }
@@ -232,7 +232,7 @@ fn nonlocal(
         (Some(length), None, share) => {
             return Ok(Some(Nonlocal {
                 length: **length,
-                over_nonlocal: share.as_ref().map_or(OVER_NONLOCAL, |own| **own),
+                over_nonlocal: share.as_ref().map_or(OVER_NONLOCAL, |share| **share),
             }));
         }
     };

@@ -1,5 +1,7 @@
 //! Keys of materials that a case states and nothing of it asks for.
 
+use std::iter::once;
+
 use igimp_model::{Case, Material, PoreSource, Profile, StageKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
@@ -18,8 +20,8 @@ pub(crate) fn check_unused<const D: usize>(tree: &Node, case: &Case<D>, problems
         )
     };
     let mut sources = (case.water.iter())
-        .flat_map(|own| std::iter::once(&own.source).chain(own.bodies.iter().map(|(_, own)| own)));
-    let has_level = |own: &Material| match &own.profiles.strength {
+        .flat_map(|water| once(&water.source).chain(water.bodies.iter().map(|body| &body.1)));
+    let has_level = |soil: &Material| match &soil.profiles.strength {
         Some(Profile::StressShare(share)) => share.water_level.is_some(),
         _ => false,
     };
@@ -28,17 +30,17 @@ pub(crate) fn check_unused<const D: usize>(tree: &Node, case: &Case<D>, problems
         return;
     };
     for material in &materials.0 {
-        let Ok(Ok(common)) = material.value.as_ref().map(|own| own.common.as_ref()) else {
+        let Ok(Ok(common)) = material.value.as_ref().map(|table| table.common.as_ref()) else {
             continue;
         };
         let name = clip(&material.name, 40);
-        if let (false, Ok(Some(own))) = (begins_at_rest, &common.k0) {
+        if let (false, Ok(Some(k0))) = (begins_at_rest, &common.k0) {
             let message = format!("`k0` of `{name}` has no effect: no stage is of type k0");
             problems
-                .warning(own.place, message)
+                .warning(k0.place, message)
                 .help("type = \"k0\" in place of a first stage of gravity, or remove it");
         }
-        if let (true, Ok(Some(own))) = (saturates_none, &common.saturated_unit_weight) {
+        if let (true, Ok(Some(weight))) = (saturates_none, &common.saturated_unit_weight) {
             let why = if case.water.is_empty() {
                 "there is no water in this case"
             } else {
@@ -46,7 +48,7 @@ pub(crate) fn check_unused<const D: usize>(tree: &Node, case: &Case<D>, problems
             };
             let message = format!("`saturated_unit_weight` of `{name}` has no effect: {why}");
             problems
-                .warning(own.place, message)
+                .warning(weight.place, message)
                 .help("add [[water]] with a level, or remove it");
         }
     }

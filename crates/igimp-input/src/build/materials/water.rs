@@ -13,7 +13,7 @@ use super::parameters::Varied;
 use super::profiles::{Extent, Property, TABLES, Terms, property};
 use super::{YOUNG, frictional};
 
-/// What may be said of a permeability that varies.
+/// Terms of a permeability that varies.
 const PERMEABILITY: Terms = Terms {
     printed: |value| format!("{} m/s", number(value)),
     forms: TABLES,
@@ -38,7 +38,7 @@ pub(super) fn permeability<const D: usize>(
     let Some(stated) = stated else {
         return Ok(None);
     };
-    let own = match &**stated {
+    let table = match &**stated {
         Either::First(permeability) => {
             return Ok(Some(Permeability {
                 soil: Soil::isotropic(*permeability),
@@ -46,10 +46,10 @@ pub(super) fn permeability<const D: usize>(
                 void_law: None,
             }));
         }
-        Either::Second(own) => own,
+        Either::Second(table) => table,
     };
-    let curve = curve(own, problems)?;
-    if let (Some(index), None) = (&own.c_k, &own.void_ratio) {
+    let curve = curve(table, problems)?;
+    if let (Some(index), None) = (&table.c_k, &table.void_ratio) {
         problems
             .error(
                 index.place,
@@ -58,12 +58,12 @@ pub(super) fn permeability<const D: usize>(
             .help("add void_ratio = 1.0, or what it is");
         return Err(Wrong);
     }
-    let void_law = own.void_ratio.as_ref().map(|initial| VoidLaw {
+    let void_law = table.void_ratio.as_ref().map(|initial| VoidLaw {
         initial: **initial,
-        index: own.c_k.as_ref().map(|own| **own),
+        index: table.c_k.as_ref().map(|index| **index),
     });
     let along = property(
-        &own.horizontal,
+        &table.horizontal,
         "horizontal",
         extent,
         PERMEABILITY,
@@ -72,11 +72,11 @@ pub(super) fn permeability<const D: usize>(
     let Property {
         constant, profile, ..
     } = along.ok_or(Wrong)?;
-    let across = own.vertical.as_ref().map_or(constant, |own| **own);
-    if own.angle.abs() > 0.0 && (across - constant).abs() <= 1e-12 * constant {
+    let across = table.vertical.as_ref().map_or(constant, |value| **value);
+    if table.angle.abs() > 0.0 && (across - constant).abs() <= 1e-12 * constant {
         problems
             .warning(
-                own.angle.place,
+                table.angle.place,
                 "`angle` has no effect: this soil is as permeable across its bedding as along it",
             )
             .help("add vertical = \"1e-6 m/s\", or remove it");
@@ -84,9 +84,9 @@ pub(super) fn permeability<const D: usize>(
     let soil = Soil {
         along: constant,
         across,
-        angle: *own.angle,
+        angle: *table.angle,
         curve,
-        drainable: own.drainable.as_ref().map_or(0.0, |own| **own),
+        drainable: table.drainable.as_ref().map_or(0.0, |share| **share),
         // It follows from the stiffness, with the weight of the water.
         specific_storage: 0.0,
     };
@@ -97,9 +97,9 @@ pub(super) fn permeability<const D: usize>(
     }))
 }
 
-/// What soil keeps of its permeability above the free surface.
-fn curve(own: &keys::Permeability, problems: &mut Problems) -> Result<Curve, Wrong> {
-    match (&own.gardner, &own.van_genuchten) {
+/// The curve of permeability above the free surface.
+fn curve(table: &keys::Permeability, problems: &mut Problems) -> Result<Curve, Wrong> {
+    match (&table.gardner, &table.van_genuchten) {
         (Some(_), Some(second)) => {
             problems
                 .error(second.place, "both `gardner` and `van_genuchten` are given")
@@ -109,16 +109,16 @@ fn curve(own: &keys::Permeability, problems: &mut Problems) -> Result<Curve, Wro
         (Some(height), None) => Ok(Curve::Gardner {
             alpha: 1.0 / **height,
         }),
-        (None, Some(own)) => {
-            if *own.n <= 1.0 {
+        (None, Some(keys)) => {
+            if *keys.n <= 1.0 {
                 problems
-                    .error(own.n.place, "n of van Genuchten's curve has to be above 1")
+                    .error(keys.n.place, "n of van Genuchten's curve has to be above 1")
                     .help("clay has about 1.1 to 1.4, sand 2 to 3");
                 return Err(Wrong);
             }
             Ok(Curve::VanGenuchten {
-                alpha: 1.0 / *own.height,
-                n: *own.n,
+                alpha: 1.0 / *keys.height,
+                n: *keys.n,
             })
         }
         (None, None) => Ok(Curve::Ramp),
@@ -149,7 +149,7 @@ pub(super) fn saturated(
             .help("it is the weight of soil and water together, not that under buoyancy");
         return Err(Wrong);
     }
-    Ok(stated.as_ref().map(|own| **own))
+    Ok(stated.as_ref().map(|weight| **weight))
 }
 
 /// Poisson's ratio of undrained soil where the file does not say.
@@ -158,7 +158,7 @@ const UNDRAINED_POISSON: f64 = 0.495;
 /// Parameters that the stiffness of a skeleton follows from.
 const OF_STIFFNESS: [&str; 4] = ["poisson", "shear", "kappa", "eur"];
 
-/// What a material does with water.
+/// The drainage of a material.
 pub(super) fn drainage(
     (common, model): (&MaterialCommon, &Model),
     (stiffness, strength): (Option<[f64; 2]>, Option<Strength>),
@@ -169,8 +169,8 @@ pub(super) fn drainage(
     let (undrained, pore_water) = (&common.undrained_poisson, &common.pore_water);
     let (undrained, pore_water) = (undrained.as_ref().ok()?, pore_water.as_ref().ok()?);
     let first = match (undrained, pore_water) {
-        (Some(own), _) => Some(("undrained_poisson", own.place)),
-        (None, own) => own.as_ref().map(|own| ("pore_water", own.place)),
+        (Some(ratio), _) => Some(("undrained_poisson", ratio.place)),
+        (None, water) => water.as_ref().map(|water| ("pore_water", water.place)),
     };
     let unlike = match kind {
         keys::Drainage::Undrained | keys::Drainage::Coupled => None,
@@ -211,7 +211,7 @@ pub(super) fn drainage(
         return None;
     }
     if strength.is_some() {
-        let dilates = strength.and_then(|own| own.dilation()) > Some(0.0);
+        let dilates = strength.and_then(|law| law.dilation()) > Some(0.0);
         frictional::never_fails(model, dilates, problems)?;
     }
     if let Some(water) = pore_water {
@@ -223,7 +223,7 @@ pub(super) fn drainage(
             flows,
         });
     }
-    let stiffens = |own: &&(&str, _, _)| OF_STIFFNESS.contains(&own.0);
+    let stiffens = |entry: &&(&str, _, _)| OF_STIFFNESS.contains(&entry.0);
     if let Some((key, place, _)) = varied.iter().find(stiffens) {
         let message = format!(
             "`{key}` of undrained and coupled soil is one number: the stiffness of its pore water follows from it"
@@ -269,13 +269,13 @@ fn stiffness_of_pores(
     [young, poisson]: [f64; 2],
     problems: &mut Problems,
 ) -> Option<f64> {
-    let stated = model.stiffness().and_then(|own| own.poisson.as_ref().ok());
-    let with_water = undrained.map_or(UNDRAINED_POISSON, |own| **own);
+    let stated = model.stiffness().and_then(|law| law.poisson.as_ref().ok());
+    let with_water = undrained.map_or(UNDRAINED_POISSON, |ratio| **ratio);
     if with_water >= 0.5 || with_water <= poisson {
-        let stated = stated.map(|own| own.place);
+        let stated = stated.map(|at| at.place);
         problems
             .error(
-                undrained.map(|own| own.place).or(stated),
+                undrained.map(|at| at.place).or(stated),
                 format!(
                     "Poisson's ratio of undrained soil, {}, must lie between that of its skeleton, {}, and 0.5",
                     number(with_water),

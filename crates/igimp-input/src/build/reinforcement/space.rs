@@ -15,13 +15,13 @@ const ALONG: f64 = 1e-9;
 const HALVINGS: usize = 60;
 
 impl Holding<3> for Solids {
-    fn refuses(&self, own: &Member<3>, problems: &mut Problems) -> bool {
-        let MemberForm::Geotextile(_) = *own.form else {
+    fn refuses(&self, member: &Member<3>, problems: &mut Problems) -> bool {
+        let MemberForm::Geotextile(_) = *member.form else {
             return false;
         };
         problems
             .error(
-                own.form.place,
+                member.form.place,
                 "a geotextile is a sheet, and in space reinforcement is a line",
             )
             .help("compute a slice with analysis = \"plane-strain\", or state strips as nails");
@@ -42,7 +42,7 @@ fn plate(part: &ReinforcementPart<3>, width: f64, soil: &Solids) -> Vec<[f64; 3]
     let normal = normal.unwrap_or([0.0, 0.0, 1.0]);
     let level = unit(cross([0.0, 0.0, 1.0], normal)).unwrap_or([1.0, 0.0, 0.0]);
     let up = cross(normal, level);
-    let [along, upwards] = [(level, up), (up, level)].map(|own| reach(&head, own, width, soil));
+    let [along, upwards] = [(level, up), (up, level)].map(|axes| reach(&head, axes, width, soil));
     let corner = |along: f64, upwards: f64| {
         std::array::from_fn(|k| head[k] + along * level[k] + upwards * up[k])
     };
@@ -56,7 +56,7 @@ fn plate(part: &ReinforcementPart<3>, width: f64, soil: &Solids) -> Vec<[f64; 3]
 /// How far a plate reaches to either side of its head along a direction, with its other sides along another \[m\].
 fn reach(
     head: &[f64; 3],
-    (own, other): ([f64; 3], [f64; 3]),
+    (along, other): ([f64; 3], [f64; 3]),
     width: f64,
     soil: &Solids,
 ) -> [f64; 2] {
@@ -65,8 +65,8 @@ fn reach(
         return reach;
     };
     for axis in 0..3 {
-        if own[axis].abs() > ALONG && other[axis].abs() <= ALONG {
-            let [a, b] = ends.map(|end| (end[axis] - head[axis]) / own[axis]);
+        if along[axis].abs() > ALONG && other[axis].abs() <= ALONG {
+            let [a, b] = ends.map(|end| (end[axis] - head[axis]) / along[axis]);
             reach = [reach[0].max(a.min(b)), reach[1].min(a.max(b))];
         }
     }
@@ -84,11 +84,11 @@ fn surface_at(at: &[f64; 3], soil: &Solids, goes_on: bool) -> Option<[f64; 3]> {
             let within = place[axis].clamp(lower, upper);
             place[axis] = 2.0 * within - place[axis];
         }
-        soil.regions.iter().any(|own| own.encloses(place))
+        soil.regions.iter().any(|region| region.encloses(place))
     };
     let mut outwards = [0.0; 3];
     for k in 0..27 {
-        let along = [k % 3, k / 3 % 3, k / 9].map(|own| f64::from(own) - 1.0);
+        let along = [k % 3, k / 3 % 3, k / 9].map(|digit| f64::from(digit) - 1.0);
         let Some(along) = unit(along) else { continue };
         let side = if is_soil(step(along, reach)) {
             -1.0
@@ -124,7 +124,7 @@ fn surface_at(at: &[f64; 3], soil: &Solids, goes_on: bool) -> Option<[f64; 3]> {
     let [a, b, c] = [corners[0]?, corners[1]?, corners[2]?];
     let normal = unit(cross(less(b, a), less(c, a)))?;
     let side: f64 = (0..3).map(|k| normal[k] * outwards[k]).sum();
-    Some(normal.map(|own| own * side.signum()))
+    Some(normal.map(|x| x * side.signum()))
 }
 
 fn less(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
@@ -141,6 +141,6 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 /// A direction of length 1, if there is one.
 fn unit(of: [f64; 3]) -> Option<[f64; 3]> {
-    let length = of.iter().map(|own| own * own).sum::<f64>().sqrt();
-    (length > 1e-12).then(|| of.map(|own| own / length))
+    let length = of.iter().map(|x| x * x).sum::<f64>().sqrt();
+    (length > 1e-12).then(|| of.map(|x| x / length))
 }

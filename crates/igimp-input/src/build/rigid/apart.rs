@@ -27,7 +27,8 @@ pub(crate) fn check<const D: usize>(
     };
     let axes = frame.axes.iter().map(|axis| axis.extremes()[0]);
     let cell = axes.fold(f64::INFINITY, f64::min);
-    let bodies: Vec<_> = parts.iter().map(|own| drawn(own.as_ref()?, cell)).collect();
+    let bodies = parts.iter().map(|part| drawn(part.as_ref()?, cell));
+    let bodies: Vec<_> = bodies.collect();
     let stated = things(Root::<D>::rigid(tree));
     for (k, second) in parts.iter().enumerate() {
         for (j, first) in parts[..k].iter().enumerate() {
@@ -41,7 +42,7 @@ pub(crate) fn check<const D: usize>(
             if depth > TOUCH * cell && are_together([first, second], course) {
                 problems
                     .error(
-                        stated[k].as_ref().map(|own| own.name.place),
+                        stated[k].as_ref().map(|body| body.name.place),
                         format!(
                             "the rigid bodies `{}` and `{}` overlap by {} m",
                             clip(&first.name, 40),
@@ -73,8 +74,8 @@ fn are_together<const D: usize>(
 ) -> bool {
     let is_there = |part: &RigidPart<D>, stage: usize| {
         let moves = |&stage: &usize| {
-            let mut moved = stages[stage].iter().flat_map(|own| own.moves()).flatten();
-            moved.any(|own| own.body.value == part.name)
+            let mut moved = stages[stage].iter().flat_map(|at| at.moves()).flatten();
+            moved.any(|motion| motion.body.value == part.name)
         };
         part.from_start
             || std::iter::successors(Some(stage), |&at| sequence.from(at)).any(|at| moves(&at))

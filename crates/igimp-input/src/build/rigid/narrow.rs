@@ -5,7 +5,7 @@ use igimp_schema::diagnostic::Problems;
 use igimp_schema::source::Place;
 use igimp_schema::text::{number, point};
 
-/// A corner is told of that is narrower than two cells over more than so many of them \[-\].
+/// A corner is reported that is narrower than two cells over more than so many of them \[-\].
 const LONG: f64 = 1.5;
 
 /// Warns of the narrowest corner of a polygon, in cells of a size \[m\], that meets soil on both of its sides.

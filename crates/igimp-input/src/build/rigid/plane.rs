@@ -22,7 +22,7 @@ use igimp_geometry::outline::{distinct, overlap, self_crossing};
 /// Corners of a circle where it is looked at as a polygon.
 const POINTS_OF_CIRCLE: usize = 90;
 
-/// What rigid bodies are held against.
+/// The surroundings of rigid bodies.
 pub(crate) struct Around<'a> {
     pub(crate) site: &'a Site,
     pub(crate) loads: &'a [Option<Load<2>>],
@@ -35,13 +35,13 @@ impl Room<2> for Around<'_> {
         self.site.frame.as_ref()
     }
 
-    fn basis(&self, own: &At<RigidBody<2>>, problems: &mut Problems) -> Option<Basis<2>> {
-        let shape = shape(own, &clip(&own.name, 40), self.site.round_off, problems);
-        let stated = own
+    fn basis(&self, body: &At<RigidBody<2>>, problems: &mut Problems) -> Option<Basis<2>> {
+        let shape = shape(body, &clip(&body.name, 40), self.site.round_off, problems);
+        let stated = body
             .common
             .as_ref()
             .ok()
-            .and_then(|own| own.reference.as_ref());
+            .and_then(|common| common.reference.as_ref());
         if let (Some(RigidShape::Circle { .. }), Some(stated)) = (&shape, stated) {
             problems
                 .error(
@@ -51,16 +51,16 @@ impl Room<2> for Around<'_> {
                 .help("remove reference, or use a polygon");
         }
         shape.map(|shape| Basis {
-            reference: stated.map_or_else(|| reference(&own.form, &shape), |own| **own),
-            sides: sides(&own.form, &shape),
+            reference: stated.map_or_else(|| reference(&body.form, &shape), |point| **point),
+            sides: sides(&body.form, &shape),
             thickness: thickness(&shape),
             shape: Arc::new(shape),
         })
     }
 
-    fn check(&self, own: &RigidBody<2>, part: &RigidPart<2>, problems: &mut Problems) {
-        beside_soil(own, part, self, problems);
-        narrow_in_soil(own, part, self.site, problems);
+    fn check(&self, body: &RigidBody<2>, part: &RigidPart<2>, problems: &mut Problems) {
+        beside_soil(body, part, self, problems);
+        narrow_in_soil(body, part, self.site, problems);
     }
 
     fn followed(&self) -> (bool, &'static str) {
@@ -92,12 +92,12 @@ pub(crate) fn outlines(tree: &Node) -> Vec<RigidShape> {
     let all = things(Root::<2>::rigid(tree));
     let shapes = all.iter().flatten();
     shapes
-        .filter_map(|own| shape(own, &own.name, 0.0, &mut Problems::default()))
+        .filter_map(|body| shape(body, &body.name, 0.0, &mut Problems::default()))
         .collect()
 }
 
 fn shape(
-    own: &At<RigidBody<2>>,
+    body: &At<RigidBody<2>>,
     name: &str,
     round_off: f64,
     problems: &mut Problems,
@@ -106,14 +106,14 @@ fn shape(
         problems.error(place, format!("the rigid body `{name}` has no area"));
         None
     };
-    Some(match &*own.form {
-        Form::Rectangle(own) => {
-            let own = own.as_ref().ok()?;
-            let (a, b) = (*own.from, *own.to);
+    Some(match &*body.form {
+        Form::Rectangle(rectangle) => {
+            let rectangle = rectangle.as_ref().ok()?;
+            let (a, b) = (*rectangle.from, *rectangle.to);
             let [left, bottom] = [a[0].min(b[0]), a[1].min(b[1])];
             let [right, top] = [a[0].max(b[0]), a[1].max(b[1])];
             if right - left <= round_off || top - bottom <= round_off {
-                return flat(own.to.place);
+                return flat(rectangle.to.place);
             }
             RigidShape::Polygon(vec![
                 [left, bottom],
@@ -122,50 +122,50 @@ fn shape(
                 [left, top],
             ])
         }
-        Form::Circle(own) => {
-            let own = own.as_ref().ok()?;
+        Form::Circle(circle) => {
+            let circle = circle.as_ref().ok()?;
             RigidShape::Circle {
-                centre: *own.centre,
-                radius: *own.radius,
+                centre: *circle.centre,
+                radius: *circle.radius,
             }
         }
-        Form::Wall(own) => {
-            let own = own.as_ref().ok()?;
-            let (from, to) = (*own.from, *own.to);
+        Form::Wall(wall) => {
+            let wall = wall.as_ref().ok()?;
+            let (from, to) = (*wall.from, *wall.to);
             let along = [to[0] - from[0], to[1] - from[1]];
             let length = along[0].hypot(along[1]);
             if length <= round_off {
-                return flat(own.to.place);
+                return flat(wall.to.place);
             }
-            let back = [-along[1], along[0]].map(|x| x / length * *own.thickness);
+            let back = [-along[1], along[0]].map(|x| x / length * *wall.thickness);
             let behind = |at: [f64; 2]| [at[0] + back[0], at[1] + back[1]];
             RigidShape::Polygon(vec![from, to, behind(to), behind(from)])
         }
-        Form::Polygon(own) => {
-            let own = &own.as_ref().ok()?.corners;
-            let corners: Vec<_> = own.iter().map(|own| **own).collect();
+        Form::Polygon(polygon) => {
+            let stated = &polygon.as_ref().ok()?.corners;
+            let corners: Vec<_> = stated.iter().map(|corner| **corner).collect();
             let corners = distinct(&corners, round_off);
             if corners.len() < 3 {
-                return flat(own.place);
+                return flat(stated.place);
             }
             if let Some(at) = self_crossing(&corners, round_off) {
                 problems.error(
-                    own.place,
+                    stated.place,
                     format!("the rigid body `{name}` crosses itself at {}", point(at)),
                 );
                 return None;
             }
             if area_and_centroid(&corners).0 == 0.0 {
-                return flat(own.place);
+                return flat(stated.place);
             }
             RigidShape::Polygon(corners)
         }
         // A shape in space has none here.
-        _ => return flat(own.place),
+        _ => return flat(body.place),
     })
 }
 
-/// The point that displacement and forces are told of where the file does not say.
+/// The point whose displacement and forces are printed where the file does not say.
 fn reference(form: &Form<2>, shape: &RigidShape) -> [f64; 2] {
     let middle = |a: [f64; 2], b: [f64; 2]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
     match (shape, form) {
@@ -214,7 +214,7 @@ const MOST_PAIRED: usize = 100;
 
 /// Warns of a corner of a body that is narrower than two cells, in the box around the soil or less than a cell beyond it. A corner on a
 /// side of the grid has soil on one side alone (theory, eq. 45g).
-fn narrow_in_soil(own: &RigidBody<2>, part: &RigidPart<2>, site: &Site, problems: &mut Problems) {
+fn narrow_in_soil(body: &RigidBody<2>, part: &RigidPart<2>, site: &Site, problems: &mut Problems) {
     let (Some(frame), Some(RigidShape::Polygon(corners))) = (&site.frame, part.shape.in_plane())
     else {
         return;
@@ -222,7 +222,7 @@ fn narrow_in_soil(own: &RigidBody<2>, part: &RigidPart<2>, site: &Site, problems
     let (lower, upper) = part.bounds();
     let axes = frame.axes.iter().enumerate();
     let cell = axes
-        .map(|(axis, own)| own.smallest_between(lower[axis], upper[axis]))
+        .map(|(axis, lines)| lines.smallest_between(lower[axis], upper[axis]))
         .fold(f64::INFINITY, f64::min);
     let mut within = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for corner in site.polygons.iter().flatten() {
@@ -243,7 +243,7 @@ fn narrow_in_soil(own: &RigidBody<2>, part: &RigidPart<2>, site: &Site, problems
     let is_near = |at: &[f64; 2]| (0..2).all(|d| within[0][d] <= at[d] && at[d] <= within[1][d]);
     let meets_soil = |corner: &[f64; 2]| is_near(corner) && !is_on_side(corner);
     narrow::warn(
-        (&name, own.name.place),
+        (&name, body.name.place),
         corners,
         (cell, meets_soil),
         problems,
@@ -252,7 +252,7 @@ fn narrow_in_soil(own: &RigidBody<2>, part: &RigidPart<2>, site: &Site, problems
 
 /// Refuses a body that overlaps soil as it starts, or that is placed while it is there.
 fn beside_soil(
-    own: &RigidBody<2>,
+    rigid: &RigidBody<2>,
     part: &RigidPart<2>,
     around: &Around<'_>,
     problems: &mut Problems,
@@ -261,7 +261,7 @@ fn beside_soil(
     let outline = part.outline(POINTS_OF_CIRCLE);
     let names = |stage: &Thing<Stage>| {
         let mut moved = stage.iter().flat_map(|stage| stage.moves()).flatten();
-        moved.any(|own| own.body.value == part.name)
+        moved.any(|motion| motion.body.value == part.name)
     };
     let first = around.stages.iter().position(names);
     let (before, after) = match first {
@@ -278,7 +278,7 @@ fn beside_soil(
     if let Some(at) = found {
         problems
             .error(
-                own.name.place,
+                rigid.name.place,
                 format!(
                     "the rigid body `{}` overlaps soil at {}",
                     clip(&part.name, 40),

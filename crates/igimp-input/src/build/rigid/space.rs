@@ -13,7 +13,7 @@ use super::{Basis, Room, Sides};
 use crate::build::bodies::surfaces::closed_surface;
 use crate::build::grid::Frame;
 
-/// What rigid bodies are held against.
+/// The surroundings of rigid bodies.
 pub(crate) struct Around<'a>(pub(crate) Option<&'a Frame<3>>);
 
 impl Room<3> for Around<'_> {
@@ -21,11 +21,11 @@ impl Room<3> for Around<'_> {
         self.0
     }
 
-    fn basis(&self, own: &At<RigidBody<3>>, problems: &mut Problems) -> Option<Basis<3>> {
-        shape(own, &clip(&own.name, 40), problems).map(basis)
+    fn basis(&self, body: &At<RigidBody<3>>, problems: &mut Problems) -> Option<Basis<3>> {
+        shape(body, &clip(&body.name, 40), problems).map(basis)
     }
 
-    fn check(&self, _own: &RigidBody<3>, _part: &RigidPart<3>, _problems: &mut Problems) {}
+    fn check(&self, _body: &RigidBody<3>, _part: &RigidPart<3>, _problems: &mut Problems) {}
 
     fn followed(&self) -> (bool, &'static str) {
         (false, "it can follow one rigid body")
@@ -48,11 +48,11 @@ fn basis(shape: RigidSolid) -> Basis<3> {
     }
 }
 
-fn shape(own: &RigidBody<3>, name: &str, problems: &mut Problems) -> Option<RigidSolid> {
-    Some(match &*own.form {
-        Form::Box(own) => {
-            let own = own.as_ref().ok()?;
-            let (a, b) = (*own.from, *own.to);
+fn shape(body: &RigidBody<3>, name: &str, problems: &mut Problems) -> Option<RigidSolid> {
+    Some(match &*body.form {
+        Form::Box(block) => {
+            let block = block.as_ref().ok()?;
+            let (a, b) = (*block.from, *block.to);
             let lower: [f64; 3] = std::array::from_fn(|axis| a[axis].min(b[axis]));
             let upper: [f64; 3] = std::array::from_fn(|axis| a[axis].max(b[axis]));
             let largest = a
@@ -61,51 +61,51 @@ fn shape(own: &RigidBody<3>, name: &str, problems: &mut Problems) -> Option<Rigi
                 .fold(0.0, |most: f64, x| most.max(x.abs()));
             if (0..3).any(|axis| upper[axis] - lower[axis] <= 1e-9 * largest) {
                 problems.error(
-                    own.to.place,
+                    block.to.place,
                     format!("the rigid body `{name}` has no volume"),
                 );
                 return None;
             }
             RigidSolid::Cuboid(lower, upper)
         }
-        Form::Cylinder(own) => {
-            let own = own.as_ref().ok()?;
+        Form::Cylinder(cylinder) => {
+            let cylinder = cylinder.as_ref().ok()?;
             RigidSolid::Cylinder {
-                axis: match *own.axis {
+                axis: match *cylinder.axis {
                     Axis::X => 0,
                     Axis::Y => 1,
                     Axis::Z => 2,
                 },
-                middle: *own.middle,
-                radius: *own.radius,
-                half_length: 0.5 * *own.length,
+                middle: *cylinder.middle,
+                radius: *cylinder.radius,
+                half_length: 0.5 * *cylinder.length,
             }
         }
-        Form::Sphere(own) => {
-            let own = own.as_ref().ok()?;
+        Form::Sphere(sphere) => {
+            let sphere = sphere.as_ref().ok()?;
             RigidSolid::Sphere {
-                centre: *own.centre,
-                radius: *own.radius,
+                centre: *sphere.centre,
+                radius: *sphere.radius,
             }
         }
-        Form::Cone(own) => {
-            let own = own.as_ref().ok()?;
+        Form::Cone(cone) => {
+            let cone = cone.as_ref().ok()?;
             RigidSolid::Cone {
-                tip: *own.tip,
-                radius: *own.radius,
-                height: *own.height,
-                shaft: *own.shaft,
+                tip: *cone.tip,
+                radius: *cone.radius,
+                height: *cone.height,
+                shaft: *cone.shaft,
             }
         }
-        Form::Surface(own) => {
-            let who = format!("rigid body `{name}`");
-            let own = &own.as_ref().ok()?.surface;
-            RigidSolid::Surface(closed_surface(own, &who, problems)?)
+        Form::Surface(surface) => {
+            let label = format!("rigid body `{name}`");
+            let surface = &surface.as_ref().ok()?.surface;
+            RigidSolid::Surface(closed_surface(surface, &label, problems)?)
         }
         Form::Rectangle(_) | Form::Polygon(_) | Form::Circle(_) | Form::Wall(_) => {
-            let kind = own.form.name();
+            let kind = body.form.name();
             problems
-                .error(own.form.place, format!("a {kind} is a shape of the plane"))
+                .error(body.form.place, format!("a {kind} is a shape of the plane"))
                 .help("shapes in space: box, cylinder, sphere, cone, surface");
             return None;
         }

@@ -27,20 +27,20 @@ pub(crate) fn moves<const D: usize>(
 ) -> Option<Vec<RigidMove>> {
     let mut found: Vec<RigidMove> = Vec::new();
     let mut is_right = true;
-    for own in about.stage.moves() {
-        let who = format!("stage `{}` moves", about.name);
-        let Ok(own) = own else {
+    for row in about.stage.moves() {
+        let lead = format!("stage `{}` moves", about.name);
+        let Ok(row) = row else {
             is_right = false;
             continue;
         };
-        let Some(body) = about.context.names.rigid.find(&own.body, &who, problems) else {
+        let Some(body) = about.context.names.rigid.find(&row.body, &lead, problems) else {
             is_right = false;
             continue;
         };
         if found.iter().any(|other| other.body == body) {
-            problems.error(own.body.place, "this rigid body is named twice");
+            problems.error(row.body.place, "this rigid body is named twice");
         }
-        match drives::<D>(own, problems) {
+        match drives::<D>(row, problems) {
             Ok(drives) => found.push(RigidMove { body, drives }),
             Err(Wrong) => is_right = false,
         }
@@ -57,48 +57,48 @@ type ComponentKeys<'a> = (
 );
 
 fn drives<const D: usize>(
-    own: &Move,
+    row: &Move,
     problems: &mut Problems,
 ) -> Result<[Option<RigidDrive>; COMPONENTS], Wrong> {
     let mut drives = [None; COMPONENTS];
     let components: &[ComponentKeys<'_>] = if D == 2 {
         &[
-            (Component::X, &own.x, "force_x", &own.force_x),
-            (Component::Y, &own.y, "force_y", &own.force_y),
-            (Component::Rotation, &own.rotation, "moment", &own.moment),
+            (Component::X, &row.x, "force_x", &row.force_x),
+            (Component::Y, &row.y, "force_y", &row.force_y),
+            (Component::Rotation, &row.rotation, "moment", &row.moment),
         ]
     } else {
         &[
-            (Component::X, &own.x, "force_x", &own.force_x),
-            (Component::Y, &own.y, "force_y", &own.force_y),
-            (Component::Z, &own.z, "force_z", &own.force_z),
+            (Component::X, &row.x, "force_x", &row.force_x),
+            (Component::Y, &row.y, "force_y", &row.force_y),
+            (Component::Z, &row.z, "force_z", &row.force_z),
             (
                 Component::RotationX,
-                &own.rotation_x,
+                &row.rotation_x,
                 "moment_x",
-                &own.moment_x,
+                &row.moment_x,
             ),
             (
                 Component::RotationY,
-                &own.rotation_y,
+                &row.rotation_y,
                 "moment_y",
-                &own.moment_y,
+                &row.moment_y,
             ),
             (
                 Component::RotationZ,
-                &own.rotation_z,
+                &row.rotation_z,
                 "moment_z",
-                &own.moment_z,
+                &row.moment_z,
             ),
         ]
     };
     for (drive, &(component, moved, force, loaded)) in drives.iter_mut().zip(components) {
-        let is_free = own.free.iter().any(|free| **free == component);
-        let told = usize::from(moved.is_some()) + usize::from(loaded.is_some());
-        if told + usize::from(is_free) > 1 {
+        let is_free = row.free.iter().any(|free| **free == component);
+        let count = usize::from(moved.is_some()) + usize::from(loaded.is_some());
+        if count + usize::from(is_free) > 1 {
             let (second, place) = match loaded {
                 Some(loaded) => (force, loaded.place),
-                None => ("free", own.free.place),
+                None => ("free", row.free.place),
             };
             let first = if moved.is_some() {
                 component.name()
@@ -133,30 +133,30 @@ pub(crate) fn check_use<const D: usize>(
     let moved: Vec<_> = stages
         .iter()
         .flatten()
-        .flat_map(|own| own.moves())
+        .flat_map(|stage| stage.moves())
         .collect();
     // A name that was found wrong, or is not defined, may be a slip for one that is not used.
-    let is_slip = |own: &&Result<At<Move>, Wrong>| match own {
-        Ok(own) => names.rigid.position(&own.body).is_none(),
+    let is_slip = |row: &&Result<At<Move>, Wrong>| match row {
+        Ok(row) => names.rigid.position(&row.body).is_none(),
         Err(Wrong) => true,
     };
     if moved.iter().any(is_slip) {
         return;
     }
-    for own in bodies.iter().flatten() {
-        let is_there = (own.common.as_ref()).map_or(true, |common| *common.from_start);
+    for body in bodies.iter().flatten() {
+        let is_there = (body.common.as_ref()).map_or(true, |common| *common.from_start);
         let mut named = moved.iter().filter_map(|moved| moved.as_ref().ok());
-        if !is_there && !named.any(|moved| moved.body.value == own.name.value) {
+        if !is_there && !named.any(|moved| moved.body.value == body.name.value) {
             problems.warning(
-                own.name.place,
+                body.name.place,
                 format!(
                     "no stage names the rigid body `{}`, which is never there",
-                    clip(&own.name, 40)
+                    clip(&body.name, 40)
                 ),
             );
         }
         warn_of_edges(
-            own,
+            body,
             moved.iter().filter_map(|moved| moved.as_ref().ok()),
             problems,
         );
@@ -165,29 +165,29 @@ pub(crate) fn check_use<const D: usize>(
 
 /// Warns of sharp edges of a body that goes down and slides.
 fn warn_of_edges<'a, const D: usize>(
-    own: &RigidBody<D>,
+    body: &RigidBody<D>,
     moved: impl Iterator<Item = &'a At<Move>>,
     problems: &mut Problems,
 ) {
-    let Some(rounding) = (own.common.as_ref().ok())
+    let Some(rounding) = (body.common.as_ref().ok())
         .map(|common| &common.rounding)
         .filter(|rounding| ***rounding == 0.0)
     else {
         return;
     };
-    let goes = |key: &Option<At<f64>>| key.as_ref().is_some_and(|own| **own != 0.0);
+    let goes = |key: &Option<At<f64>>| key.as_ref().is_some_and(|value| **value != 0.0);
     let [mut sinks, mut slides] = [false; 2];
-    for own in moved.filter(|moved| moved.body.value == own.name.value) {
+    for row in moved.filter(|moved| moved.body.value == body.name.value) {
         let across = [
-            goes(&own.x) || goes(&own.force_x),
-            goes(&own.y) || goes(&own.force_y),
+            goes(&row.x) || goes(&row.force_x),
+            goes(&row.y) || goes(&row.force_y),
         ];
-        let down = goes(&own.z) || goes(&own.force_z);
+        let down = goes(&row.z) || goes(&row.force_z);
         sinks |= if D == 2 { across[1] } else { down };
         slides |= across[0] || D == 3 && across[1];
     }
     if sinks && slides {
-        let name = clip(&own.name, 40);
+        let name = clip(&body.name, 40);
         problems
             .warning(
                 rounding.place,

@@ -40,7 +40,7 @@ pub(crate) fn check<const D: usize>(
         conditions,
         surfaces: HashMap::new(),
         seen: Vec::new(),
-        told: Vec::new(),
+        refused: Vec::new(),
         unweighed: Vec::new(),
     };
     checker.scene(&sequence.start, None, problems);
@@ -56,15 +56,15 @@ pub(crate) fn check<const D: usize>(
         // A name that is not defined may be a slip for one that is not used.
         return;
     }
-    for (index, own) in around.own.iter().enumerate() {
+    for (index, water) in around.own.iter().enumerate() {
         let is_used = sequence.scenes().any(|scene| scene.water == Some(index));
-        if let Some(own) = own
+        if let Some(water) = water
             && !is_used
         {
-            let name = clip(&own.name, 40);
+            let name = clip(&water.name, 40);
             problems
                 .warning(
-                    own.name.place,
+                    water.name.place,
                     format!("no stage calls for the water `{name}`"),
                 )
                 .help("write water = \"NAME\" in a stage of type construction; the first condition holds from the start");
@@ -85,16 +85,16 @@ fn through_one_ground<const D: usize>(
         let Some(index) = around.names.water.position(called) else {
             continue;
         };
-        let source = conditions[index].as_ref().map(|own| &own.source);
+        let source = conditions[index].as_ref().map(|water| &water.source);
         let first = around.sequence.first_with(index);
         let bodies_differ = first.present != scene.present;
         let is_drawn_down = around.own[index]
             .as_ref()
-            .is_some_and(|own| own.inside.is_some());
+            .is_some_and(|water| water.inside.is_some());
         let is_other = match source {
             Some(PoreSource::Seepage(_)) => {
-                let soil = |own: &Scene| -> Vec<Option<usize>> {
-                    let bodies = std::iter::zip(&own.present, &own.material);
+                let soil = |of: &Scene| -> Vec<Option<usize>> {
+                    let bodies = std::iter::zip(&of.present, &of.material);
                     bodies
                         .map(|(there, soil)| soil.filter(|_| *there))
                         .collect()
@@ -123,17 +123,17 @@ fn strengths<const D: usize>(
     conditions: &[Option<WaterCondition>],
     problems: &mut Problems,
 ) {
-    let (Some(Some(first)), Some(Some(own))) = (conditions.first(), around.own.first()) else {
+    let (Some(Some(first)), Some(Some(stated))) = (conditions.first(), around.own.first()) else {
         return;
     };
-    let by_stress = |own: &&Material| matches!(&own.profiles.strength, Some(Profile::StressShare(share)) if share.water_level.is_none());
+    let by_stress = |soil: &&Material| matches!(&soil.profiles.strength, Some(Profile::StressShare(share)) if share.water_level.is_none());
     let mut materials = around.materials.iter().flatten().filter(by_stress);
     if let (PoreSource::Seepage(_), Some(material)) = (&first.source, materials.next()) {
-        let (water, soil) = (clip(&own.name, 40), clip(&material.name, 40));
+        let (water, soil) = (clip(&stated.name, 40), clip(&material.name, 40));
         let text = format!(
             "the strength of `{soil}` goes with the effective stress, and the water `{water}` that counts for it flows"
         );
-        problems.error(own.name.place, text).help(
+        problems.error(stated.name.place, text).help(
             "add water_level = \"5 m\" to the strength, or begin with a condition that has a level",
         );
     }
@@ -145,9 +145,9 @@ struct Checker<'a, const D: usize> {
     surfaces: HashMap<Vec<bool>, Box<dyn Surface>>,
     /// Conditions that have been found wrong: of each one place is enough.
     seen: Vec<usize>,
-    /// Materials whose friction by total stress has been told.
-    told: Vec<usize>,
-    /// Materials that are wet without a weight of full pores, as was told.
+    /// Materials whose friction by total stress was refused.
+    refused: Vec<usize>,
+    /// Materials reported as wet without a weight of full pores.
     unweighed: Vec<usize>,
 }
 
@@ -162,32 +162,32 @@ impl<const D: usize> Checker<'_, D> {
         if self.seen.contains(&index) || !scene.present.contains(&true) {
             return;
         }
-        let Some(own) = &around.own[index] else {
+        let Some(stated) = &around.own[index] else {
             return;
         };
         let surface = (self.surfaces)
             .entry(scene.present.clone())
             .or_insert_with(|| around.surface(scene));
         let before = problems.errors();
-        let who = format!("the water `{}`", clip(&condition.name, 40));
-        let (place, when) = when(stage.map(|stage| &around.stages[stage]), own);
+        let label = format!("the water `{}`", clip(&condition.name, 40));
+        let (place, when) = when(stage.map(|stage| &around.stages[stage]), stated);
         match &condition.source {
             PoreSource::Dry => {}
             PoreSource::Seepage(flow) => {
-                self.permeable((scene, flow), (place, &who, &when), problems);
+                self.permeable((scene, flow), (place, &label, &when), problems);
             }
             PoreSource::Points(raster) => points(
                 raster,
                 (around, scene, &**surface),
-                (own, &who, &when),
+                (stated, &label, &when),
                 problems,
             ),
             PoreSource::Table(_) | PoreSource::Surface(_) | PoreSource::Drained(_) => {
-                let is_pond = own.pond.as_ref().is_none_or(|pond| **pond);
+                let is_pond = stated.pond.as_ref().is_none_or(|pond| **pond);
                 drawn(
                     (&condition.source, is_pond),
                     &**surface,
-                    (place, &who, &when),
+                    (place, &label, &when),
                     problems,
                 );
             }
@@ -207,11 +207,11 @@ impl<const D: usize> Checker<'_, D> {
             problems
                 .warning(
                     place,
-                    format!("{who} lies below all bodies, and wets none{when}"),
+                    format!("{label} lies below all bodies, and wets none{when}"),
                 )
                 .help("write dry = true if that is meant");
         }
-        self.materials(scene, condition, (own, &who), problems);
+        self.materials(scene, condition, (stated, &label), problems);
         if problems.errors() > before {
             self.seen.push(index);
         }
@@ -221,7 +221,7 @@ impl<const D: usize> Checker<'_, D> {
     fn permeable(
         &self,
         (scene, flow): (&Scene, &SeepageCase),
-        (place, who, when): (Place, &str, &str),
+        (place, label, when): (Place, &str, &str),
         problems: &mut Problems,
     ) {
         let there = (0..scene.present.len()).filter(|&body| scene.present[body]);
@@ -230,25 +230,25 @@ impl<const D: usize> Checker<'_, D> {
         materials.dedup();
         for number in materials {
             let material = self.around.materials[number].as_ref();
-            if let Some(material) = material.filter(|own| own.permeability.is_none()) {
+            if let Some(material) = material.filter(|soil| soil.permeability.is_none()) {
                 problems
                     .error(
                         place,
                         format!(
-                            "{who} flows through `{}`, which has no permeability{when}",
+                            "{label} flows through `{}`, which has no permeability{when}",
                             clip(&material.name, 40)
                         ),
                     )
                     .help("write permeability = \"1e-6 m/s\" in the material; clay 1e-9, silt 1e-7, sand 1e-4");
             }
-            let yields = |own: &Material| own.permeability.is_none_or(|own| own.drainable > 0.0);
+            let yields = |soil: &Material| soil.permeability.is_none_or(|law| law.drainable > 0.0);
             let drains = flow.in_time.is_some() && !flow.conditions.confined;
-            if let Some(material) = material.filter(|own| drains && !yields(own)) {
+            if let Some(material) = material.filter(|soil| drains && !yields(soil)) {
                 problems
                     .error(
                         place,
                         format!(
-                            "{who} changes in time, and nothing says how much water drains from `{}`{when}",
+                            "{label} changes in time, and nothing says how much water drains from `{}`{when}",
                             clip(&material.name, 40)
                         ),
                     )
@@ -262,7 +262,7 @@ impl<const D: usize> Checker<'_, D> {
         &mut self,
         scene: &Scene,
         condition: &WaterCondition,
-        (stated, who): (&Water, &str),
+        (stated, label): (&Water, &str),
         problems: &mut Problems,
     ) {
         let around = self.around;
@@ -289,23 +289,23 @@ impl<const D: usize> Checker<'_, D> {
                 && is_wet(around.earth, &condition.source, part)
             {
                 self.unweighed.push(number);
-                unweighed::<D>(around.tree, number, (who, material), problems);
+                unweighed::<D>(around.tree, number, (label, material), problems);
             }
             if material.drainage != Drainage::Total {
                 continue;
             }
-            let own = condition
+            let row = condition
                 .bodies
                 .iter()
                 .position(|(named, _)| *named == body);
-            if let Some(own) = own
-                && condition.bodies[own].1 != PoreSource::Dry
+            if let Some(row) = row
+                && condition.bodies[row].1 != PoreSource::Dry
             {
                 problems
                     .error(
-                        (stated.bodies[own].as_ref().ok()).map(|own| own.place),
+                        (stated.bodies[row].as_ref().ok()).map(|at| at.place),
                         format!(
-                            "{who} gives `{}` a pore pressure of its own, but `{}` has strength by total stress, where there is none",
+                            "{label} gives `{}` a pore pressure of its own, but `{}` has strength by total stress, where there is none",
                             clip(&part.name, 40),
                             clip(&material.name, 40)
                         ),
@@ -318,17 +318,17 @@ impl<const D: usize> Checker<'_, D> {
                 Strength::MohrCoulomb { friction_angle, .. }
                 | Strength::DruckerPrager { friction_angle, .. } if friction_angle > 0.0
             );
-            let is_wet = || own.is_none() && is_wet(around.earth, &condition.source, part);
-            if has_friction && !self.told.contains(&number) && is_wet() {
-                self.told.push(number);
-                let place = common::<D>(around.tree, number, |own| {
-                    own.drainage.as_ref().ok()?.as_ref().map(|own| own.place)
+            let is_wet = || row.is_none() && is_wet(around.earth, &condition.source, part);
+            if has_friction && !self.refused.contains(&number) && is_wet() {
+                self.refused.push(number);
+                let place = common::<D>(around.tree, number, |keys| {
+                    keys.drainage.as_ref().ok()?.as_ref().map(|at| at.place)
                 });
                 problems
                     .error(
                         place,
                         format!(
-                            "{who} wets `{}`, and `{}` has friction by total stress: the water would make it stronger",
+                            "{label} wets `{}`, and `{}` has friction by total stress: the water would make it stronger",
                             clip(&part.name, 40),
                             clip(&material.name, 40)
                         ),
@@ -344,7 +344,7 @@ impl<const D: usize> Checker<'_, D> {
 fn drawn(
     (source, is_pond): (&PoreSource, bool),
     surface: &dyn Surface,
-    (place, who, when): (Place, &str, &str),
+    (place, label, when): (Place, &str, &str),
     problems: &mut Problems,
 ) {
     let [highest, sloping] = surface.above(source);
@@ -352,17 +352,17 @@ fn drawn(
         problems
             .error(
                 place,
-                format!("the surface of {who} does not reach the ground at {at}{when}"),
+                format!("the surface of {label} does not reach the ground at {at}{when}"),
             )
             .help("take a survey that reaches over all bodies, and has no holes there");
     } else if let Some(above) = highest.filter(|_| !is_pond) {
-        above_ground(&above, place, (who, when), problems);
+        above_ground(&above, place, (label, when), problems);
     } else if let Some(above) = sloping {
         problems
             .error(
                 place,
                 format!(
-                    "{who} is not level where it stands above the ground{when}: {} m above it at {}",
+                    "{label} is not level where it stands above the ground{when}: {} m above it at {}",
                     number(above.by),
                     above.at
                 ),
@@ -401,25 +401,25 @@ fn common<const D: usize>(
     place: impl Fn(&MaterialCommon) -> Option<Place>,
 ) -> Option<Place> {
     let materials = Root::<D>::materials(tree).ok()?;
-    let own = materials.0.get(number)?.value.as_ref().ok()?;
-    place(own.common.as_ref().ok()?)
+    let material = materials.0.get(number)?.value.as_ref().ok()?;
+    place(material.common.as_ref().ok()?)
 }
 
 /// Says that soil weighs the same above and below the water table.
 fn unweighed<const D: usize>(
     tree: &Node,
     number: usize,
-    (who, material): (&str, &Material),
+    (label, material): (&str, &Material),
     problems: &mut Problems,
 ) {
-    let place = common::<D>(tree, number, |own| {
-        own.unit_weight.as_ref().ok().map(|own| own.place)
+    let place = common::<D>(tree, number, |keys| {
+        keys.unit_weight.as_ref().ok().map(|at| at.place)
     });
     problems
         .warning(
             place,
             format!(
-                "{who} wets `{}`, which weighs below the table what it weighs above",
+                "{label} wets `{}`, which weighs below the table what it weighs above",
                 clip(&material.name, 40)
             ),
         )
@@ -427,30 +427,30 @@ fn unweighed<const D: usize>(
         .help("write it with the value of unit_weight if that is meant");
 }
 
-/// Share of the greatest pressure on the ground that is told \[-\].
+/// Share of the greatest pressure on the ground that is reported \[-\].
 const ON_GROUND: f64 = 0.02;
 
 /// Refuses points that do not reach over the soil; warns of pressure on the ground that is not said to be free water.
 fn points<const D: usize>(
     raster: &Raster,
     (around, scene, surface): (&Around<'_, D>, &Scene, &dyn Surface),
-    (own, who, when): (&Water, &str, &str),
+    (stated, label, when): (&Water, &str, &str),
     problems: &mut Problems,
 ) {
-    let Some(points) = &own.pressures.u else {
+    let Some(points) = &stated.pressures.u else {
         return;
     };
     let parts = std::iter::zip(around.bodies, &scene.present);
     let there = parts.filter_map(|(part, present)| part.as_ref().filter(|_| *present));
     let outlines: Vec<_> = there.map(|part| around.earth.front_outline(part)).collect();
-    let polygons: Vec<&[[f64; 2]]> = outlines.iter().map(|own| &own[..]).collect();
-    let of = format!("the soil that {who} is for{when}");
+    let polygons: Vec<&[[f64; 2]]> = outlines.iter().map(|outline| &outline[..]).collect();
+    let of = format!("the soil that {label} is for{when}");
     if reach(raster, (points.place, "u"), (&polygons, &of), problems).is_err() {
         return;
     }
     let greatest = raster.values.iter().flatten().copied().fold(0.0, f64::max);
     let most = surface.most_on_ground(raster);
-    let is_meant = own.pond.as_ref().is_some_and(|pond| **pond);
+    let is_meant = stated.pond.as_ref().is_some_and(|pond| **pond);
     if let Some((at, pressure)) =
         most.filter(|(_, pressure)| !is_meant && *pressure > ON_GROUND * greatest)
     {
@@ -458,7 +458,7 @@ fn points<const D: usize>(
             .warning(
                 points.place,
                 format!(
-                    "{who} presses on the ground with {} kPa at {at}{when}, as free water would",
+                    "{label} presses on the ground with {} kPa at {at}{when}, as free water would",
                     number((pressure / 1e2).round() / 1e1)
                 ),
             )
@@ -466,27 +466,27 @@ fn points<const D: usize>(
     }
 }
 
-/// Where a condition is told wrong, and when.
-fn when(stage: Option<&Thing<Stage>>, own: &At<Water>) -> (Place, String) {
+/// The place of an error in a condition, and its time.
+fn when(stage: Option<&Thing<Stage>>, water: &At<Water>) -> (Place, String) {
     let stated = [
-        own.tables.line.as_ref().map(|own| own.place),
-        own.tables.level.as_ref().map(|own| own.place),
-        own.tables.surface.as_ref().map(|own| own.place),
-        own.inside.as_ref().map(|own| own.place),
-        own.pressures.r_u.as_ref().map(|own| own.place),
-        own.pressures.u.as_ref().map(|own| own.place),
-        own.seepage.as_ref().map(|own| own.place),
+        water.tables.line.as_ref().map(|at| at.place),
+        water.tables.level.as_ref().map(|at| at.place),
+        water.tables.surface.as_ref().map(|at| at.place),
+        water.inside.as_ref().map(|at| at.place),
+        water.pressures.r_u.as_ref().map(|at| at.place),
+        water.pressures.u.as_ref().map(|at| at.place),
+        water.seepage.as_ref().map(|at| at.place),
     ];
-    let own = stated.into_iter().flatten().next().unwrap_or(own.place);
+    let place = stated.into_iter().flatten().next().unwrap_or(water.place);
     let Some(Some(stage)) = stage else {
-        return (own, String::new());
+        return (place, String::new());
     };
     let name = clip(&stage.name, 40);
     if called_water(stage).is_some() {
-        return (own, format!(" in stage `{name}`"));
+        return (place, format!(" in stage `{name}`"));
     }
     let changed = stage.construction().into_iter();
-    let changed = changed.flat_map(|own| [&own.remove, &own.place]).flatten();
+    let changed = changed.flat_map(|job| [&job.remove, &job.place]).flatten();
     let mut changed = changed
         .filter(|list| !list.is_empty())
         .map(|list| list.place);
@@ -501,12 +501,12 @@ fn called_water(stage: &At<Stage>) -> Option<&At<String>> {
     stage.construction()?.water_condition()
 }
 
-fn above_ground(above: &Above, place: Place, (who, when): (&str, &str), problems: &mut Problems) {
+fn above_ground(above: &Above, place: Place, (label, when): (&str, &str), problems: &mut Problems) {
     problems
         .error(
             place,
             format!(
-                "{who} stands {} m above the ground at {}{when}",
+                "{label} stands {} m above the ground at {}{when}",
                 number(above.by),
                 above.at
             ),

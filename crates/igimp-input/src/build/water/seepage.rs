@@ -25,8 +25,8 @@ const BESIDE: f64 = 1e-6;
 pub(super) fn source<const D: usize>(
     around: &Around<'_, D>,
     (condition, index): (&At<Water>, usize),
-    own: &At<Seepage>,
-    who: &str,
+    flow: &At<Seepage>,
+    label: &str,
     problems: &mut Problems,
 ) -> Option<PoreSource> {
     let before = problems.errors();
@@ -34,34 +34,34 @@ pub(super) fn source<const D: usize>(
         problems
             .error(
                 condition.carried.place,
-                format!("{who} is computed, and cannot be carried along by the soil"),
+                format!("{label} is computed, and cannot be carried along by the soil"),
             )
             .help("remove carried: the pressure is that of the place");
     }
-    let free_water = free_water(around, index, own, who, problems);
+    let free_water = free_water(around, index, flow, label, problems);
     let mut soils = Vec::new();
-    let (faces, histories) = (own.faces.iter().flatten())
-        .filter_map(|own| {
-            let (named, history) = face::<D>(own, problems).ok()?;
-            meets_ground(around, (own.place, "face"), &named, problems).ok()?;
+    let (faces, histories) = (flow.faces.iter().flatten())
+        .filter_map(|table| {
+            let (named, history) = face::<D>(table, problems).ok()?;
+            meets_ground(around, (table.place, "face"), &named, problems).ok()?;
             Some((named, history))
         })
         .unzip();
-    let in_time = in_time(around, index, own, (who, histories), problems);
-    without_effect(around, own, problems);
-    let regions = (own.regions.iter().flatten())
-        .filter_map(|own| {
-            let named = region::<D>(own, &mut soils, problems).ok()?;
-            meets_ground(around, (own.place, "region"), &named, problems).ok()?;
+    let in_time = in_time(around, index, flow, (label, histories), problems);
+    without_effect(around, flow, problems);
+    let regions = (flow.regions.iter().flatten())
+        .filter_map(|table| {
+            let named = region::<D>(table, &mut soils, problems).ok()?;
+            meets_ground(around, (table.place, "region"), &named, problems).ok()?;
             Some(named)
         })
         .collect();
-    let sections = (own.sections.iter().flatten())
-        .filter_map(|own| section(around, own, problems).ok())
+    let sections = (flow.sections.iter().flatten())
+        .filter_map(|table| section(around, table, problems).ok())
         .collect();
-    let is_read = own.faces.iter().all(Result::is_ok)
-        && own.regions.iter().all(Result::is_ok)
-        && own.sections.iter().all(Result::is_ok);
+    let is_read = flow.faces.iter().all(Result::is_ok)
+        && flow.regions.iter().all(Result::is_ok)
+        && flow.sections.iter().all(Result::is_ok);
     if problems.errors() > before || !is_read {
         return None;
     }
@@ -72,9 +72,9 @@ pub(super) fn source<const D: usize>(
             regions,
             sections,
             axisymmetric: false,
-            confined: *own.confined,
-            width: own.fall.as_ref().map(|own| **own),
-            floor: *own.floor,
+            confined: *flow.confined,
+            width: flow.fall.as_ref().map(|fall| **fall),
+            floor: *flow.floor,
         },
         free_water,
         in_time: in_time.ok()?,
@@ -82,21 +82,21 @@ pub(super) fn source<const D: usize>(
 }
 
 /// Warns of keys of the fall of permeability that nothing asks for: in full pores it does not fall, and a measured curve says how it does.
-fn without_effect<const D: usize>(around: &Around<'_, D>, own: &Seepage, problems: &mut Problems) {
+fn without_effect<const D: usize>(around: &Around<'_, D>, flow: &Seepage, problems: &mut Problems) {
     let materials = around.materials.iter().flatten();
-    let soils = { materials }.filter_map(|own| own.permeability.as_ref().map(|soil| (own, soil)));
+    let soils = { materials }.filter_map(|soil| Some((soil, soil.permeability.as_ref()?)));
     let curved: Vec<&str> = (soils.clone().filter(|(_, soil)| soil.curve != Curve::Ramp))
-        .map(|(own, _)| own.name.as_str())
+        .map(|(material, _)| material.name.as_str())
         .collect();
     let has_ramp = soils.clone().any(|(_, soil)| soil.curve == Curve::Ramp)
-        || own
+        || flow
             .regions
             .iter()
             .flatten()
-            .any(|own| own.permeability.is_some());
+            .any(|region| region.permeability.is_some());
     let is_known = around.materials.iter().all(Option::is_some);
-    if let Some(fall) = &own.fall {
-        let why = if *own.confined {
+    if let Some(fall) = &flow.fall {
+        let why = if *flow.confined {
             Some("all pores are full (`confined`)")
         } else {
             (is_known && !has_ramp && !curved.is_empty())
@@ -108,10 +108,10 @@ fn without_effect<const D: usize>(around: &Around<'_, D>, own: &Seepage, problem
                 .help("remove it");
         }
     }
-    if let (true, Some(first)) = (*own.confined, curved.first()) {
+    if let (true, Some(first)) = (*flow.confined, curved.first()) {
         problems
             .warning(
-                own.confined.place,
+                flow.confined.place,
                 format!(
                     "the curve of `{}` has no effect: all pores are full (`confined`)",
                     clip(first, 40)
@@ -125,35 +125,35 @@ fn without_effect<const D: usize>(around: &Around<'_, D>, own: &Seepage, problem
 fn in_time<const D: usize>(
     around: &Around<'_, D>,
     index: usize,
-    own: &At<Seepage>,
-    (who, histories): (&str, Vec<Option<History>>),
+    flow: &At<Seepage>,
+    (label, histories): (&str, Vec<Option<History>>),
     problems: &mut Problems,
 ) -> Result<Option<InTime>, Wrong> {
-    let Some(start) = &own.start_from else {
+    let Some(start) = &flow.start_from else {
         let stated = [
-            own.times.as_ref().map(|own| ("times", own.place)),
-            own.time.as_ref().map(|own| ("time", own.place)),
-            (histories.iter().any(Option::is_some)).then_some(("a value in time", own.place)),
+            flow.times.as_ref().map(|at| ("times", at.place)),
+            flow.time.as_ref().map(|at| ("time", at.place)),
+            (histories.iter().any(Option::is_some)).then_some(("a value in time", flow.place)),
         ];
         if let Some((key, place)) = stated.into_iter().flatten().next() {
             problems
-                .error(place, format!("{who} has {key}, but its flow is steady"))
+                .error(place, format!("{label} has {key}, but its flow is steady"))
                 .help("write start_from = \"NAME\", a condition whose computed, steady flow is that at the time 0");
             return Err(Wrong);
         }
         return Ok(None);
     };
-    let Some(time) = &own.time else {
+    let Some(time) = &flow.time else {
         problems
-            .error(start.place, format!("{who} has a start and no times"))
+            .error(start.place, format!("{label} has a start and no times"))
             .help("write times = [\"1 d\", \"10 d\"]");
         return Err(Wrong);
     };
-    let asks = format!("{who} starts from");
+    let asks = format!("{label} starts from");
     let waters = &around.names.water;
     let other = waters.find(start, &asks, problems).ok_or(Wrong)?;
     let stated = around.own[other].as_ref().ok_or(Wrong)?;
-    let is_steady = |own: &At<Seepage>| own.start_from.is_none();
+    let is_steady = |seepage: &At<Seepage>| seepage.start_from.is_none();
     if other == index || !stated.seepage.as_ref().is_some_and(is_steady) {
         let name = clip(start, 40);
         problems
@@ -177,12 +177,12 @@ type Samples<'a> = Option<&'a At<Vec<At<f64>>>>;
 /// Values in time.
 fn history(
     (time, values): (Samples<'_>, Samples<'_>),
-    (place, what): (Place, &str),
+    (place, label): (Place, &str),
     problems: &mut Problems,
 ) -> Result<History, Wrong> {
     let (Some(time), Some(values)) = (time, values) else {
         problems
-            .error(place, format!("{what} has no values in time"))
+            .error(place, format!("{label} has no values in time"))
             .help("write file = \"pool.csv\", or time and values");
         return Err(Wrong);
     };
@@ -200,8 +200,8 @@ fn history(
         return Err(Wrong);
     }
     Ok(History {
-        times: time.iter().map(|own| **own).collect(),
-        values: values.iter().map(|own| **own).collect(),
+        times: time.iter().map(|moment| **moment).collect(),
+        values: values.iter().map(|value| **value).collect(),
     })
 }
 
@@ -209,33 +209,33 @@ fn history(
 fn free_water<const D: usize>(
     around: &Around<'_, D>,
     index: usize,
-    own: &Seepage,
-    who: &str,
+    flow: &Seepage,
+    label: &str,
     problems: &mut Problems,
 ) -> Option<PoreSource> {
-    match (&own.free_water, &own.of_water) {
+    match (&flow.free_water, &flow.of_water) {
         (Some(_), Some(second)) => {
             problems
                 .error(
                     second.place,
-                    format!("{who} has both `free_water` and `of_water`"),
+                    format!("{label} has both `free_water` and `of_water`"),
                 )
                 .help("keep one of them");
             None
         }
-        (Some(line), None) => source_of(&Form::Line(line), who, problems),
+        (Some(line), None) => source_of(&Form::Line(line), label, problems),
         (None, None) => None,
         (None, Some(name)) => {
             let other = around
                 .names
                 .water
-                .find(name, &format!("{who} names"), problems)?;
+                .find(name, &format!("{label} names"), problems)?;
             let stated = around.own[other].as_ref()?;
             let tables = &stated.tables;
             let form = match (&tables.level, &tables.line, &tables.surface) {
-                (Some(own), ..) => Some(Form::Level(own)),
-                (_, Some(own), _) => Some(Form::Line(own)),
-                (.., Some(own)) => Some(Form::Surface(own)),
+                (Some(level), ..) => Some(Form::Level(level)),
+                (_, Some(line), _) => Some(Form::Line(line)),
+                (.., Some(surface)) => Some(Form::Surface(surface)),
                 _ => None,
             };
             let Some(form) = form.filter(|_| other != index) else {
@@ -244,7 +244,7 @@ fn free_water<const D: usize>(
                     .help("name a condition with level, line or surface, or write free_water = [[\"0 m\", \"8 m\"]]");
                 return None;
             };
-            source_of(&form, who, problems)
+            source_of(&form, label, problems)
         }
     }
 }
@@ -283,7 +283,7 @@ pub(crate) fn extent<const D: usize>(
 /// The only key that is stated of several.
 fn only<T>(
     stated: Vec<(&str, Place, T)>,
-    (place, what, forms): (Place, &str, &str),
+    (place, label, forms): (Place, &str, &str),
     problems: &mut Problems,
 ) -> Result<T, Wrong> {
     let keys: Vec<&str> = stated.iter().map(|(key, ..)| *key).collect();
@@ -293,94 +293,94 @@ fn only<T>(
         problems
             .error(
                 last,
-                format!("{what} says several things: {}", keys.join(", ")),
+                format!("{label} says several things: {}", keys.join(", ")),
             )
             .help("keep one of them");
         return Err(Wrong);
     }
     if stated.is_empty() {
         problems
-            .error(place, format!("{what} does not say what holds there"))
+            .error(place, format!("{label} does not say what holds there"))
             .help(forms);
     }
-    stated.into_iter().next().map(|(.., own)| own).ok_or(Wrong)
+    stated.into_iter().next().map(|key| key.2).ok_or(Wrong)
 }
 
-fn is_set<'a>(key: &'a str, own: Option<&At<bool>>) -> Option<(&'a str, Place)> {
-    own.filter(|own| own.value).map(|own| (key, own.place))
+fn is_set<'a>(key: &'a str, flag: Option<&At<bool>>) -> Option<(&'a str, Place)> {
+    flag.filter(|flag| flag.value).map(|flag| (key, flag.place))
 }
 
 fn face<const D: usize>(
-    own: &At<SeepageFace>,
+    face: &At<SeepageFace>,
     problems: &mut Problems,
 ) -> Result<(Named<3, OnFaces>, Option<History>), Wrong> {
-    let what = format!("the face `{}`", clip(&own.name, 40));
+    let label = format!("the face `{}`", clip(&face.name, 40));
     let mut in_time = None;
     let [head, recharge] = [
-        (own.head.as_ref()).map(|stated| match &**stated {
+        (face.head.as_ref()).map(|stated| match &**stated {
             Either::First(one) => Ok((stated.place, *one)),
-            Either::Second(own) => Err((stated.place, own.time.as_ref(), own.values.as_ref())),
+            Either::Second(rows) => Err((stated.place, rows.time.as_ref(), rows.values.as_ref())),
         }),
-        (own.recharge.as_ref()).map(|stated| match &**stated {
+        (face.recharge.as_ref()).map(|stated| match &**stated {
             Either::First(one) => Ok((stated.place, *one)),
-            Either::Second(own) => Err((stated.place, own.time.as_ref(), own.values.as_ref())),
+            Either::Second(rows) => Err((stated.place, rows.time.as_ref(), rows.values.as_ref())),
         }),
     ]
     .map(|stated| match stated? {
         Ok(one) => Some(one),
         Err((place, time, values)) => {
-            let own = history((time, values), (place, &what), problems).ok()?;
-            let first = own.values[0];
-            in_time = Some(own);
+            let course = history((time, values), (place, &label), problems).ok()?;
+            let first = course.values[0];
+            in_time = Some(course);
             Some((place, first))
         }
     });
-    let value = |key: &'static str, own: Option<(Place, f64)>, of: fn(f64) -> OnFaces| {
-        own.map(|(place, own)| (key, place, of(own)))
+    let value = |key: &'static str, stated: Option<(Place, f64)>, of: fn(f64) -> OnFaces| {
+        stated.map(|(place, amount)| (key, place, of(amount)))
     };
-    let inflow = own.inflow.as_ref().map(|own| (own.place, **own));
-    let flag = |key, own: &Option<At<bool>>, of: OnFaces| {
-        is_set(key, own.as_ref()).map(|(key, place)| (key, place, of))
+    let inflow = face.inflow.as_ref().map(|at| (at.place, **at));
+    let flag = |key, stated: &Option<At<bool>>, of: OnFaces| {
+        is_set(key, stated.as_ref()).map(|(key, place)| (key, place, of))
     };
     let stated = [
         value("head", head, OnFaces::Head),
         value("inflow", inflow, OnFaces::Inflow),
         value("recharge", recharge, OnFaces::Recharge),
-        flag("open", &own.open, OnFaces::Open),
-        flag("closed", &own.closed, OnFaces::Closed),
+        flag("open", &face.open, OnFaces::Open),
+        flag("closed", &face.closed, OnFaces::Closed),
     ];
     let stated = stated.into_iter().flatten().collect();
-    let held = only(stated, (own.place, &what, FACES), problems);
+    let held = only(stated, (face.place, &label, FACES), problems);
     let named = Named {
-        name: own.name.value.clone(),
-        within: extent::<D>(&own.from, &own.to, problems)?,
+        name: face.name.value.clone(),
+        within: extent::<D>(&face.from, &face.to, problems)?,
         what: held?,
     };
     Ok((named, in_time))
 }
 
 fn region<const D: usize>(
-    own: &At<SeepageRegion>,
+    region: &At<SeepageRegion>,
     soils: &mut Vec<Soil>,
     problems: &mut Problems,
 ) -> Result<Named<3, InGround>, Wrong> {
-    let what = format!("the region `{}`", clip(&own.name, 40));
+    let label = format!("the region `{}`", clip(&region.name, 40));
     let number = soils.len();
     let stated = [
-        (own.head.as_ref()).map(|own| ("head", own.place, InGround::Head(**own))),
-        is_set("drain", own.drain.as_ref()).map(|(key, place)| (key, place, InGround::Drain)),
-        (own.discharge.as_ref()).map(|own| ("discharge", own.place, InGround::Inflow(-**own))),
-        (own.permeability.as_ref()).map(|own| ("permeability", own.place, InGround::Soil(number))),
+        (region.head.as_ref()).map(|at| ("head", at.place, InGround::Head(**at))),
+        is_set("drain", region.drain.as_ref()).map(|(key, place)| (key, place, InGround::Drain)),
+        (region.discharge.as_ref()).map(|at| ("discharge", at.place, InGround::Inflow(-**at))),
+        (region.permeability.as_ref()).map(|at| ("permeability", at.place, InGround::Soil(number))),
     ];
     let stated = stated.into_iter().flatten().collect();
-    let held = only(stated, (own.place, &what, REGIONS), problems);
-    let within = extent::<D>(&own.from, &own.to, problems)?;
+    let held = only(stated, (region.place, &label, REGIONS), problems);
+    let within = extent::<D>(&region.from, &region.to, problems)?;
     let held = held?;
-    if let (InGround::Soil(_), Some(permeability)) = (held, &own.permeability) {
+    if let (InGround::Soil(_), Some(permeability)) = (held, &region.permeability) {
         soils.push(Soil::isotropic(**permeability));
     }
     Ok(Named {
-        name: own.name.value.clone(),
+        name: region.name.value.clone(),
         within,
         what: held,
     })
@@ -390,11 +390,11 @@ fn region<const D: usize>(
 fn meets_ground<const D: usize, T>(
     around: &Around<'_, D>,
     (place, kind): (Place, &str),
-    own: &Named<3, T>,
+    named: &Named<3, T>,
     problems: &mut Problems,
 ) -> Result<(), Wrong> {
-    let name = clip(&own.name, 40);
-    if meets(around, &own.within) {
+    let name = clip(&named.name, 40);
+    if meets(around, &named.within) {
         return Ok(());
     }
     problems
@@ -414,18 +414,18 @@ fn meets<const D: usize>(around: &Around<'_, D>, within: &Extent<3>) -> bool {
 
 fn section<const D: usize>(
     around: &Around<'_, D>,
-    own: &At<SeepageSection>,
+    section: &At<SeepageSection>,
     problems: &mut Problems,
 ) -> Result<(String, Extent<3>), Wrong> {
-    let within = extent::<D>(&own.from, &own.to, problems)?;
+    let within = extent::<D>(&section.from, &section.to, problems)?;
     let flat = (0..D).filter(|&axis| within.upper[axis] <= within.lower[axis]);
     if flat.count() != 1 {
         let sizes = (0..D).map(|axis| number(within.upper[axis] - within.lower[axis]));
         let sizes: Vec<String> = sizes.collect();
         problems
             .error(
-                own.place,
-                format!("the section `{}` lies across no axis: it measures {} m", clip(&own.name, 40), sizes.join(" by ")),
+                section.place,
+                format!("the section `{}` lies across no axis: it measures {} m", clip(&section.name, 40), sizes.join(" by ")),
             )
             .help("let its corners have one coordinate in common: from = [\"20 m\", \"0 m\"], to = [\"20 m\", \"8 m\"]");
         return Err(Wrong);
@@ -433,14 +433,14 @@ fn section<const D: usize>(
     if !meets(around, &within) {
         problems
             .error(
-                own.place,
+                section.place,
                 format!(
                     "the section `{}` meets no body: no water passes it",
-                    clip(&own.name, 40)
+                    clip(&section.name, 40)
                 ),
             )
             .help("let it run through the ground");
         return Err(Wrong);
     }
-    Ok((own.name.value.clone(), within))
+    Ok((section.name.value.clone(), within))
 }

@@ -22,8 +22,8 @@ pub(super) struct Form {
 impl Form {
     /// All of them.
     pub(super) fn keys(&self) -> impl Iterator<Item = &&'static str> {
-        let own = std::iter::once(&self.key);
-        own.chain(self.needs).chain(self.may_have)
+        let first = std::iter::once(&self.key);
+        first.chain(self.needs).chain(self.may_have)
     }
 }
 
@@ -92,10 +92,10 @@ fn form(
             problems,
         ));
     };
-    let own =
+    let belongs =
         |key: &str| form.key == key || form.needs.contains(&key) || form.may_have.contains(&key);
     let mut keys = FORMS.iter().flat_map(Form::keys);
-    if let Some(other) = keys.find(|key| !own(key) && has(key)) {
+    if let Some(other) = keys.find(|key| !belongs(key) && has(key)) {
         problems
             .error(
                 value.place_at(other),
@@ -136,8 +136,8 @@ pub(super) fn stated<const D: usize>(
             Ok(Profile::Depth(table))
         }
         "rows" => {
-            let own = value.points.ok_or(Wrong)?;
-            let raster = points(own, value.place, key, problems)?;
+            let lists = value.points.ok_or(Wrong)?;
+            let raster = points(lists, value.place, key, problems)?;
             let outlines = extent.outlines();
             let polygons: Vec<&[[f64; 2]]> = outlines.iter().map(Vec::as_slice).collect();
             let of = format!("the soil of `{}`", clip(extent.name, 40));
@@ -164,7 +164,7 @@ pub(super) fn stated<const D: usize>(
     }
 }
 
-/// What is said of a ratio of overconsolidation.
+/// Terms of a ratio of overconsolidation.
 const OCR: Terms = Terms {
     may_vanish: false,
     may_be_nothing: false,
@@ -179,31 +179,31 @@ pub(crate) const TABLES: &str =
     "{ levels = [...], values = [...] }, or { depths = [...], values = [...] }";
 
 fn share<const D: usize>(
-    own: &StrengthProfile,
+    profile: &StrengthProfile,
     extent: Extent<'_, D>,
     problems: &mut Problems,
 ) -> Result<StressShare, Wrong> {
-    let (ocr, ocr_profile) = match &own.ocr {
+    let (ocr, ocr_profile) = match &profile.ocr {
         Some(ocr) => {
-            let own = property(ocr, "ocr", extent, OCR, problems).ok_or(Wrong)?;
-            (own.constant, own.profile)
+            let ratio = property(ocr, "ocr", extent, OCR, problems).ok_or(Wrong)?;
+            (ratio.constant, ratio.profile)
         }
         None => (1.0, None),
     };
-    let value = |own: &Option<At<f64>>| own.as_ref().map(|own| **own);
-    if let (Some(exponent), None) = (&own.exponent, &own.ocr) {
+    let value = |key: &Option<At<f64>>| key.as_ref().map(|at| **at);
+    if let (Some(exponent), None) = (&profile.exponent, &profile.ocr) {
         let message = "`exponent` has no effect: it is that of `ocr`, which is not stated";
         problems
             .warning(exponent.place, message)
             .help("add ocr = 2.0, or remove it");
     }
     Ok(StressShare {
-        ratio: value(&own.ratio).ok_or(Wrong)?,
+        ratio: value(&profile.ratio).ok_or(Wrong)?,
         ocr,
         ocr_profile,
-        exponent: value(&own.exponent).unwrap_or(0.8),
-        at_least: value(&own.at_least).unwrap_or(0.0),
-        water_level: value(&own.water_level),
+        exponent: value(&profile.exponent).unwrap_or(0.8),
+        at_least: value(&profile.at_least).unwrap_or(0.0),
+        water_level: value(&profile.water_level),
     })
 }
 
@@ -212,14 +212,14 @@ const BEYOND: f64 = 0.5 + 1e-9;
 
 /// Points in the plane, stated at a place.
 pub(crate) fn points(
-    own: &keys::Points,
+    lists: &keys::Points,
     place: Place,
     key: &str,
     problems: &mut Problems,
 ) -> Result<Raster, Wrong> {
     let help = "write x = [...], y = [...] and rows = [[...], ...] with a list for every y, or raster = \"cu.csv\"";
-    let (Some(xs), Some(ys), Some(rows)) = (&own.x, &own.y, &own.rows) else {
-        let missing = match (&own.x, &own.y) {
+    let (Some(xs), Some(ys), Some(rows)) = (&lists.x, &lists.y, &lists.rows) else {
+        let missing = match (&lists.x, &lists.y) {
             (None, _) => "x",
             (_, None) => "y",
             _ => "rows",
@@ -289,7 +289,7 @@ pub(crate) fn reach(
 }
 
 fn table(
-    own: &Rows,
+    lists: &Rows,
     levels: Option<&At<Vec<At<f64>>>>,
     key: &str,
     form: &Form,
@@ -297,7 +297,7 @@ fn table(
     problems: &mut Problems,
 ) -> Result<Variation, Wrong> {
     let places = form.key;
-    let (stated, of_them) = (levels.ok_or(Wrong)?, own.values.as_ref().ok_or(Wrong)?);
+    let (stated, of_them) = (levels.ok_or(Wrong)?, lists.values.as_ref().ok_or(Wrong)?);
     let (levels, values) = (plain(stated), plain(of_them));
     if levels.len() != values.len() {
         problems
