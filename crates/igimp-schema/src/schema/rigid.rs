@@ -134,7 +134,7 @@ table! {
     RIGID_COMMON: RigidCommon<D>, "Keys of every rigid body.";
     reference: point,
         optional "the middle of the base of a rectangle, of the face of a wall, of the extent of others",
-        "point that displacement and forces are told of; a circle has its centre", in_plane;
+        "point of which displacement and forces are printed; a circle has its centre", in_plane;
     interface: either(choice(Interface), table(LIMITED: Limited)), default "\"rough\"", "along all its sides";
     tension: choice(Tension), default "\"none\"", "when soil is pulled off";
     tension_limit: quantity(Stress, Positive), optional "as `tension` says",
