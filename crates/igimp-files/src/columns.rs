@@ -93,7 +93,7 @@ fn header(cells: &[&str], names: &[&str], found: &mut Columns) -> Result<(), Tro
             None => (*cell, None),
         };
         let name = name.trim().to_lowercase();
-        let place = names.iter().position(|own| *own == name);
+        let place = names.iter().position(|known| *known == name);
         if place.is_some_and(|place| place != column) {
             return Err(Trouble::new(
                 format_args!("its column {} is `{name}`", column + 1),

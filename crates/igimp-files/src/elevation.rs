@@ -63,15 +63,15 @@ fn table(file: &Named, like: &Node, key: &str) -> Result<Vec<Entry>, Trouble> {
     };
     let (mut rows, mut holes) = (Vec::new(), Vec::new());
     for (j, row) in grid.heights.chunks(grid.columns).rev().enumerate() {
-        let mut own = Vec::with_capacity(row.len());
+        let mut heights = Vec::with_capacity(row.len());
         for (i, height) in row.iter().enumerate() {
             if height.is_none() {
                 let place = [i, j].map(|at| Node::written(Value::Integer(at as i64), like.place));
                 holes.push(list(place.to_vec()));
             }
-            own.push(length(height.unwrap_or(0.0))?);
+            heights.push(length(height.unwrap_or(0.0))?);
         }
-        rows.push(list(own));
+        rows.push(list(heights));
     }
     let entry = |key: &str, node| Entry {
         key: key.to_owned(),
@@ -101,7 +101,7 @@ fn scattered(text: &str, stated: (&str, Option<&str>), like: &Node) -> Result<Ve
     let units = [x?, y?, z?];
     let point = |row: &Vec<f64>| {
         let lengths = std::iter::zip(row, &units);
-        let lengths = lengths.map(|(&own, unit)| quantity(own, unit, Dimension::Length, like));
+        let lengths = lengths.map(|(&value, unit)| quantity(value, unit, Dimension::Length, like));
         let lengths = lengths.collect::<Result<Vec<_>, _>>()?;
         Ok(Node::written(Value::List(lengths), like.place))
     };

@@ -37,8 +37,8 @@ pub fn read(tree: &mut Node, case: &Path, problems: &mut Problems) {
         for condition in conditions.items_mut() {
             pressures(condition, folder, problems);
             history::of_faces(condition, folder, problems);
-            let own = condition.get_mut("bodies").map(Node::items_mut);
-            for body in own.into_iter().flatten() {
+            let bodies = condition.get_mut("bodies").map(Node::items_mut);
+            for body in bodies.into_iter().flatten() {
                 pressures(body, folder, problems);
             }
         }

@@ -42,8 +42,8 @@ impl Named {
 
     /// Whether the name ends so.
     pub(crate) fn ends_in(&self, extension: &str) -> bool {
-        let own = self.path.extension();
-        own.is_some_and(|own| own.eq_ignore_ascii_case(extension))
+        let ending = self.path.extension();
+        ending.is_some_and(|ending| ending.eq_ignore_ascii_case(extension))
     }
 
     pub(crate) fn report(&self, value: &Node, trouble: Trouble, problems: &mut Problems) {

@@ -33,8 +33,8 @@ impl Border {
         let of_grid = column.len() - of_border;
         self.columns.push(column[..of_grid].to_vec());
         self.rows.push(row[..of_grid].to_vec());
-        for (entries, own) in self.corner.iter_mut().zip(&column[of_grid..]) {
-            entries.push(*own);
+        for (entries, entry) in self.corner.iter_mut().zip(&column[of_grid..]) {
+            entries.push(*entry);
         }
         let mut last = row[of_grid..].to_vec();
         last.push(corner);

@@ -40,14 +40,14 @@ impl Elimination {
         } = border;
         let mut carried = Vec::with_capacity(columns.len());
         for column in columns {
-            let mut own = vec![0.0; column.len()];
-            inverse(column, &mut own)?;
-            carried.push(own);
+            let mut moved = vec![0.0; column.len()];
+            inverse(column, &mut moved)?;
+            carried.push(moved);
         }
         let mut schur = corner.clone();
         for (entries, row) in schur.iter_mut().zip(rows) {
-            for (entry, own) in entries.iter_mut().zip(&carried) {
-                *entry -= product(row, own);
+            for (entry, column) in entries.iter_mut().zip(&carried) {
+                *entry -= product(row, column);
             }
         }
         Ok(Self { carried, schur })
@@ -75,8 +75,8 @@ impl Elimination {
             }
         })?;
         for (carried, by) in self.carried.iter().zip(&of_border) {
-            for (own, share) in grid.iter_mut().zip(carried) {
-                *own -= by * share;
+            for (value, share) in grid.iter_mut().zip(carried) {
+                *value -= by * share;
             }
         }
         behind.copy_from_slice(&of_border);
@@ -146,13 +146,13 @@ impl Bordered {
         }
         let mut refined = vec![0.0; rhs.len()];
         elimination.solve(border, &mut inverse, &residual, &mut refined)?;
-        for (own, first) in refined.iter_mut().zip(&*solution) {
-            *own += first;
+        for (value, first) in refined.iter_mut().zip(&*solution) {
+            *value += first;
         }
-        let own = residual_of(matrix, rhs, &refined, &mut residual) / scale;
-        if own < error {
+        let reduced = residual_of(matrix, rhs, &refined, &mut residual) / scale;
+        if reduced < error {
             solution.copy_from_slice(&refined);
-            error = own;
+            error = reduced;
         }
         // Written so that what is not a number does not pass.
         if error <= tolerance {
@@ -173,13 +173,13 @@ pub(super) fn add_border(border: &Border, x: &[f64], y: &mut [f64]) {
     let (grid, behind) = x.split_at(of_grid);
     let (of_grid, of_border) = y.split_at_mut(of_grid);
     for (column, by) in border.columns.iter().zip(behind) {
-        for (own, entry) in of_grid.iter_mut().zip(column) {
-            *own += by * entry;
+        for (sum, entry) in of_grid.iter_mut().zip(column) {
+            *sum += by * entry;
         }
     }
-    for (own, (row, entries)) in (of_border.iter_mut()).zip(border.rows.iter().zip(&border.corner))
+    for (sum, (row, entries)) in (of_border.iter_mut()).zip(border.rows.iter().zip(&border.corner))
     {
-        *own = product(row, grid) + product(entries, behind);
+        *sum = product(row, grid) + product(entries, behind);
     }
 }
 
@@ -189,10 +189,10 @@ fn residual_of(matrix: &TangentMatrix, rhs: &[f64], x: &[f64], residual: &mut [f
     let of_grid = x.len() - matrix.border.len();
     matrix.multiply(&x[..of_grid], &mut residual[..of_grid]);
     add_border(&matrix.border, x, residual);
-    for (own, rhs) in residual.iter_mut().zip(rhs) {
-        *own = rhs - *own;
+    for (entry, rhs) in residual.iter_mut().zip(rhs) {
+        *entry = rhs - *entry;
     }
-    if residual.iter().all(|own| own.is_finite()) {
+    if residual.iter().all(|entry| entry.is_finite()) {
         max_norm(residual)
     } else {
         f64::INFINITY
@@ -245,8 +245,8 @@ fn eliminate(mut rows: Vec<Vec<f64>>, mut rhs: Vec<f64>, least: f64) -> Result<V
         for i in k + 1..n {
             let factor = rows[i][k] / rows[k][k];
             let (above, below) = rows.split_at_mut(i);
-            for (entry, own) in below[0][k..].iter_mut().zip(&above[k][k..]) {
-                *entry -= factor * own;
+            for (entry, upper) in below[0][k..].iter_mut().zip(&above[k][k..]) {
+                *entry -= factor * upper;
             }
             rhs[i] -= factor * rhs[k];
         }
@@ -291,8 +291,8 @@ mod tests {
             rhs: &[f64],
             solution: &mut [f64],
         ) -> Result<SolveReport, LinearSolverError> {
-            for ((own, rhs), entry) in solution.iter_mut().zip(rhs).zip(&matrix.values) {
-                *own = (1.0 + self.error) * rhs / entry;
+            for ((x, rhs), entry) in solution.iter_mut().zip(rhs).zip(&matrix.values) {
+                *x = (1.0 + self.error) * rhs / entry;
             }
             Ok(SolveReport::new("sloppy", 0.0, 0))
         }

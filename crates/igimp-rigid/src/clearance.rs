@@ -236,8 +236,8 @@ fn way_off<const D: usize>(extents: &[Extent<'_, D>], x: &[f64; D], half: f64) -
         let mut is_clear = true;
         for extent in extents {
             let at = std::array::from_fn(|axis| x[axis] + way[axis]);
-            let own = extent.body.pose.into_body(&at);
-            if !extent.may_reach(&own, &own, least) {
+            let local = extent.body.pose.into_body(&at);
+            if !extent.may_reach(&local, &local, least) {
                 continue;
             }
             let (distance, normal) = extent.body.nearest(&at);

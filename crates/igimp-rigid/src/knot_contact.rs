@@ -281,7 +281,7 @@ impl<const D: usize> KnotContact<D> {
         let turn = self.turn(u);
         let all = [&self.opening, &self.slip[0], &self.slip[1]];
         let of_arms = turn.as_ref().map(|(arms, turn)| (arms.all(), turn));
-        let moments = of_arms.map(|(arms, turn)| arms.map(|own| turn.moment_beyond(own)));
+        let moments = of_arms.map(|(arms, turn)| arms.map(|arm| turn.moment_beyond(arm)));
         let [opening, first, second] = self.turned(all, moments);
         add(&opening, -self.area * traction.pressure, f);
         for (slip, shear) in [&first, &second]
@@ -295,9 +295,9 @@ impl<const D: usize> KnotContact<D> {
             return;
         };
         if let Some((arms, turn)) = &turn {
-            let [of_opening, first, second] = arms.all().map(|own| {
-                turn.slope_of_moment(own)
-                    .map(|row| row.map(|own| self.area * own))
+            let [of_opening, first, second] = arms.all().map(|arm| {
+                turn.slope_of_moment(arm)
+                    .map(|row| row.map(|x| self.area * x))
             });
             let entry = |a: usize, b: usize| {
                 traction.pressure * of_opening[a][b]
@@ -307,7 +307,7 @@ impl<const D: usize> KnotContact<D> {
             let block = std::array::from_fn(|a| std::array::from_fn(|b| entry(a, b)));
             blocks(arms.node, arms.node, &block);
         }
-        let slopes = of_arms.map(|(arms, turn)| arms.map(|own| turn.slope_beyond(own)));
+        let slopes = of_arms.map(|(arms, turn)| arms.map(|arm| turn.slope_beyond(arm)));
         let [of_gap, of_first, of_second] = self.turned(all, slopes);
         let (slip, of_slip) = ([first, second], [of_first, of_second]);
         let mut outer = |a: &Functional<D>, b: &Functional<D>, factor: f64| {
@@ -341,11 +341,11 @@ impl<const D: usize> KnotContact<D> {
             return functions.map(Cow::Borrowed);
         };
         std::array::from_fn(|k| {
-            let own = |&(at, share): &(usize, [f64; D])| {
+            let reduced = |&(at, share): &(usize, [f64; D])| {
                 let by = if at == arms.node { beyond[k] } else { [0.0; D] };
                 (at, std::array::from_fn(|axis| share[axis] - by[axis]))
             };
-            Cow::Owned(functions[k].iter().map(own).collect())
+            Cow::Owned(functions[k].iter().map(reduced).collect())
         })
     }
 }

@@ -122,10 +122,10 @@ pub enum SurfaceError {
         radius: f64,
     },
     /// A number that is not finite, or a size that is not positive.
-    #[error("{what} must be positive and finite, but is {value}")]
+    #[error("{quantity} must be positive and finite, but is {value}")]
     NotPositive {
-        /// What it is.
-        what: &'static str,
+        /// Its name.
+        quantity: &'static str,
         /// The value.
         value: f64,
     },
@@ -272,9 +272,9 @@ impl<const D: usize> Surface<D> {
         let mut look_at = |facet| {
             let (arm, ..) = self.above(facet, x);
             let (length, height) = (norm(&arm), dot(&arm, &facet.normal));
-            let nearer = best.as_ref().is_none_or(|(least, own, ..)| {
+            let nearer = best.as_ref().is_none_or(|(least, highest, ..)| {
                 let tie = (length - least).abs() <= 1e-9 * length;
-                (tie && height.abs() > own.abs()) || (!tie && length < *least)
+                (tie && height.abs() > highest.abs()) || (!tie && length < *least)
             });
             if nearer {
                 best = Some((length, height, arm, facet));
@@ -306,9 +306,9 @@ impl<const D: usize> Surface<D> {
         if let Some(space) = &self.space {
             return self.nearest_in_space(space, x, side);
         }
-        let own = |facet: &&Facet<D>| facet.side == side;
+        let of_side = |facet: &&Facet<D>| facet.side == side;
         let mut best: Option<(f64, &Facet<D>)> = None;
-        for facet in self.facets.iter().filter(own) {
+        for facet in self.facets.iter().filter(of_side) {
             let length = norm(&self.above(facet, x).0);
             if best.is_none_or(|(least, _)| length < least) {
                 best = Some((length, facet));
@@ -374,10 +374,10 @@ fn extent_of<const D: usize>(points: &[[f64; D]], rounding: f64) -> ([f64; D], [
     bounds
 }
 
-fn positive(what: &'static str, value: f64) -> Result<(), SurfaceError> {
+fn positive(quantity: &'static str, value: f64) -> Result<(), SurfaceError> {
     if value > 0.0 && value.is_finite() {
         Ok(())
     } else {
-        Err(SurfaceError::NotPositive { what, value })
+        Err(SurfaceError::NotPositive { quantity, value })
     }
 }

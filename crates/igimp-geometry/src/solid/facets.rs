@@ -237,9 +237,9 @@ pub(super) fn over(face: &Face, plan: &Polygon, mut call: impl FnMut(&Face, f64)
         if cross < 0.0 {
             (b, c) = (c, b);
         }
-        let own = face.left_of(a, b).left_of(b, c).left_of(c, a);
-        if own.count > 2 {
-            call(&own, cross.signum());
+        let part = face.left_of(a, b).left_of(b, c).left_of(c, a);
+        if part.count > 2 {
+            call(&part, cross.signum());
         }
     }
 }

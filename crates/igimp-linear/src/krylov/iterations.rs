@@ -215,11 +215,11 @@ fn orthogonalise(w: &mut [f64], basis: &[Vec<f64>]) -> Vec<f64> {
     let mut parts = vec![0.0; basis.len()];
     // Twice is enough.
     for _ in 0..2 {
-        for (own, part) in basis.iter().zip(&mut parts) {
-            let share = dot(own, w);
+        for (vector, part) in basis.iter().zip(&mut parts) {
+            let share = dot(vector, w);
             *part += share;
-            for (w, own) in w.iter_mut().zip(own) {
-                *w -= share * own;
+            for (w, v) in w.iter_mut().zip(vector) {
+                *w -= share * v;
             }
         }
     }

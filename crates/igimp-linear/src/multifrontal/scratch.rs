@@ -64,14 +64,14 @@ fn lock<C>(mutex: &Mutex<C>) -> std::sync::MutexGuard<'_, C> {
 pub(crate) fn make_room<T: Copy + Default>(
     values: &mut Vec<T>,
     len: usize,
-    what: &'static str,
+    part: &'static str,
 ) -> Result<(), LinearSolverError> {
     if values.len() < len {
         *values = Vec::new();
         let roomy = len + len / 16;
         values
             .try_reserve_exact(roomy)
-            .map_err(|_| LinearSolverError::OutOfMemory { what })?;
+            .map_err(|_| LinearSolverError::OutOfMemory { what: part })?;
         *values = Vec::new();
         *values = vec![T::default(); roomy];
     }

@@ -23,7 +23,7 @@ pub(crate) struct Task {
     /// The share of the common arrays of this task and all tasks below it.
     pub(crate) total: Extent,
     /// The share of this task.
-    pub(crate) own: Extent,
+    pub(crate) extent: Extent,
     /// Room for what waits within the task, by shape and stack.
     pub(crate) stacks: [[usize; 2]; 2],
     /// Unknowns of the border of the last front that its parent passes on.
@@ -62,7 +62,7 @@ impl Task {
         let mut end = 0;
         self.below.iter().map(move |task| {
             end += task.total.outer;
-            (task.fronts.end - 1, end - task.own.outer..end)
+            (task.fronts.end - 1, end - task.extent.outer..end)
         })
     }
 }
@@ -124,12 +124,12 @@ impl Cutter<'_> {
         } else {
             (front.subtree, Vec::new())
         };
-        let mut own = Extent::default();
+        let mut extent = Extent::default();
         for front in &self.fronts[first..=root] {
-            own.add(&front.extent());
+            extent.add(&front.extent());
         }
-        own.outer = self.fronts[root].border;
-        let mut total = own;
+        extent.outer = self.fronts[root].border;
+        let mut total = extent;
         for task in &below {
             total.add(&task.total);
         }
@@ -144,7 +144,7 @@ impl Cutter<'_> {
             fronts: first..root + 1,
             below,
             total,
-            own,
+            extent,
             stacks: self.place_contributions(&(first..root)),
         }
     }
@@ -156,15 +156,15 @@ impl Cutter<'_> {
             let (mut fill, mut largest) = ([0, 0], [0, 0]);
             for this in fronts.clone() {
                 let front = &self.fronts[this];
-                let own = front.stack;
-                let start = fill[own];
-                fill[own] += shape.entries(front.passed_on);
-                largest[own] = largest[own].max(fill[own]);
+                let stack = front.stack;
+                let start = fill[stack];
+                fill[stack] += shape.entries(front.passed_on);
+                largest[stack] = largest[stack].max(fill[stack]);
                 if let Some(&eldest) = self.children[front.children.clone()].first() {
                     let eldest = &self.fronts[eldest as usize];
-                    fill[1 - own] = eldest.contribution[shape as usize].start;
+                    fill[1 - stack] = eldest.contribution[shape as usize].start;
                 }
-                self.fronts[this].contribution[shape as usize] = start..fill[own];
+                self.fronts[this].contribution[shape as usize] = start..fill[stack];
             }
             largest
         })
