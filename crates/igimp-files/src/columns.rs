@@ -4,7 +4,7 @@ use igimp_schema::text::clip;
 
 use crate::named::Trouble;
 
-/// What a file holds.
+/// The columns of a file.
 #[derive(Debug)]
 pub(crate) struct Columns {
     /// The unit of each column, if the header says one: `ft` in `x [ft]` and `x (ft)`.

@@ -15,7 +15,7 @@ const MEET: f64 = 1e-6;
 const ALONG: f64 = 1e-6;
 /// Most pieces of a line.
 const MOST: usize = 5000;
-/// What may stand beside lines on a layer: it has no shape.
+/// Entities without shape that may stand beside lines on a layer.
 const WORDS: [&str; 3] = ["TEXT", "MTEXT", "ATTDEF"];
 
 /// A line of a drawing in its own unit.
@@ -199,7 +199,7 @@ fn is_same(a: &str, b: &str) -> bool {
     a.to_lowercase() == b.to_lowercase()
 }
 
-/// What the section of entities holds.
+/// The entities of a drawing.
 fn entities(text: &str) -> Result<Vec<Entity<'_>>, Trouble> {
     let mut lines = text.lines().enumerate();
     let mut entities: Vec<Entity<'_>> = Vec::new();

@@ -13,7 +13,7 @@ use crate::named::{LARGEST, Named, Trouble, quantity, text_of, unit_beside, unit
 
 /// Most points.
 const MOST: usize = 100_000;
-/// What a CSV file has.
+/// The columns of a CSV file.
 const COLUMNS: [&str; 3] = ["x", "y", "z"];
 
 /// Puts the heights in place of the file that has them, in a table that names one in `raster` or `points`.
@@ -135,7 +135,7 @@ struct EsriGrid {
     heights: Vec<Option<f64>>,
 }
 
-/// What a head without one of its keys is answered.
+/// The help for a head without one of its keys.
 const HEAD: &str = "the head of an ESRI ASCII grid has ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, cellsize, and NODATA_value if there are holes";
 
 /// The head of an ESRI ASCII grid: key, value and line.

@@ -10,7 +10,7 @@ use crate::columns::columns;
 use crate::named::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
 use crate::record::ascending;
 
-/// What the file has.
+/// The columns of the file.
 const COLUMNS: [&str; 2] = ["time", "value"];
 
 /// Puts the samples of heads and rain on the faces of a condition in place of the files that have them.

@@ -10,7 +10,7 @@ use igimp_schema::tree::{Entry, Node, Value};
 use crate::columns::{Columns, columns};
 use crate::named::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
 
-/// What the file has.
+/// The columns of the file.
 const COLUMNS: [&str; 3] = ["x", "y", "value"];
 /// Properties that are numbers without a unit.
 const NUMBERS: [&str; 11] = [
@@ -94,7 +94,9 @@ fn points(file: &Named, table: &Node, key: &str) -> Result<Vec<Entry>, Trouble> 
         let items = items.collect::<Result<Vec<_>, _>>()?;
         Ok(Node::written(Value::List(items), table.place))
     };
-    let of_values = of_values.as_ref().map(|(unit, dimension)| (unit.as_str(), *dimension));
+    let of_values = of_values
+        .as_ref()
+        .map(|(unit, dimension)| (unit.as_str(), *dimension));
     let rows = rows.iter().map(|row| list(row, of_values));
     let rows = rows.collect::<Result<Vec<_>, _>>()?;
     let entry = |key: &str, node| Entry {

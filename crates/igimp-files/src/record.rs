@@ -11,7 +11,7 @@ use igimp_schema::tree::{Entry, Node, Value};
 use crate::columns::{Columns, columns};
 use crate::named::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
 
-/// What the file has; the second column may be a velocity as well.
+/// The columns of the file; the second column may be a velocity as well.
 const COLUMNS: [&str; 2] = ["time", "acceleration"];
 /// Most samples.
 const MOST: usize = 100_000;

@@ -21,7 +21,9 @@ const MOST: usize = 200_000;
 /// A gap narrower than a cell that reaches over the next cells, too, in both directions along it: the foot of a valley does not.
 /// None where there are too many cells to look.
 pub fn narrow(regions: &[&dyn Region<3>], lines: &[Vec<f64>; 3]) -> Option<Gap> {
-    let counts = lines.each_ref().map(|places| places.len().saturating_sub(1));
+    let counts = lines
+        .each_ref()
+        .map(|places| places.len().saturating_sub(1));
     let cell = |k: usize| {
         let (row, z) = (k % (counts[0] * counts[1]), k / (counts[0] * counts[1]));
         [row % counts[0], row / counts[0], z]
@@ -63,8 +65,9 @@ pub fn narrow(regions: &[&dyn Region<3>], lines: &[Vec<f64>; 3]) -> Option<Gap> 
             };
             counts[along] == 1 || beside(|k| k.checked_sub(1)) || beside(|k| Some(k + 1))
         };
-        let is_sheet =
-            |entry: &&([usize; 3], Gap)| (0..3).all(|along| along == axis || goes_on(&entry.0, along));
+        let is_sheet = |entry: &&([usize; 3], Gap)| {
+            (0..3).all(|along| along == axis || goes_on(&entry.0, along))
+        };
         found.iter().find(is_sheet).map(|entry| entry.1)
     })
 }

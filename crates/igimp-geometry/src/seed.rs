@@ -156,7 +156,12 @@ impl<const D: usize> Parts<D> {
         let last = grid.cell_at(&upper).unwrap_or(last_of_all);
         let cells = std::array::from_fn(|axis| {
             let along = &grid.axes[axis];
-            let cell = |cell| [along.nodes()[cell], along.spacing(cell) / per_direction as f64];
+            let cell = |cell| {
+                [
+                    along.nodes()[cell],
+                    along.spacing(cell) / per_direction as f64,
+                ]
+            };
             (first[axis]..=last[axis]).map(cell).collect()
         });
         let end = std::array::from_fn(|axis| grid.axes[axis].nodes()[last[axis] + 1]);
@@ -192,7 +197,7 @@ impl<const D: usize> Parts<D> {
         )
     }
 
-    /// What a region that stands in columns has of each cell, and where it is cut of its parts; `None` for another
+    /// The cover of each cell by a region that stands in columns, and the parts of cut cells; `None` for another
     /// region. Every column of parts is cut once.
     fn by_columns(&self, region: &(impl Region<D> + ?Sized)) -> Option<Vec<(Cover, Vec<Part<D>>)>> {
         let counts: [usize; D] = std::array::from_fn(|axis| self.cells[axis].len());
@@ -220,8 +225,8 @@ impl<const D: usize> Parts<D> {
                 slot.0 = cover;
                 if cover == Cover::Cut {
                     let steps = (0..self.per_direction).map(ends);
-                    let cut =
-                        steps.flat_map(|ends| columns.iter().map(move |column| column.within(ends)));
+                    let cut = steps
+                        .flat_map(|ends| columns.iter().map(move |column| column.within(ends)));
                     slot.1.extend(cut);
                 }
             }
@@ -417,11 +422,15 @@ mod tests {
             let parts = pieces
                 .iter()
                 .filter(move |piece| piece.particle == particle);
-            parts.map(|piece| area_and_centroid(&piece.polygon).0)
+            parts
+                .map(|piece| area_and_centroid(&piece.polygon).0)
                 .sum::<f64>()
         };
         for (particle, seed) in seeds.iter().enumerate() {
-            assert!((area_of(particle) - seed.volume).abs() < 1e-12, "{particle}");
+            assert!(
+                (area_of(particle) - seed.volume).abs() < 1e-12,
+                "{particle}"
+            );
         }
     }
 

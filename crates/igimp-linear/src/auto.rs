@@ -36,7 +36,7 @@ pub(crate) const FACTOR_BYTES: usize = 8 << 30;
 /// Chooses between a multifrontal factorisation and an iteration with multigrid.
 ///
 /// Near collapse a symmetric tangent can lose positive definiteness; the matrix then goes to LU. Both
-/// share plan and memory. What is chosen depends on the matrix, and within a step on whether an iteration failed
+/// share plan and memory. The choice depends on the matrix, and within a step on whether an iteration failed
 /// before.
 pub struct AutoSolver {
     engine: Engine,
@@ -231,7 +231,7 @@ impl AutoSolver {
         self.factorise(matrix)
     }
 
-    /// What an iteration of at most so many steps must come to. Who asks for more than is accepted of factors needs it.
+    /// The residual that an iteration of at most so many steps must reach. More is needed where less is accepted of factors.
     fn demand(&self, most: usize, may_fall_back: bool) -> Demand {
         let usual = self.engine.accuracy.tolerance;
         let (tolerance, patience) = if may_fall_back || self.asked < usual {

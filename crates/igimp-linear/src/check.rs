@@ -1,4 +1,4 @@
-//! Checks of what goes into a solver and what comes out of it, shared by all of them.
+//! Checks of the input and the output of a solver, shared by all of them.
 
 use std::sync::Arc;
 

@@ -58,7 +58,8 @@ impl Reach {
             .far
             .partition_point(|&(from, _)| (from as usize) < block);
         let pairs = self.far[first..].iter();
-        pairs.take_while(move |&&(from, _)| from as usize == block)
+        pairs
+            .take_while(move |&&(from, _)| from as usize == block)
             .map(|&(_, to)| to as usize)
     }
 

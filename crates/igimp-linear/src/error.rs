@@ -114,7 +114,7 @@ fn at_unknown(unknown: Option<usize>) -> String {
 mod tests {
     use super::LinearSolverError;
 
-    /// GOAL: a residual is told with four digits. ORACLE: by hand.
+    /// GOAL: a residual is printed with four digits. ORACLE: by hand.
     #[test]
     fn residuals_have_four_digits() {
         let error = LinearSolverError::Inaccurate {

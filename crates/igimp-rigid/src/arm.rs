@@ -7,7 +7,7 @@ use crate::{RigidBody, Turn, rotations, turn};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arm<const D: usize> {
     start: [f64; D],
-    /// What rotations are multiplied by to be lengths \[length\].
+    /// The factor by which rotations become lengths \[length\].
     size: f64,
     /// Whether it turns with the body: not on a given geometry.
     turns: bool,

@@ -23,7 +23,7 @@ const UNSEEN_HEIGHT: f64 = 1.0;
 /// In a notch, or between two bodies, the way off one side leads to another: the sides are looked at so often.
 const MOST_PASSES: usize = 20;
 
-/// What is missing to the least height after the first pass is round-off, as a share of it \[-\].
+/// The round-off of the least height after the first pass, as a share of it \[-\].
 const ROUND_OFF: f64 = 1e-9;
 
 /// A particle would be carried into a rigid body, through it, or up to it from where the body did not see it.

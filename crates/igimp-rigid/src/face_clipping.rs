@@ -193,7 +193,7 @@ fn by_cells<const D: usize>(polygon: Vec<Flat>, face: &Face<D>, grid: &Grid<D>) 
     parts
 }
 
-/// What of a convex polygon lies where a linear function is not negative.
+/// The part of a convex polygon where a linear function is not negative.
 fn kept(polygon: &[Flat], function: impl Fn(&Flat) -> f64) -> Vec<Flat> {
     let values: Vec<f64> = polygon.iter().map(function).collect();
     let mut out = Vec::with_capacity(polygon.len() + 1);

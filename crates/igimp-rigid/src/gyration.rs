@@ -14,7 +14,7 @@ const EQUAL: f64 = 1e-12;
 pub struct Gyration<const D: usize> {
     /// About the axes of space through the centre of mass, as the step begins \[mass\].
     start: [[f64; D]; D],
-    /// What rotations are multiplied by to be lengths \[length\].
+    /// The factor by which rotations become lengths \[length\].
     size: f64,
 }
 

@@ -36,7 +36,7 @@ pub type Functional<const D: usize> = Vec<(usize, [f64; D])>;
 pub struct Arms<const D: usize> {
     /// The node of its rotation.
     pub node: usize,
-    /// What rotations are multiplied by to be lengths \[length\].
+    /// The factor by which rotations become lengths \[length\].
     pub size: f64,
     /// Means of the arm times the normal; first the component of the arm \[length\].
     pub opening: [[f64; D]; D],
@@ -72,7 +72,7 @@ pub struct KnotContact<const D: usize> {
     pub opening: Functional<D>,
     /// Slip of the soil along the tangents, likewise.
     pub slip: [Functional<D>; 2],
-    /// What turns with the body; none where it does not turn, and where it is round.
+    /// The arms that turn with the body; none where it does not turn, and where it is round.
     pub arms: Option<Arms<D>>,
     /// As the last step left it.
     pub before: ContactNode,
@@ -125,7 +125,7 @@ impl<const D: usize> KnotContact<D> {
     }
 
     /// Takes over the gap that is `measured` of soil that came in the place of other \[length\], by the share of a cell that slid by in the last
-    /// step (theory, eq. 50a); in steps that take time the gap only grows by it. What slipped then is on its limit still.
+    /// step (theory, eq. 50a); in steps that take time the gap only grows by it. Slip of then is on its limit still.
     pub fn take_soil_that_came(
         &mut self,
         (measured, takes_time): (f64, bool),

@@ -16,7 +16,7 @@ pub struct Turn<const D: usize> {
     beyond: [[f64; D]; D],
     /// T − 1 by columns: as the vector of rotation changes by dφ the body turns by T dφ. None in the plane.
     means: [[f64; D]; D],
-    /// What rotations are multiplied by to be lengths \[length\].
+    /// The factor by which rotations become lengths \[length\].
     size: f64,
 }
 

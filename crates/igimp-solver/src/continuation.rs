@@ -105,7 +105,7 @@ impl<const D: usize> LastStep<D> {
             u: forces.u.clone(),
             change: step.to - step.from,
             work,
-            dissipated: (step.work.as_ref()).map_or(0.0, |own| own.dissipated_share(work)),
+            dissipated: (step.work.as_ref()).map_or(0.0, |report| report.dissipated_share(work)),
         }
     }
 }
@@ -132,7 +132,7 @@ impl<const D: usize> ContinuationState<D> {
         }
     }
 
-    /// What the next step is to reach.
+    /// The target of the next step.
     fn target(&self, settings: &ContinuationSettings) -> Target<D> {
         match &self.last {
             Some(last) if self.is_by_work => {

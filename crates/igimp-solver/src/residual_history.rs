@@ -98,7 +98,7 @@ impl ResidualHistory {
     }
 }
 
-/// What the residual has to become over what it is for a step to be worth its corrections \[-\].
+/// The share that the residual has to fall to for a step to be worth its corrections \[-\].
 const WORTHWHILE: f64 = 0.1;
 
 /// Corrections that may bring a residual to the tolerance however it crept before: Newton's method arrives at once, or not.

@@ -22,7 +22,7 @@ use crate::vectors::{dot, minus, norm};
 /// The largest number of knots of a surface.
 const MOST_KNOTS: u32 = 1_000_000;
 
-/// What is round has at least so many knots around it, and a multiple of them: it is the same seen along all axes.
+/// A round surface has at least so many knots around it, and a multiple of them: it is the same seen along all axes.
 const QUARTERS: usize = 4;
 const LEAST_AROUND: usize = 8;
 
@@ -30,7 +30,7 @@ const LEAST_AROUND: usize = 8;
 /// 1e-13 m \[-\].
 const HALVES_GO_UP: f64 = 1e-9;
 
-/// What makes no surface.
+/// Errors of surfaces.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SurfaceError {
     /// Too few corners, or corners that coincide.
@@ -156,7 +156,7 @@ pub struct Surface<const D: usize> {
     sides: usize,
     /// The side of each knot.
     side_of: Vec<usize>,
-    /// What is known beside that of a surface in space.
+    /// Further data of a surface in space.
     space: Option<Box<Space<D>>>,
 }
 
@@ -221,7 +221,7 @@ impl<const D: usize> Surface<D> {
         self.bounds
     }
 
-    /// What holds all of it in the frame of the body: lower and upper corner \[length\]. The knots of a circle
+    /// Its bounding box in the frame of the body: lower and upper corner \[length\]. The knots of a circle
     /// need not lie at its outermost places.
     pub fn extent(&self) -> ([f64; D], [f64; D]) {
         self.radius

@@ -1,4 +1,4 @@
-//! What is known of a surface in space beside its core.
+//! Data of a surface in space beside its core.
 
 use crate::closest::{closest, combine};
 use crate::tree::Tree;
@@ -54,7 +54,7 @@ impl<const D: usize> Space<D> {
 pub type CarryingTriangle<'a> = ([[f64; 3]; 3], [&'a [(usize, f64)]; 3], usize);
 
 impl<const D: usize> Surface<D> {
-    /// What is known beside the core of a surface in space; none in the plane.
+    /// Data beside the core of a surface in space; none in the plane.
     pub fn space(&self) -> Option<&Space<D>> {
         self.space.as_deref()
     }

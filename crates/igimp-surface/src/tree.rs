@@ -6,7 +6,7 @@ const LEAVES: usize = 4;
 /// Two facets are as near as each other if their distances differ by no more than this share \[-\].
 const TIE: f64 = 1e-6;
 
-/// A tree of boxes around facets. What it finds does not depend on how it is built.
+/// A tree of boxes around facets. Its result does not depend on how it is built.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tree<const D: usize> {
     /// The facets, those of a group next to each other.

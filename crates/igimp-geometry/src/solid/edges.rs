@@ -65,8 +65,10 @@ fn of_prism(prism: &Prism) -> Vec<Vec<Point>> {
         let corners = prism.polygon.iter().chain(prism.polygon.first());
         corners.map(|&at| placed(at, prism.axis, along)).collect()
     };
-    let sides = turns(&prism.polygon).map(|at| prism.between.map(|along| placed(at, prism.axis, along)));
-    prism.between
+    let sides =
+        turns(&prism.polygon).map(|at| prism.between.map(|along| placed(at, prism.axis, along)));
+    prism
+        .between
         .map(end)
         .into_iter()
         .chain(sides.map(Vec::from))
@@ -231,7 +233,10 @@ fn rims(of: &Solid, prism: &Prism, size: f64) -> Vec<Vec<Point>> {
     let places = parts(&outline, PART * size);
     let rim = |pick: fn(f64, f64) -> f64| {
         let level = |place: &Point| {
-            let levels = of.crossings(place).into_iter().map(|crossing| crossing.level);
+            let levels = of
+                .crossings(place)
+                .into_iter()
+                .map(|crossing| crossing.level);
             let level = levels.reduce(pick)?;
             (inside.contains(&level)).then_some([place[0], place[1], level])
         };

@@ -66,7 +66,7 @@ impl Demand {
         self.target.max(self.tolerance)
     }
 
-    /// The error of an iteration that ended above it. What factors would take stays open.
+    /// The error of an iteration that ended above it. The memory of factors stays open.
     fn missed(&self, iterations: usize, relative_residual: f64) -> LinearSolverError {
         LinearSolverError::NotConverged {
             iterations,

@@ -213,7 +213,9 @@ impl Engine {
         self.factored = Some(Factorisation::Lu);
         if suspect.is_some() {
             let unknowns = matrix.pattern.unknowns();
-            let probed = probe(unknowns, suspect, |rhs, x| self.solve_factored(matrix, rhs, x));
+            let probed = probe(unknowns, suspect, |rhs, x| {
+                self.solve_factored(matrix, rhs, x)
+            });
             if let Err(cause) = probed {
                 self.factored = None;
                 self.fall_back(matrix, cause)?;

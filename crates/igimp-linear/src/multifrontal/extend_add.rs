@@ -1,8 +1,8 @@
 //! Adding what a child contributes to the front of its parent, stretch by stretch.
 //!
 //! I. S. Duff & J. K. Reid, *The multifrontal solution of indefinite sparse symmetric linear
-//! systems*, ACM Trans. Math. Softw. 9 (1983). What falls on the pivots of the parent is added to its factors at
-//! once; only what falls on its border waits for it.
+//! systems*, ACM Trans. Math. Softw. 9 (1983). Entries at the pivots of the parent are added to its factors at
+//! once; only entries at its border wait for it.
 
 use std::ops::Range;
 
@@ -96,8 +96,8 @@ pub(super) struct Waiting<'a, T> {
 }
 
 impl<T: Scalar> Waiting<'_, T> {
-    /// Adds what is in some columns of the parent's border, from their diagonal on, to a tile of them whose rows begin with
-    /// the first column. What waits is a [`triangle`].
+    /// Adds entries of some columns of the parent's border, from their diagonal on, to a tile of them whose rows begin with
+    /// the first column. Waiting entries are a [`triangle`].
     pub(super) fn add_lower(&self, tile: &mut [T], height: usize, columns: &Range<usize>) {
         let rows = self.map.rows - self.map.taken;
         let stretches = self.map.in_border();
@@ -113,7 +113,7 @@ impl<T: Scalar> Waiting<'_, T> {
         }
     }
 
-    /// The same with all rows from `first_row` on of the parent's border. What waits is a square.
+    /// The same with all rows from `first_row` on of the parent's border. Waiting entries are a square.
     pub(super) fn add_square(
         &self,
         tile: &mut [T],
@@ -135,7 +135,7 @@ impl<T: Scalar> Waiting<'_, T> {
         }
     }
 
-    /// Adds the columns from `first_column` on of some rows of the parent's border, transposed. What waits is a square.
+    /// Adds the columns from `first_column` on of some rows of the parent's border, transposed. Waiting entries are a square.
     pub(super) fn add_transposed(
         &self,
         tile: &mut [T],

@@ -273,9 +273,7 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
                 plan.locate(front, &mut tools.local);
                 self.kernel.load(plan, front, panel, &tools.local);
             }
-            let found = self
-                .kernel
-                .eliminate(plan, front, panel, swaps, false)?;
+            let found = self.kernel.eliminate(plan, front, panel, swaps, false)?;
             record.add(&found);
             let index = task.fronts.start + number;
             if index + 1 == task.fronts.end {

@@ -147,7 +147,13 @@ impl<S: Substitution<T>, T: Scalar> Job<'_, S, T> {
             values = later;
             let exchanges = &self.factors.exchanges[front.first..front.end()];
             let product = &mut border[..front.border];
-            S::forward(factors, exchanges, part.pivots(front), product, task.is_large());
+            S::forward(
+                factors,
+                exchanges,
+                part.pivots(front),
+                product,
+                task.is_large(),
+            );
             part.add(self.plan, front, product);
         }
         self.scratch.give_back(tools);

@@ -1,6 +1,6 @@
 //! Soil and the water in it: a preconditioner by blocks (theory, eq. 104a).
 //!
-//! The displacement of drained soil and the pressure of water each have a multigrid of their own. What soil gives way
+//! The displacement of drained soil and the pressure of water each have a multigrid of their own. The way that soil gives
 //! under a pressure stands for the elimination of displacement, at each node alone: the diagonal of Bᵀ D⁻¹ B, with the coupling
 //! B and the diagonal D of the stiffness (P. Benzi, G. H. Golub and J. Liesen, *Numerical solution of saddle point problems*,
 //! Acta Numerica 14 (2005), section 10).
@@ -192,7 +192,8 @@ impl Coupled {
         let stiffness = self.soil.diagonal();
         for link in &mut self.couplings {
             link.value = matrix.values[link.entry as usize];
-            let gives = GIVES * link.value * link.value / stiffness[link.displacement as usize].abs();
+            let gives =
+                GIVES * link.value * link.value / stiffness[link.displacement as usize].abs();
             if gives.is_finite() {
                 let place = self.water.on_diagonal[link.pressure as usize];
                 self.water.matrix.values[place as usize] += gives;
@@ -223,7 +224,8 @@ impl Coupled {
             *residual = -*residual;
         }
         for link in &*couplings {
-            water_residual[link.pressure as usize] += link.value * moved[link.displacement as usize];
+            water_residual[link.pressure as usize] +=
+                link.value * moved[link.displacement as usize];
         }
         of_water.apply(&water.matrix, water_residual, pressed);
         soil.put(moved, z);

@@ -52,7 +52,15 @@ pub(super) fn product<const B: usize>(
             for node in nodes {
                 let (entries, later) = part.split_at_mut(B * B * coarse.of(node).len());
                 part = later;
-                row::<B>(transfer, fine, values, coarse.of(node), node, scratch, entries);
+                row::<B>(
+                    transfer,
+                    fine,
+                    values,
+                    coarse.of(node),
+                    node,
+                    scratch,
+                    entries,
+                );
             }
         });
 }

@@ -169,7 +169,7 @@ pub(super) fn residual<const B: usize>(
     );
 }
 
-/// What [`residual`] does for some nodes.
+/// The work of [`residual`] for some nodes.
 struct Residual<'a, const B: usize> {
     couplings: &'a Couplings,
     values: &'a [f32],

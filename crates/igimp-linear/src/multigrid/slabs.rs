@@ -99,7 +99,8 @@ impl Slabs {
             }
         }
         // Slab k of one colour lies between k − 1 and k of the other, or k and k + 1.
-        slabs.into_par_iter()
+        slabs
+            .into_par_iter()
             .enumerate()
             .for_each(|(k, (slab, before, part))| {
                 let nothing = (0, &[][..]);

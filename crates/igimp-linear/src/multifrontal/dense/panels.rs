@@ -140,7 +140,7 @@ pub(crate) fn solve_lower<T: Scalar>(layout: Layout, block: &[T], unit: bool, y:
     });
 }
 
-/// What [`solve_lower`] does.
+/// The work of [`solve_lower`].
 struct Lower<'a, T> {
     layout: Layout,
     block: &'a [T],
@@ -186,7 +186,7 @@ pub(crate) fn solve_lower_transposed<T: Scalar>(layout: Layout, block: &[T], y: 
     Arch::new().dispatch(LowerTransposed { layout, block, y });
 }
 
-/// What [`solve_lower_transposed`] does.
+/// The work of [`solve_lower_transposed`].
 struct LowerTransposed<'a, T> {
     layout: Layout,
     block: &'a [T],
@@ -221,7 +221,7 @@ pub(crate) fn solve_upper<T: Scalar>(block: &[T], y: &mut [T]) {
     Arch::new().dispatch(Upper { block, y });
 }
 
-/// What [`solve_upper`] does.
+/// The work of [`solve_upper`].
 struct Upper<'a, T> {
     block: &'a [T],
     y: &'a mut [T],

@@ -24,7 +24,7 @@ pub(crate) struct Task {
     pub(crate) total: Extent,
     /// The share of this task.
     pub(crate) extent: Extent,
-    /// Room for what waits within the task, by shape and stack.
+    /// Room for contributions that wait within the task, by shape and stack.
     pub(crate) stacks: [[usize; 2]; 2],
     /// Unknowns of the border of the last front that its parent passes on.
     passed_on: usize,
