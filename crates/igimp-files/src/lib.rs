@@ -22,7 +22,7 @@ use igimp_schema::tree::Node;
 
 pub use named::text_of;
 
-/// Puts what files hold into the tree of the case file of this name; relative names start at the folder of the case.
+/// Puts the data of files into the tree of the case file of this name; relative names start at the folder of the case.
 ///
 /// Files that cannot be used are listed among the problems, each at the place of its name in the case file.
 pub fn read(tree: &mut Node, case: &Path, problems: &mut Problems) {

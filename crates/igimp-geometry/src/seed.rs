@@ -122,7 +122,7 @@ fn part(clipped: &[[f64; 2]]) -> Part<2> {
     }
 }
 
-/// Particles, and what belongs to parts with the particle that each went to.
+/// Particles, and the data of parts with the particle that each went to.
 type Filled<const D: usize, K> = (Vec<ParticleSeed<D>>, Vec<(usize, K)>);
 
 /// The parts of the cells around a region.

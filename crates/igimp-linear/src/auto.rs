@@ -1,4 +1,4 @@
-//! The default: a direct method or an iteration, by what the matrix asks for.
+//! The default: a direct method or an iteration, as the matrix demands.
 //!
 //! In the plane, and for small systems, a factorisation: Cholesky for symmetric matrices, LU for the others. In space its
 //! operations grow with the square of the number of unknowns, those of an iteration with multigrid little more than with the
@@ -231,7 +231,7 @@ impl AutoSolver {
         self.factorise(matrix)
     }
 
-    /// The residual that an iteration of at most so many steps must reach. More is needed where less is accepted of factors.
+    /// The demand on an iteration of at most so many steps; stricter where more is asked for than factors are held to.
     fn demand(&self, most: usize, may_fall_back: bool) -> Demand {
         let usual = self.engine.accuracy.tolerance;
         let (tolerance, patience) = if may_fall_back || self.asked < usual {
@@ -247,7 +247,7 @@ impl AutoSolver {
         }
     }
 
-    /// An error with what factors would take, if an iteration did not converge that they have no room beside.
+    /// An error with the memory that factors would take, if an iteration did not converge that they have no room beside.
     fn without_room(&self, error: LinearSolverError, matrix: &TangentMatrix) -> LinearSolverError {
         match error {
             LinearSolverError::NotConverged {
@@ -277,7 +277,7 @@ impl AutoSolver {
         self.factorise(matrix)
     }
 
-    /// Factorises by what suits the matrix.
+    /// Factorises by the method that suits the matrix.
     fn factorise(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
         self.state = State::Nothing;
         let factorised = if matrix.symmetric {

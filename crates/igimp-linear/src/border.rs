@@ -1,7 +1,7 @@
 //! The rows and columns of the tangent that belong to rigid bodies, and to a load factor that is unknown: few and
 //! long, so they stay out of the sparse matrix.
 
-/// The border of a tangent matrix: what couples the unknowns of rigid bodies, and a load factor that is unknown, to
+/// The border of a tangent matrix: the coupling of the unknowns of rigid bodies, and a load factor that is unknown, to
 /// those of the grid and to one another.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Border {

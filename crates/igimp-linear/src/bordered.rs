@@ -11,13 +11,13 @@ const OF_ELIMINATION: f64 = 1e-10;
 /// A pivot of a border that is no larger than this share of its largest entry is none: no digit is left of it \[-\].
 const NO_PIVOT: f64 = 1e-14;
 
-/// The same where the solution came out wrong: what is left is the error of the systems by which the border is eliminated \[-\].
+/// The same where the solution came out wrong: the residual is the error of the systems by which the border is eliminated \[-\].
 const HARDLY_A_PIVOT: f64 = 10.0 * OF_ELIMINATION;
 
 /// An exact or approximate solver for the unknowns of the grid: the second vector from the first.
 pub(super) type Inverse<'a> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), LinearSolverError> + 'a;
 
-/// The Schur complement of the unknowns of a border, S = K_bb − K_bg K_gg⁻¹ K_gb, with what it is made of. With a
+/// The Schur complement of the unknowns of a border, S = K_bb − K_bg K_gg⁻¹ K_gb, with its parts. With a
 /// preconditioner for K_gg⁻¹ it makes one for all unknowns, which meets the equations of the border.
 #[derive(Debug)]
 pub(super) struct Elimination {
@@ -103,7 +103,7 @@ impl Bordered {
         self.elimination.as_ref()?.free_direction()
     }
 
-    /// Solves for all unknowns: those of the grid first, those of the border behind them. What a solver does not iterate
+    /// Solves for all unknowns: those of the grid first, those of the border behind them. A border that a solver does not iterate
     /// for at once is eliminated. As for the grid alone, such a solution is checked against the whole matrix, and
     /// refined once where that helps.
     ///

@@ -92,7 +92,7 @@ pub fn pieces<const D: usize>(
     pieces
 }
 
-/// The area of what belongs to each knot \[length²\], as far as it lies within the grid: on a plane of symmetry half
+/// The area of each knot \[length²\], as far as it lies within the grid: on a plane of symmetry half
 /// of a knot has no soil.
 pub fn tents_within<const D: usize>(
     body: &RigidBody<D>,

@@ -81,7 +81,7 @@ impl<const D: usize> Images<D> {
         self.of[knot]
     }
 
-    /// The shares of the knots, with those of those beyond a side added to their images.
+    /// The shares of the knots, those beyond a side added to their images.
     pub fn folded(&self, values: &[f64]) -> Vec<f64> {
         let mut folded = vec![0.0; values.len()];
         for (image, value) in std::iter::zip(&self.of, values) {

@@ -68,7 +68,7 @@ pub struct KnotContact<const D: usize> {
     pub young: f64,
     /// Adhesion of the soil that touches \[stress\].
     pub adhesion: f64,
-    /// Opening of the mean gap, by what is linear in the rotation of the body.
+    /// Opening of the mean gap, by the part linear in the rotation of the body.
     pub opening: Functional<D>,
     /// Slip of the soil along the tangents, likewise.
     pub slip: [Functional<D>; 2],
@@ -125,7 +125,7 @@ impl<const D: usize> KnotContact<D> {
     }
 
     /// Takes over the gap that is `measured` of soil that came in the place of other \[length\], by the share of a cell that slid by in the last
-    /// step (theory, eq. 50a); in steps that take time the gap only grows by it. Slip of then is on its limit still.
+    /// step (theory, eq. 50a); in steps that take time the gap only grows by it. Its slip then is on the limit still.
     pub fn take_soil_that_came(
         &mut self,
         (measured, takes_time): (f64, bool),

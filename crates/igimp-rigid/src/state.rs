@@ -23,7 +23,7 @@ pub struct ContactNode {
     pub pressure: f64,
     /// Shear on the soil along the tangents of the surface; one component in the plane \[stress\].
     pub shear: [f64; 2],
-    /// Area that soil covers of what belongs to the knot \[length^(D-1)\].
+    /// Area of the knot that soil covers \[length^(D-1)\].
     pub area: f64,
     /// Mean gap, summed over the motion of the soil since it came near; negative in penetration
     /// \[length\].

@@ -1,18 +1,18 @@
-//! The turn of a rigid body in a step, and what it makes of arms about the reference point (theory, eqs. 48a, 48c and 67b).
+//! The turn of a rigid body in a step, and its effect on arms about the reference point (theory, eqs. 48a, 48c and 67b).
 
 use crate::rotations;
 
 /// From this angle on closed forms keep their digits; below it series do \[rad\].
 const SMALL: f64 = 1e-2;
 
-/// The rotation R of a body over a step, from what its node has of it in lengths.
+/// The rotation R of a body over a step, from the rotation of its node in lengths.
 ///
 /// Arms r of forces f are handed over as their sum Σ r fᵀ, first the component of the arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turn<const D: usize> {
     /// R − 1 by columns.
     ways: [[f64; D]; D],
-    /// R − 1 less what is linear in the rotation, by columns.
+    /// R − 1 less the part linear in the rotation, by columns.
     beyond: [[f64; D]; D],
     /// T − 1 by columns: as the vector of rotation changes by dφ the body turns by T dφ. None in the plane.
     means: [[f64; D]; D],
@@ -36,14 +36,14 @@ impl<const D: usize> Turn<D> {
         }
     }
 
-    /// Σ f · (R − 1 − φ×) r of forces at arms: the work beyond that of what is linear in the rotation.
+    /// Σ f · (R − 1 − φ×) r of forces at arms: the work beyond that of the part linear in the rotation.
     pub fn work_beyond(&self, arms: &[[f64; D]; D]) -> f64 {
         let rows = std::iter::zip(&self.beyond, arms);
         rows.map(|(way, force)| std::iter::zip(way, force).map(|(w, f)| w * f).sum::<f64>())
             .sum()
     }
 
-    /// Σ (R − 1) r × f of forces at arms, over the size of the body: what the turn adds to their moment \[force\].
+    /// Σ (R − 1) r × f of forces at arms, over the size of the body: the moment that the turn adds \[force\].
     pub fn moment_beyond(&self, arms: &[[f64; D]; D]) -> [f64; D] {
         moment(&turned(&self.ways, arms), self.size)
     }
@@ -68,7 +68,7 @@ impl<const D: usize> Turn<D> {
         self.by_vector(&by_turn(&now, self.size))
     }
 
-    /// How what changes so much by a turn of the body changes by its vector of rotation: times T.
+    /// A derivative by the turn of the body as one by its vector of rotation: times T.
     pub(crate) fn by_vector(&self, by_turn: &[[f64; D]; D]) -> [[f64; D]; D] {
         let entry = |row: &[f64; D], k: usize| -> f64 {
             let pairs = std::iter::zip(row, &self.means[k]);

@@ -41,7 +41,7 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    /// Takes all motion from what moves, as before a march in statics, and with it what stands in free field.
+    /// Takes all motion from the body, as before a march in statics, and with it the free fields.
     pub fn rest(&mut self) {
         self.free_fields.clear();
         self.particles.rest();

@@ -245,7 +245,7 @@ const FALLEN: f64 = 1e-3;
 /// Steps between the equilibria beside the largest factor, where it is resolved.
 const STEPS_OF_PEAK: f64 = 16.0;
 
-/// The largest factor of a path so far, and what it takes to follow the path there once more.
+/// The largest factor of a path so far, and the data to follow the path there once more.
 struct Peak<const D: usize> {
     largest: f64,
     /// The equilibrium before the last step.

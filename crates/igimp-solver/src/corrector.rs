@@ -334,7 +334,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         })
     }
 
-    /// Adds what `du` holds to `u`, and to the load factor where it is unknown.
+    /// Adds `du` to `u`, and to the load factor where it is unknown.
     fn add_correction(&mut self, u: &mut [[f64; D]]) -> Result<(), AssemblyError> {
         self.system.add_correction(u, self.du);
         if let (Some(factor), Some(by)) = (&mut self.factor, self.du.last()) {
@@ -501,10 +501,10 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
     }
 }
 
-/// Names for what fails.
+/// Names of failures.
 impl<const D: usize> Corrector<'_, '_, D> {
-    /// The failure of the linear solver at `u` with a name for what is not finite: the particle whose
-    /// tangent it is, or the node.
+    /// The failure of the linear solver at `u` that names the particle whose tangent is not finite,
+    /// or the node.
     fn named(&self, error: LinearSolverError, u: &[[f64; D]]) -> StepFailure {
         match error {
             LinearSolverError::NonFinite {

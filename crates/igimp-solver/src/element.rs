@@ -43,7 +43,7 @@ pub enum Control {
     AsXx,
 }
 
-/// A path: what is prescribed, and its values at the ends of legs. The first leg begins at the initial state.
+/// A path: the controls, and their values at the ends of legs. The first leg begins at the initial state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElementPath {
     /// The control of xx, yy, zz and xy.
@@ -219,7 +219,7 @@ impl ElementTest {
         })
     }
 
-    /// The values of what is prescribed at the start.
+    /// The prescribed values at the start.
     fn begin(&self, state: &ElementState) -> [f64; COMPONENTS] {
         std::array::from_fn(|c| match self.path.controls[c] {
             Control::Stress => state.stress(c),
@@ -236,7 +236,7 @@ impl ElementTest {
     }
 }
 
-/// Takes a step in as many parts as it needs; else how far it came, and what the law said.
+/// Takes a step in as many parts as it needs; else how far it came, and the error of the law.
 fn follow(
     law: &dyn ConstitutiveModel,
     (point, controls): (&mut Point, [Control; COMPONENTS]),

@@ -13,7 +13,7 @@ const DIFFERENCE: f64 = 1e-6;
 /// Largest change of the load factor in one correction, as a share of it \[-\].
 const LARGEST_CHANGE: f64 = 0.2;
 
-/// Work that a converged step may miss, as a share of what was asked for \[-\].
+/// Work that a converged step may miss, as a share of the work asked for \[-\].
 const WORK_MISSED: f64 = 1e-6;
 
 /// The doubt that a converged residual may leave in the load factor, as a share of it, in general and where corrections are

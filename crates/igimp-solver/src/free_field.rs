@@ -232,7 +232,7 @@ impl<const D: usize> FreeField<D> {
     }
 }
 
-/// The free fields of a body after a step, and the conditions of that step with what it does there; none for a body
+/// The free fields of a body after a step, and the conditions of that step with their motion there; none for a body
 /// without free fields, and in statics.
 ///
 /// # Errors

@@ -531,7 +531,7 @@ impl<const D: usize> Changes<D> {
     }
 }
 
-/// The start of a step, and what is prescribed of its motion carried through the body.
+/// The start of a step, and its prescribed motion carried through the body.
 fn begin<const D: usize>(
     corrector: &mut Corrector<'_, '_, D>,
     u: &mut Vec<[f64; D]>,

@@ -1,5 +1,5 @@
 //! How long the next step of a motion may be (theory, eqs. 68 to 68d): by the error of the time integration, by how far the body moves,
-//! by what contact changes, and by how hard equilibrium was to find; where water flows by the error of its pressures alone (eq. 104), and as
+//! by changes of contact, and by how hard equilibrium was to find; where water flows by the error of its pressures alone (eq. 104), and as
 //! long as they may be where a stage takes time and no water is there to flow.
 
 use igimp_assembly::{ContactChange, Drive, RigidMotion, System, Trial};

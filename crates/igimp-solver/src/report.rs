@@ -232,7 +232,7 @@ impl StepFailure {
 /// A step whose work is dissipated by this share moves the body as a mechanism \[-\].
 pub const MECHANISM: f64 = 0.99;
 
-/// A step that was not accepted, with what is known of it.
+/// A step that was not accepted, with its data.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("no equilibrium between load factors {from} and {to}")]
 pub struct StepError {

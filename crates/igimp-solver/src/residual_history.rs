@@ -88,7 +88,7 @@ impl ResidualHistory {
 /// When a correction went too far.
 impl ResidualHistory {
     /// Whether the residual after a correction is more than `growth` times that before it: the consistent
-    /// tangent told little of the way there, as where many particles change their regime at once. The
+    /// tangent said little of the way there, as where many particles change their regime at once. The
     /// first correction, which the elastic tangent makes, may raise it.
     pub(crate) fn overshoots(&self, residual: &OutOfBalance, growth: f64) -> bool {
         match self.residuals[..] {

@@ -150,8 +150,8 @@ impl<const D: usize> Increment<'_, D> {
         Ok(system.sharing(pattern))
     }
 
-    /// What keeps equilibrium at no work of the external force after each change of the out-of-balance force: by how much the
-    /// load factor answers, with the column and the row that it has beside the tangent of the step; where that is singular with a
+    /// By how much the load factor answers each change of the out-of-balance force, at no work of the external force: with the
+    /// column and the row that it has beside the tangent of the step; where that is singular with a
     /// share of the elastic tangent.
     fn answers(
         &self,

@@ -243,7 +243,7 @@ impl<const D: usize> Surface<D> {
         edges.fold(0.0, f64::max)
     }
 
-    /// In the plane the length of what belongs to each knot \[length\].
+    /// In the plane the length of each knot's share \[length\].
     pub fn tents(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.knot_count()];
         for facet in &self.facets {

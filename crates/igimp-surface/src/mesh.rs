@@ -203,7 +203,7 @@ impl Surface<3> {
     }
 }
 
-/// The outline of a prism, and what a rounding leaves of it.
+/// The outline of a prism, and its core within a rounding.
 struct Outline<'c> {
     corners: &'c [[f64; 2]],
     rounding: f64,

@@ -183,7 +183,7 @@ fn along(height: &Height, p: [f64; 2], q: [f64; 2]) -> Vec<Point> {
     shares.into_iter().filter_map(place).collect()
 }
 
-/// The edges of a solid and of what is cut out of it, as far as they bound what is left, and the lines in which upright sides
+/// The edges of a solid and of its cuts, as far as they bound the rest, and the lines in which upright sides
 /// of a cut meet the top and the underside of the solid.
 fn of_difference(difference: &Difference) -> Vec<Vec<Point>> {
     let (lower, upper) = difference.bounds();

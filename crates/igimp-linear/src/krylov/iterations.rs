@@ -97,7 +97,7 @@ struct Direction {
 }
 
 impl Direction {
-    /// Takes a direction over and leaves what is kept of it.
+    /// Takes a direction over and leaves its kept part.
     fn rounded(z: &mut [f64]) -> Self {
         let largest = z.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
         let scale = if largest > 0.0 { largest } else { 1.0 };

@@ -13,7 +13,7 @@
 //! *Symmetric quasidefinite matrices*, SIAM Journal on Optimization 5, 1995). A column of L has the sign of its pivot on the
 //! diagonal, and J is stored nowhere else.
 //!
-//! A keeps the room of a [`Layout`]; what is above its diagonal is never read. Of C only the lower half is worked out,
+//! A keeps the room of a [`Layout`]; entries above its diagonal are never read. Of C only the lower half is worked out,
 //! a few columns at a time, and never stored as a whole.
 
 use std::ops::Range;
@@ -220,7 +220,7 @@ impl<T: Scalar> Work<'_, T> {
         self.tile(columns, &mut target, &mut tile);
     }
 
-    /// Works out some columns from the diagonal on, adds them to the parent, and keeps what waits.
+    /// Works out some columns from the diagonal on, adds them to the parent, and keeps the waiting entries.
     fn tile(&self, columns: &Range<usize>, target: &mut Target<'_, T>, tile: &mut [T]) {
         let map = self.contribution.map;
         let height = map.rows - columns.start;

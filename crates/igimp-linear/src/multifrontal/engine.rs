@@ -25,7 +25,7 @@ const FALLBACK_UNKNOWNS: usize = 50_000;
 const SUSPICIOUS_GROWTH: f64 = 1e6;
 
 /// Relative residual beyond which a solution is refined in any case \[-\]: one pass more costs little beside
-/// the factorisation, and Newton's method does not have to come back for what it leaves.
+/// the factorisation, and Newton's method does not have to come back for its error.
 const REFINED: f64 = 1e-9;
 
 /// Plan and factors of one matrix after the other.

@@ -1,4 +1,4 @@
-//! Adding what a child contributes to the front of its parent, stretch by stretch.
+//! Adding the contribution of a child to the front of its parent, stretch by stretch.
 //!
 //! I. S. Duff & J. K. Reid, *The multifrontal solution of indefinite sparse symmetric linear
 //! systems*, ACM Trans. Math. Softw. 9 (1983). Entries at the pivots of the parent are added to its factors at
@@ -177,7 +177,7 @@ fn within(
         })
 }
 
-/// A part of the factors of a parent that some columns of its child are added to, and of what the child leaves.
+/// A part of the factors of a parent that some columns of its child are added to, and of the waiting entries of the child.
 pub(super) struct Target<'a, T> {
     pub(super) layout: Layout,
     /// First pivot of the part.

@@ -30,7 +30,7 @@ struct Done<T> {
     record: PivotRecord,
 }
 
-/// The front that the tasks below it contribute to, and what waits for it.
+/// The front that the tasks below it contribute to, and contributions that wait for it.
 struct Above<'a, T> {
     front: &'a Front,
     factors: &'a mut [T],
@@ -100,7 +100,7 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
         }
     }
 
-    /// The same, and adds what they contribute to the front above them, in their order: those on the left as soon as
+    /// The same, and adds their contributions to the front above them, in their order: those on the left as soon as
     /// they are done.
     fn tasks_below(
         &self,
@@ -135,7 +135,7 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
         }
     }
 
-    /// Adds what a task contributes to the front above; the threads share the work.
+    /// Adds the contribution of a task to the front above; the threads share the work.
     fn pass_on(
         &self,
         task: &Task,
@@ -169,7 +169,7 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
         Ok(done.record)
     }
 
-    /// Works out what a front contributes to its parent.
+    /// Works out the contribution of a front to its parent.
     fn contribute<'b>(
         &self,
         front: &Front,

@@ -1,7 +1,7 @@
 //! Solving with the factors, over the tree of tasks.
 //!
-//! What a task changes in the part of the vector that belongs to the tasks above it, it keeps apart
-//! until they add it up in their order; the bits of the solution do not depend on the number of
+//! Changes that a task makes in the part of the vector that belongs to the tasks above it are kept apart
+//! until these add them up in their order; the bits of the solution do not depend on the number of
 //! threads.
 
 use super::super::LinearSolverError;

@@ -158,7 +158,7 @@ impl BoundaryNodes {
         }
     }
 
-    /// Solves for the skin with what is left of its rows; the matrix is symmetric.
+    /// Solves for the skin with the residual of its rows; the matrix is symmetric.
     pub(crate) fn after(&mut self, matrix: &TangentMatrix, r: &[f64], z: &mut [f64]) {
         self.rhs.clear();
         let pattern = &*matrix.pattern;

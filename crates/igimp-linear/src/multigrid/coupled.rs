@@ -205,7 +205,7 @@ impl Coupled {
         }
     }
 
-    /// z ← P⁻¹ r: displacement of soil without water, and pressure of what is left.
+    /// z ← P⁻¹ r: displacement of soil without water, and pressure of the residual.
     pub(super) fn apply(&mut self, r: &[f64], z: &mut [f64]) {
         let Self {
             soil,

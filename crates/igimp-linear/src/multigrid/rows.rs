@@ -1,4 +1,4 @@
-//! Matrices by rows of nodes, in single precision: what a preconditioner reads.
+//! Matrices by rows of nodes, in single precision, as a preconditioner reads them.
 //!
 //! Every node has B components, those without an unknown among them: their rows and columns are zero. The
 //! entries of a node are B rows, one after the other, each with B entries for every node that it is coupled
@@ -60,7 +60,7 @@ impl Couplings {
     }
 }
 
-/// Calls `work` with runs of nodes and what is stored for them, on several threads; `first` says where the part of
+/// Calls `work` with runs of nodes and the values stored for them, on several threads; `first` says where the part of
 /// a node begins.
 pub(super) fn each_chunk<T: Send>(
     nodes: usize,
@@ -210,7 +210,7 @@ impl<const B: usize> WithSimd for Residual<'_, B> {
 
 /// Partial sums of a product.
 const LANES: usize = 16;
-/// Partial sums of what is left of it.
+/// Partial sums of its rest.
 const FEW: usize = 4;
 /// Nodes whose part of a vector is gathered at once.
 const GATHERED: usize = 64;

@@ -77,7 +77,7 @@ impl Slabs {
         }
     }
 
-    /// Calls `work` for the slabs of one colour with their own parts of what is stored for all nodes, and with
+    /// Calls `work` for the slabs of one colour with their own parts of the values stored for all nodes, and with
     /// the parts of the two neighbours. `first` says where the part of a node begins.
     pub(super) fn each<T: Send + Sync>(
         &self,

@@ -66,8 +66,8 @@ impl Point {
         })
     }
 
-    /// The soil at the end of a step of this length and duration \[time\], with these values of what is prescribed; nothing where no equilibrium was
-    /// found, and what the law said if it refused.
+    /// The soil at the end of a step of this length and duration \[time\], with these prescribed values; nothing where no equilibrium was
+    /// found, and the error of the law if it refused.
     pub(super) fn advanced(
         &self,
         law: &dyn ConstitutiveModel,

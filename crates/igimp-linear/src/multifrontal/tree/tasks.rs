@@ -1,7 +1,7 @@
 //! The elimination tree cut into tasks: subtrees, and above them the large fronts one by one.
 //!
 //! Where the tree is cut depends on the plan only and never on the number of threads, and every
-//! front adds up what its children contribute in their order: the bits of the result do not depend
+//! front adds up the contributions of its children in their order: the bits of the result do not depend
 //! on how many threads work on the tasks.
 
 use std::ops::Range;
@@ -149,7 +149,7 @@ impl Cutter<'_> {
         }
     }
 
-    /// Places what waits of all fronts of a task but the last, whose contribution leaves it; returns the
+    /// Places the waiting contributions of all fronts of a task but the last, whose contribution leaves it; returns the
     /// largest fill of both stacks, by shape.
     fn place_contributions(&mut self, fronts: &Range<usize>) -> [[usize; 2]; 2] {
         [Shape::Square, Shape::Triangle].map(|shape| {
