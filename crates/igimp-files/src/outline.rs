@@ -128,7 +128,7 @@ fn other_unit(unit: &str, header: &str) -> Trouble {
     )
 }
 
-/// The corners that a file has, and the remarks on them.
+/// The corners that a file has, and a note on them.
 fn points(
     file: &Named,
     table: &Node,

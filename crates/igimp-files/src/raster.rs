@@ -94,9 +94,7 @@ fn points(file: &Named, table: &Node, key: &str) -> Result<Vec<Entry>, Trouble> 
         let items = items.collect::<Result<Vec<_>, _>>()?;
         Ok(Node::written(Value::List(items), table.place))
     };
-    let of_values = of_values
-        .as_ref()
-        .map(|(unit, dimension)| (unit.as_str(), *dimension));
+    let of_values = of_values.as_ref().map(|(unit, d)| (unit.as_str(), *d));
     let rows = rows.iter().map(|row| list(row, of_values));
     let rows = rows.collect::<Result<Vec<_>, _>>()?;
     let entry = |key: &str, node| Entry {

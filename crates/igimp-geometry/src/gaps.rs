@@ -21,9 +21,7 @@ const MOST: usize = 200_000;
 /// A gap narrower than a cell that reaches over the next cells, too, in both directions along it: the foot of a valley does not.
 /// None where there are too many cells to look.
 pub fn narrow(regions: &[&dyn Region<3>], lines: &[Vec<f64>; 3]) -> Option<Gap> {
-    let counts = lines
-        .each_ref()
-        .map(|places| places.len().saturating_sub(1));
+    let counts = lines.each_ref().map(|axis| axis.len().saturating_sub(1));
     let cell = |k: usize| {
         let (row, z) = (k % (counts[0] * counts[1]), k / (counts[0] * counts[1]));
         [row % counts[0], row / counts[0], z]
@@ -52,7 +50,7 @@ pub fn narrow(regions: &[&dyn Region<3>], lines: &[Vec<f64>; 3]) -> Option<Gap> 
         let found: Vec<([usize; 3], Gap)> = cut.iter().filter_map(across).collect();
         let has = |at: [usize; 3]| {
             found
-                .binary_search_by_key(&key(at), |entry| key(entry.0))
+                .binary_search_by_key(&key(at), |gap| key(gap.0))
                 .is_ok()
         };
         let goes_on = |at: &[usize; 3], along: usize| {
@@ -65,10 +63,9 @@ pub fn narrow(regions: &[&dyn Region<3>], lines: &[Vec<f64>; 3]) -> Option<Gap> 
             };
             counts[along] == 1 || beside(|k| k.checked_sub(1)) || beside(|k| Some(k + 1))
         };
-        let is_sheet = |entry: &&([usize; 3], Gap)| {
-            (0..3).all(|along| along == axis || goes_on(&entry.0, along))
-        };
-        found.iter().find(is_sheet).map(|entry| entry.1)
+        let is_sheet =
+            |gap: &&([usize; 3], Gap)| (0..3).all(|along| along == axis || goes_on(&gap.0, along));
+        found.iter().find(is_sheet).map(|gap| gap.1)
     })
 }
 

@@ -99,10 +99,7 @@ pub trait Region<const D: usize>: Debug + Send + Sync {
 
     /// The level of its highest point on the upright line through a place \[length\], if the line meets it.
     fn top(&self, place: &[f64; D]) -> Option<f64> {
-        let levels = self
-            .crossings(place)
-            .into_iter()
-            .map(|crossing| crossing.level);
+        let levels = self.crossings(place).into_iter().map(|hit| hit.level);
         levels.reduce(f64::max)
     }
 

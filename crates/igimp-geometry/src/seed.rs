@@ -155,13 +155,8 @@ impl<const D: usize> Parts<D> {
         let first = grid.cell_at(&lower).unwrap_or([0; D]);
         let last = grid.cell_at(&upper).unwrap_or(last_of_all);
         let cells = std::array::from_fn(|axis| {
-            let along = &grid.axes[axis];
-            let cell = |cell| {
-                [
-                    along.nodes()[cell],
-                    along.spacing(cell) / per_direction as f64,
-                ]
-            };
+            let ax = &grid.axes[axis];
+            let cell = |cell| [ax.nodes()[cell], ax.spacing(cell) / per_direction as f64];
             (first[axis]..=last[axis]).map(cell).collect()
         });
         let end = std::array::from_fn(|axis| grid.axes[axis].nodes()[last[axis] + 1]);
@@ -418,19 +413,15 @@ mod tests {
             .map(|piece| area_and_centroid(&piece.polygon).0)
             .sum();
         assert!((area - whole).abs() < 1e-12 * whole);
-        let area_of = |particle: usize| {
-            let parts = pieces
+        let sum = |particle: usize| {
+            let all = pieces
                 .iter()
                 .filter(move |piece| piece.particle == particle);
-            parts
-                .map(|piece| area_and_centroid(&piece.polygon).0)
+            all.map(|piece| area_and_centroid(&piece.polygon).0)
                 .sum::<f64>()
         };
         for (particle, seed) in seeds.iter().enumerate() {
-            assert!(
-                (area_of(particle) - seed.volume).abs() < 1e-12,
-                "{particle}"
-            );
+            assert!((sum(particle) - seed.volume).abs() < 1e-12, "{particle}");
         }
     }
 

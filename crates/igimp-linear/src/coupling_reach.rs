@@ -57,9 +57,8 @@ impl Reach {
         let first = self
             .far
             .partition_point(|&(from, _)| (from as usize) < block);
-        let pairs = self.far[first..].iter();
-        pairs
-            .take_while(move |&&(from, _)| from as usize == block)
+        let far = self.far[first..].iter();
+        far.take_while(move |&&(from, _)| from as usize == block)
             .map(|&(_, to)| to as usize)
     }
 

@@ -297,10 +297,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
             let Err(error) = self.solve_system(force) else {
                 break;
             };
-            let moves_as_mechanism = self
-                .factor
-                .as_ref()
-                .is_some_and(|factor| factor.is_mechanism);
+            let moves_as_mechanism = self.factor.as_ref().is_some_and(|free| free.is_mechanism);
             let is_singular = match error {
                 LinearSolverError::Inaccurate { .. } => moves_as_mechanism,
                 _ => error.is_singular(),

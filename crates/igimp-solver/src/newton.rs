@@ -220,12 +220,7 @@ fn lies_on_nothing<const D: usize>(body: &Body<D>, conditions: &StepConditions<D
 /// Whether a step failed for soil without stiffness: its system was singular, or soil was at the apex of its strength, where
 /// it has none.
 fn has_no_stiffness<const D: usize>(failure: &StepFailure, trial: &Trial<D>) -> bool {
-    let at_apex = || {
-        trial
-            .particles
-            .iter()
-            .any(|state| state.regime == Regime::Apex)
-    };
+    let at_apex = || trial.particles.iter().any(|p| p.regime == Regime::Apex);
     let finds_none = failure.is_want_of_equilibrium() && *failure != StepFailure::MechanismAtOnce;
     failure.is_singular() || finds_none && at_apex()
 }

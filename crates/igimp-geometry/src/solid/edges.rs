@@ -233,10 +233,7 @@ fn rims(of: &Solid, prism: &Prism, size: f64) -> Vec<Vec<Point>> {
     let places = parts(&outline, PART * size);
     let rim = |pick: fn(f64, f64) -> f64| {
         let level = |place: &Point| {
-            let levels = of
-                .crossings(place)
-                .into_iter()
-                .map(|crossing| crossing.level);
+            let levels = of.crossings(place).into_iter().map(|hit| hit.level);
             let level = levels.reduce(pick)?;
             (inside.contains(&level)).then_some([place[0], place[1], level])
         };

@@ -213,9 +213,7 @@ impl Engine {
         self.factored = Some(Factorisation::Lu);
         if suspect.is_some() {
             let unknowns = matrix.pattern.unknowns();
-            let probed = probe(unknowns, suspect, |rhs, x| {
-                self.solve_factored(matrix, rhs, x)
-            });
+            let probed = probe(unknowns, suspect, |rhs, x| self.substitute(matrix, rhs, x));
             if let Err(cause) = probed {
                 self.factored = None;
                 self.fall_back(matrix, cause)?;
@@ -242,10 +240,10 @@ impl Engine {
             Some(Factorisation::General(general)) => return general.solve(matrix, rhs, solution),
             Some(Factorisation::Cholesky | Factorisation::Lu) => {}
         }
-        let mut found = self.solve_factored(matrix, rhs, solution);
+        let mut found = self.substitute(matrix, rhs, solution);
         if self.has_signs() && matches!(found, Err(LinearSolverError::Inaccurate { .. })) {
             self.factor_lu(matrix)?;
-            found = self.solve_factored(matrix, rhs, solution);
+            found = self.substitute(matrix, rhs, solution);
         }
         match found {
             Err(cause) if self.blames_pivots(&cause) => self.fall_back(matrix, cause)?,
@@ -265,7 +263,7 @@ impl Engine {
     }
 
     /// Solves with the factors.
-    fn solve_factored(
+    fn substitute(
         &mut self,
         matrix: &TangentMatrix,
         rhs: &[f64],

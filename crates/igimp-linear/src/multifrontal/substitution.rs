@@ -143,17 +143,11 @@ impl<S: Substitution<T>, T: Scalar> Job<'_, S, T> {
         }
         let mut values = &self.factors.values[Self::first_entry(task, place)..];
         for front in &self.plan.fronts[task.fronts.clone()] {
-            let (factors, later) = values.split_at(S::entries(&front.extent()));
+            let (lu, later) = values.split_at(S::entries(&front.extent()));
             values = later;
             let exchanges = &self.factors.exchanges[front.first..front.end()];
             let product = &mut border[..front.border];
-            S::forward(
-                factors,
-                exchanges,
-                part.pivots(front),
-                product,
-                task.is_large(),
-            );
+            S::forward(lu, exchanges, part.pivots(front), product, task.is_large());
             part.add(self.plan, front, product);
         }
         self.scratch.give_back(tools);

@@ -190,12 +190,11 @@ impl Coupled {
         self.soil.take(&matrix.values, 1.0);
         self.water.take(&matrix.values, -1.0);
         let stiffness = self.soil.diagonal();
-        for link in &mut self.couplings {
-            link.value = matrix.values[link.entry as usize];
-            let gives =
-                GIVES * link.value * link.value / stiffness[link.displacement as usize].abs();
+        for c in &mut self.couplings {
+            c.value = matrix.values[c.entry as usize];
+            let gives = GIVES * c.value * c.value / stiffness[c.displacement as usize].abs();
             if gives.is_finite() {
-                let place = self.water.on_diagonal[link.pressure as usize];
+                let place = self.water.on_diagonal[c.pressure as usize];
                 self.water.matrix.values[place as usize] += gives;
             }
         }
@@ -223,9 +222,8 @@ impl Coupled {
         for residual in &mut *water_residual {
             *residual = -*residual;
         }
-        for link in &*couplings {
-            water_residual[link.pressure as usize] +=
-                link.value * moved[link.displacement as usize];
+        for c in &*couplings {
+            water_residual[c.pressure as usize] += c.value * moved[c.displacement as usize];
         }
         of_water.apply(&water.matrix, water_residual, pressed);
         soil.put(moved, z);

@@ -50,17 +50,9 @@ pub(super) fn product<const B: usize>(
         .into_par_iter()
         .for_each_init(scratch, |scratch, (nodes, mut part)| {
             for node in nodes {
-                let (entries, later) = part.split_at_mut(B * B * coarse.of(node).len());
+                let (out, later) = part.split_at_mut(B * B * coarse.of(node).len());
                 part = later;
-                row::<B>(
-                    transfer,
-                    fine,
-                    values,
-                    coarse.of(node),
-                    node,
-                    scratch,
-                    entries,
-                );
+                row::<B>(transfer, fine, values, coarse.of(node), node, scratch, out);
             }
         });
 }

@@ -86,21 +86,20 @@ impl Slabs {
         first: impl Fn(usize) -> usize + Sync,
         work: impl Fn(usize, &mut Parts<'_, T>) + Sync,
     ) {
-        let (mut slabs, mut others) = (Vec::new(), Vec::new());
+        let (mut same, mut others) = (Vec::new(), Vec::new());
         let mut rest = values;
         for slab in 0..self.len() {
             let nodes = self.nodes(slab);
             let (part, later) = rest.split_at_mut(first(nodes.end) - first(nodes.start));
             rest = later;
             if (slab % 2 == 1) == odd {
-                slabs.push((slab, first(nodes.start), part));
+                same.push((slab, first(nodes.start), part));
             } else {
                 others.push((first(nodes.start), &*part));
             }
         }
         // Slab k of one colour lies between k − 1 and k of the other, or k and k + 1.
-        slabs
-            .into_par_iter()
+        same.into_par_iter()
             .enumerate()
             .for_each(|(k, (slab, before, part))| {
                 let nothing = (0, &[][..]);

@@ -73,10 +73,7 @@ impl Smoother {
                 job.run(&mut self.values, &mut self.inverse);
             }
         }
-        let flags = self
-            .inverse
-            .chunks_exact(B * B + 1)
-            .map(|inverse| inverse[B * B]);
+        let flags = self.inverse.chunks_exact(B * B + 1).map(|x| x[B * B]);
         self.replaced = flags.filter(|&flag| flag != 0.0).count();
     }
 
