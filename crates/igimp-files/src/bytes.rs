@@ -7,7 +7,7 @@ use std::path::Path;
 /// The bytes of a file, and one more than `most` of them at most, whatever it grows to.
 ///
 /// # Errors
-/// What the system says; anything but a file is refused before it is opened, for a pipe would be waited
+/// The error of the system; anything but a file is refused before it is opened, for a pipe would be waited
 /// for and a device might never end.
 pub fn of_file(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let about = std::fs::metadata(path)?;

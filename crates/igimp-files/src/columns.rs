@@ -4,7 +4,7 @@ use igimp_schema::text::clip;
 
 use crate::named::Trouble;
 
-/// What a file holds.
+/// The columns of a file.
 #[derive(Debug)]
 pub(crate) struct Columns {
     /// The unit of each column, if the header says one: `ft` in `x [ft]` and `x (ft)`.
@@ -93,7 +93,7 @@ fn header(cells: &[&str], names: &[&str], found: &mut Columns) -> Result<(), Tro
             None => (*cell, None),
         };
         let name = name.trim().to_lowercase();
-        let place = names.iter().position(|own| *own == name);
+        let place = names.iter().position(|known| *known == name);
         if place.is_some_and(|place| place != column) {
             return Err(Trouble::new(
                 format_args!("its column {} is `{name}`", column + 1),

@@ -15,7 +15,7 @@ const MEET: f64 = 1e-6;
 const ALONG: f64 = 1e-6;
 /// Most pieces of a line.
 const MOST: usize = 5000;
-/// What may stand beside lines on a layer: it has no shape.
+/// Entities without shape that may stand beside lines on a layer.
 const WORDS: [&str; 3] = ["TEXT", "MTEXT", "ATTDEF"];
 
 /// A line of a drawing in its own unit.
@@ -128,9 +128,9 @@ pub(crate) fn line_on(text: &str, layer: Option<&str>) -> Result<Line, Trouble> 
     let entities = entities(text)?;
     let mut layers: Vec<&str> = Vec::new();
     for entity in &entities {
-        let own = entity.layer();
-        if !layers.iter().any(|known| is_same(known, own)) {
-            layers.push(own);
+        let name = entity.layer();
+        if !layers.iter().any(|known| is_same(known, name)) {
+            layers.push(name);
         }
     }
     let known = || {
@@ -149,15 +149,15 @@ pub(crate) fn line_on(text: &str, layer: Option<&str>) -> Result<Line, Trouble> 
         is_same(entity.layer(), layer) && entity.text(67).is_none_or(|space| space != "1")
     };
     let mut pieces = Vec::new();
-    let mut own = entities.iter().peekable();
-    while let Some(entity) = own.next() {
+    let mut rest = entities.iter().peekable();
+    while let Some(entity) = rest.next() {
         // The vertices of a polyline follow it, whatever their layer.
         let mut vertices = Vec::new();
         if entity.kind == "POLYLINE" {
-            while let Some(vertex) = own.next_if(|next| next.kind == "VERTEX") {
+            while let Some(vertex) = rest.next_if(|next| next.kind == "VERTEX") {
                 vertices.push(vertex);
             }
-            own.next_if(|next| next.kind == "SEQEND");
+            rest.next_if(|next| next.kind == "SEQEND");
         }
         if of_layer(&entity) {
             piece(entity, &vertices, &mut pieces)?;
@@ -199,7 +199,7 @@ fn is_same(a: &str, b: &str) -> bool {
     a.to_lowercase() == b.to_lowercase()
 }
 
-/// What the section of entities holds.
+/// The entities of a drawing.
 fn entities(text: &str) -> Result<Vec<Entity<'_>>, Trouble> {
     let mut lines = text.lines().enumerate();
     let mut entities: Vec<Entity<'_>> = Vec::new();

@@ -13,7 +13,7 @@ use crate::named::{LARGEST, Named, Trouble, quantity, text_of, unit_beside, unit
 
 /// Most points.
 const MOST: usize = 100_000;
-/// What a CSV file has.
+/// The columns of a CSV file.
 const COLUMNS: [&str; 3] = ["x", "y", "z"];
 
 /// Puts the heights in place of the file that has them, in a table that names one in `raster` or `points`.
@@ -63,15 +63,15 @@ fn table(file: &Named, like: &Node, key: &str) -> Result<Vec<Entry>, Trouble> {
     };
     let (mut rows, mut holes) = (Vec::new(), Vec::new());
     for (j, row) in grid.heights.chunks(grid.columns).rev().enumerate() {
-        let mut own = Vec::with_capacity(row.len());
+        let mut heights = Vec::with_capacity(row.len());
         for (i, height) in row.iter().enumerate() {
             if height.is_none() {
                 let place = [i, j].map(|at| Node::written(Value::Integer(at as i64), like.place));
                 holes.push(list(place.to_vec()));
             }
-            own.push(length(height.unwrap_or(0.0))?);
+            heights.push(length(height.unwrap_or(0.0))?);
         }
-        rows.push(list(own));
+        rows.push(list(heights));
     }
     let entry = |key: &str, node| Entry {
         key: key.to_owned(),
@@ -101,7 +101,7 @@ fn scattered(text: &str, stated: (&str, Option<&str>), like: &Node) -> Result<Ve
     let units = [x?, y?, z?];
     let point = |row: &Vec<f64>| {
         let lengths = std::iter::zip(row, &units);
-        let lengths = lengths.map(|(&own, unit)| quantity(own, unit, Dimension::Length, like));
+        let lengths = lengths.map(|(&value, unit)| quantity(value, unit, Dimension::Length, like));
         let lengths = lengths.collect::<Result<Vec<_>, _>>()?;
         Ok(Node::written(Value::List(lengths), like.place))
     };
@@ -135,7 +135,7 @@ struct EsriGrid {
     heights: Vec<Option<f64>>,
 }
 
-/// What a head without one of its keys is answered.
+/// The help for a head without one of its keys.
 const HEAD: &str = "the head of an ESRI ASCII grid has ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, cellsize, and NODATA_value if there are holes";
 
 /// The head of an ESRI ASCII grid: key, value and line.

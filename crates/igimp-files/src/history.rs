@@ -10,35 +10,35 @@ use crate::columns::columns;
 use crate::named::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
 use crate::record::ascending;
 
-/// What the file has.
+/// The columns of the file.
 const COLUMNS: [&str; 2] = ["time", "value"];
 
 /// Puts the samples of heads and rain on the faces of a condition in place of the files that have them.
 pub(crate) fn of_faces(condition: &mut Node, folder: &Path, problems: &mut Problems) {
     let faces = condition
         .get_mut("seepage")
-        .and_then(|own| own.get_mut("faces"));
+        .and_then(|seepage| seepage.get_mut("faces"));
     for face in faces.map(Node::items_mut).into_iter().flatten() {
         for (key, dimension) in [
             ("head", Dimension::Length),
             ("recharge", Dimension::Velocity),
         ] {
-            if let Some(own) = face.get_mut(key) {
-                resolve(own, dimension, folder, problems);
+            if let Some(node) = face.get_mut(key) {
+                resolve(node, dimension, folder, problems);
             }
         }
     }
 }
 
-fn resolve(own: &mut Node, dimension: Dimension, folder: &Path, problems: &mut Problems) {
-    let Some(value) = own.get("file") else {
+fn resolve(node: &mut Node, dimension: Dimension, folder: &Path, problems: &mut Problems) {
+    let Some(value) = node.get("file") else {
         return;
     };
     let Some(file) = Named::new(value, folder) else {
-        own.value = Value::Invalid;
+        node.value = Value::Invalid;
         return;
     };
-    own.value = match samples(&file, own, dimension) {
+    node.value = match samples(&file, node, dimension) {
         Ok(entries) => Value::Table(entries),
         Err(trouble) => {
             file.report(value, trouble, problems);
@@ -74,7 +74,7 @@ fn samples(file: &Named, table: &Node, dimension: Dimension) -> Result<Vec<Entry
         let values = found
             .rows
             .iter()
-            .map(|own| quantity(own[k], &unit, dimension, table));
+            .map(|row| quantity(row[k], &unit, dimension, table));
         Ok(Value::List(values.collect::<Result<Vec<_>, _>>()?))
     };
     let entry = |key: &str, value| Entry {

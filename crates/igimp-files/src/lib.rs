@@ -1,4 +1,4 @@
-//! What a case file takes from files beside it, put into its tree: polygons and layer lines from CSV and
+//! Data that a case file takes from files beside it, put into its tree: polygons and layer lines from CSV and
 //! DXF, properties of materials and pore pressures from CSV, surfaces from STL, ESRI ASCII grids and CSV.
 //!
 //! From then on the tree carries the points themselves, each with its unit: what is built, explained and fingerprinted
@@ -22,9 +22,9 @@ use igimp_schema::tree::Node;
 
 pub use named::text_of;
 
-/// Puts what files hold into the tree of the case file of this name; relative names start at the folder of the case.
+/// Puts the data of files into the tree of the case file of this name; relative names start at the folder of the case.
 ///
-/// Files that cannot be used are told among the problems, each at the place of its name in the case file.
+/// Files that cannot be used are listed among the problems, each at the place of its name in the case file.
 pub fn read(tree: &mut Node, case: &Path, problems: &mut Problems) {
     let folder = case.parent().unwrap_or(Path::new(""));
     let materials = tree.get_mut("materials").and_then(Node::entries_mut);
@@ -37,8 +37,8 @@ pub fn read(tree: &mut Node, case: &Path, problems: &mut Problems) {
         for condition in conditions.items_mut() {
             pressures(condition, folder, problems);
             history::of_faces(condition, folder, problems);
-            let own = condition.get_mut("bodies").map(Node::items_mut);
-            for body in own.into_iter().flatten() {
+            let bodies = condition.get_mut("bodies").map(Node::items_mut);
+            for body in bodies.into_iter().flatten() {
                 pressures(body, folder, problems);
             }
         }
@@ -68,7 +68,7 @@ pub fn read(tree: &mut Node, case: &Path, problems: &mut Problems) {
     }
 }
 
-/// What says the shape of a body, or of what a load covers.
+/// The shape of a body, or of the face that a load covers.
 fn shape(of: &mut Node, folder: &Path, problems: &mut Problems) {
     for key in ["polygon", "plan"] {
         if let Some(polygon) = of.get_mut(key) {

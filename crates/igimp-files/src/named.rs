@@ -42,8 +42,8 @@ impl Named {
 
     /// Whether the name ends so.
     pub(crate) fn ends_in(&self, extension: &str) -> bool {
-        let own = self.path.extension();
-        own.is_some_and(|own| own.eq_ignore_ascii_case(extension))
+        let ending = self.path.extension();
+        ending.is_some_and(|ending| ending.eq_ignore_ascii_case(extension))
     }
 
     pub(crate) fn report(&self, value: &Node, trouble: Trouble, problems: &mut Problems) {
@@ -60,7 +60,7 @@ impl Named {
 /// The text of a file of so many bytes at most; bytes that are no UTF-8 become replacement characters.
 ///
 /// # Errors
-/// What the system says, and that of what is no file or has more bytes, in words.
+/// The error of the system, or a message for a directory, a pipe or too many bytes.
 pub fn text_of(path: &Path, most: u64) -> Result<String, String> {
     // Asked before it is opened: a pipe would be waited for.
     let about = std::fs::metadata(path).map_err(|error| error.to_string())?;

@@ -50,7 +50,7 @@ fn outline(table: &Node, folder: &Path, problems: &mut Problems) -> Result<Vec<N
     }
 }
 
-/// What lies between two lines that both run from one side to the other.
+/// The polygon between two lines that both run from one side to the other.
 fn between(table: &Node, folder: &Path, problems: &mut Problems) -> Result<Vec<Node>, Wrong> {
     let mut lines = Vec::new();
     for key in ["top", "bottom"] {
@@ -118,7 +118,7 @@ fn corners(
     }
 }
 
-/// What is said where a drawing and the case name different units.
+/// The message where a drawing and the case name different units.
 fn other_unit(unit: &str, header: &str) -> Trouble {
     Trouble::new(
         format_args!(
@@ -128,7 +128,7 @@ fn other_unit(unit: &str, header: &str) -> Trouble {
     )
 }
 
-/// The corners that a file has, and what is to be said of them.
+/// The corners that a file has, and a note on them.
 fn points(
     file: &Named,
     table: &Node,

@@ -10,7 +10,7 @@ use igimp_schema::tree::{Entry, Node, Value};
 use crate::columns::{Columns, columns};
 use crate::named::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
 
-/// What the file has.
+/// The columns of the file.
 const COLUMNS: [&str; 3] = ["x", "y", "value"];
 /// Properties that are numbers without a unit.
 const NUMBERS: [&str; 11] = [
@@ -51,9 +51,9 @@ pub(crate) fn resolve(property: &mut Node, key: &str, folder: &Path, problems: &
 
 /// The table with its points.
 fn points(file: &Named, table: &Node, key: &str) -> Result<Vec<Entry>, Trouble> {
-    let own = ["raster", "unit", "length_unit"];
+    let keys = ["raster", "unit", "length_unit"];
     let mut others = table.entries().iter().map(|entry| entry.key.as_str());
-    if let Some(other) = others.find(|other| !own.contains(other)) {
+    if let Some(other) = others.find(|other| !keys.contains(other)) {
         return Err(Trouble::new(
             format_args!("`{key}` is stated by `raster` and by `{other}`"),
             "keep one of them",
@@ -87,14 +87,14 @@ fn points(file: &Named, table: &Node, key: &str) -> Result<Vec<Entry>, Trouble> 
     let [x, y] = [0, 1].map(|column| lines(&found, column));
     let rows = rows(&found, &x, &y)?;
     let list = |numbers: &[f64], unit: Option<(&str, Dimension)>| -> Result<Node, Trouble> {
-        let items = numbers.iter().map(|&own| match unit {
-            Some((unit, dimension)) => quantity(own, unit, dimension, table),
-            None => Ok(Node::written(Value::Number(own), table.place)),
+        let items = numbers.iter().map(|&value| match unit {
+            Some((unit, dimension)) => quantity(value, unit, dimension, table),
+            None => Ok(Node::written(Value::Number(value), table.place)),
         });
         let items = items.collect::<Result<Vec<_>, _>>()?;
         Ok(Node::written(Value::List(items), table.place))
     };
-    let of_values = of_values.as_ref().map(|own| (own.0.as_str(), own.1));
+    let of_values = of_values.as_ref().map(|(unit, d)| (unit.as_str(), *d));
     let rows = rows.iter().map(|row| list(row, of_values));
     let rows = rows.collect::<Result<Vec<_>, _>>()?;
     let entry = |key: &str, node| Entry {
@@ -111,7 +111,7 @@ fn points(file: &Named, table: &Node, key: &str) -> Result<Vec<Entry>, Trouble> 
 
 /// No unit, as numbers have none; refuses one that the case file or the header of the column states.
 fn without_unit<T>(key: &str, stated: [Option<&str>; 2]) -> Result<Option<T>, Trouble> {
-    let is_unit = |own: &&str| !["", "-", "−", "1"].contains(&own.trim());
+    let is_unit = |unit: &&str| !["", "-", "−", "1"].contains(&unit.trim());
     match stated.into_iter().flatten().find(is_unit) {
         None => Ok(None),
         Some(unit) => Err(Trouble::new(

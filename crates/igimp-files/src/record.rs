@@ -11,7 +11,7 @@ use igimp_schema::tree::{Entry, Node, Value};
 use crate::columns::{Columns, columns};
 use crate::named::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
 
-/// What the file has; the second column may be a velocity as well.
+/// The columns of the file; the second column may be a velocity as well.
 const COLUMNS: [&str; 2] = ["time", "acceleration"];
 /// Most samples.
 const MOST: usize = 100_000;
@@ -64,9 +64,9 @@ fn samples(file: &Named, table: &Node) -> Result<Vec<Entry>, Trouble> {
     )?;
     let unit = unit_of_values(table.text_at("unit"), found.units[1].as_deref())?;
     agrees(found.names[1].as_deref(), unit)?;
-    let times = (found.rows.iter()).map(|own| quantity(own[0], &time, Dimension::Time, table));
+    let times = (found.rows.iter()).map(|row| quantity(row[0], &time, Dimension::Time, table));
     let times = times.collect::<Result<Vec<_>, _>>()?;
-    let value = |own: &Vec<f64>| Node::written(Value::Number(own[1]), table.place);
+    let value = |row: &Vec<f64>| Node::written(Value::Number(row[1]), table.place);
     let values = found.rows.iter().map(value).collect();
     let entry = |key: &str, value| Entry {
         key: key.to_owned(),
@@ -75,7 +75,7 @@ fn samples(file: &Named, table: &Node) -> Result<Vec<Entry>, Trouble> {
     };
     let others = table.entries().iter();
     let mut entries: Vec<Entry> = others
-        .filter(|own| !["file", "unit"].contains(&own.key.as_str()))
+        .filter(|other| !["file", "unit"].contains(&other.key.as_str()))
         .cloned()
         .collect();
     entries.extend([
@@ -126,7 +126,7 @@ fn unit_of_values(stated: Option<&str>, header: Option<&str>) -> Result<RecordUn
             row(RecordUnit::names())
         )
     };
-    let header = header.map(|own| own.trim().replace('²', "2").replace("^2", "2"));
+    let header = header.map(|text| text.trim().replace('²', "2").replace("^2", "2"));
     let unit = match (stated, header) {
         (Some(stated), Some(header)) if stated.trim() != header => {
             return Err(Trouble::new(

@@ -37,10 +37,10 @@ pub(crate) fn resolve(surface: &mut Node, folder: &Path, problems: &mut Problems
 }
 
 fn table(file: &Named, like: &Node) -> Result<Vec<Entry>, Trouble> {
-    let own = ["file", "unit"];
+    let keys = ["file", "unit"];
     let written = like.entries().iter().filter(|entry| entry.node.written);
     let mut others = written.map(|entry| entry.key.as_str());
-    if let Some(other) = others.find(|other| !own.contains(other)) {
+    if let Some(other) = others.find(|other| !keys.contains(other)) {
         return Err(Trouble::new(
             format_args!("the surface is stated by `file` and by `{other}`"),
             "keep one of them",
@@ -99,14 +99,14 @@ fn table(file: &Named, like: &Node) -> Result<Vec<Entry>, Trouble> {
 fn triangles(bytes: &[u8]) -> Result<Vec<[[f32; 3]; 3]>, Trouble> {
     let count = bytes
         .get(HEAD - 4..HEAD)
-        .and_then(|own| <[u8; 4]>::try_from(own).ok());
-    let count = count.map(|own| u32::from_le_bytes(own) as usize);
+        .and_then(|word| <[u8; 4]>::try_from(word).ok());
+    let count = count.map(|word| u32::from_le_bytes(word) as usize);
     let length = |count: usize| count.saturating_mul(TRIANGLE).saturating_add(HEAD);
     // Binary files may begin with the word `solid` too: their length says what they are.
     if count.is_some_and(|count| length(count) == bytes.len()) {
-        let mut own = bytes.to_vec();
-        own[..5].fill(b' ');
-        return read(own);
+        let mut binary = bytes.to_vec();
+        binary[..5].fill(b' ');
+        return read(binary);
     }
     let text = String::from_utf8_lossy(bytes);
     let text = text.trim_start_matches('\u{feff}').trim_start();
@@ -155,8 +155,8 @@ fn read(bytes: Vec<u8>) -> Result<Vec<[[f32; 3]; 3]>, Trouble> {
     };
     let mut cursor = Cursor::new(bytes);
     let reader = stl_io::create_stl_reader(&mut cursor).map_err(wrong)?;
-    let own = |triangle: stl_io::Triangle| triangle.vertices.map(|corner| corner.0);
-    let triangles: Result<Vec<_>, _> = reader.map(|triangle| triangle.map(own)).collect();
+    let corners = |triangle: stl_io::Triangle| triangle.vertices.map(|corner| corner.0);
+    let triangles: Result<Vec<_>, _> = reader.map(|triangle| triangle.map(corners)).collect();
     triangles.map_err(wrong)
 }
 

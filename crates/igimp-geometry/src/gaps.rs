@@ -21,7 +21,7 @@ const MOST: usize = 200_000;
 /// A gap narrower than a cell that reaches over the next cells, too, in both directions along it: the foot of a valley does not.
 /// None where there are too many cells to look.
 pub fn narrow(regions: &[&dyn Region<3>], lines: &[Vec<f64>; 3]) -> Option<Gap> {
-    let counts = lines.each_ref().map(|own| own.len().saturating_sub(1));
+    let counts = lines.each_ref().map(|axis| axis.len().saturating_sub(1));
     let cell = |k: usize| {
         let (row, z) = (k % (counts[0] * counts[1]), k / (counts[0] * counts[1]));
         [row % counts[0], row / counts[0], z]
@@ -29,12 +29,12 @@ pub fn narrow(regions: &[&dyn Region<3>], lines: &[Vec<f64>; 3]) -> Option<Gap> 
     let ends = |at: [usize; 3], by: usize| std::array::from_fn(|axis| lines[axis][at[axis] + by]);
     let is_cut = |k: &usize| {
         let (lower, upper) = (ends(cell(*k), 0), ends(cell(*k), 1));
-        let mut covers = regions.iter().map(|own| own.cover(lower, upper));
-        covers.any(|own| own == Cover::Cut)
+        let mut covers = regions.iter().map(|region| region.cover(lower, upper));
+        covers.any(|cover| cover == Cover::Cut)
     };
     let all = counts
         .iter()
-        .fold(1, |all: usize, own| all.saturating_mul(*own));
+        .fold(1, |all: usize, count| all.saturating_mul(*count));
     if all.saturating_mul(regions.len()) > 50 * MOST {
         return None;
     }
@@ -50,7 +50,7 @@ pub fn narrow(regions: &[&dyn Region<3>], lines: &[Vec<f64>; 3]) -> Option<Gap> 
         let found: Vec<([usize; 3], Gap)> = cut.iter().filter_map(across).collect();
         let has = |at: [usize; 3]| {
             found
-                .binary_search_by_key(&key(at), |own| key(own.0))
+                .binary_search_by_key(&key(at), |gap| key(gap.0))
                 .is_ok()
         };
         let goes_on = |at: &[usize; 3], along: usize| {
@@ -64,8 +64,8 @@ pub fn narrow(regions: &[&dyn Region<3>], lines: &[Vec<f64>; 3]) -> Option<Gap> 
             counts[along] == 1 || beside(|k| k.checked_sub(1)) || beside(|k| Some(k + 1))
         };
         let is_sheet =
-            |own: &&([usize; 3], Gap)| (0..3).all(|along| along == axis || goes_on(&own.0, along));
-        found.iter().find(is_sheet).map(|own| own.1)
+            |gap: &&([usize; 3], Gap)| (0..3).all(|along| along == axis || goes_on(&gap.0, along));
+        found.iter().find(is_sheet).map(|gap| gap.1)
     })
 }
 
@@ -87,7 +87,7 @@ fn gap_at(
         at[axis] = along;
         at
     };
-    let is_soil = |along: f64| regions.iter().any(|own| own.encloses(point(along)));
+    let is_soil = |along: f64| regions.iter().any(|region| region.encloses(point(along)));
     let place = |k: usize| lower[axis] + size * ((k as f64 + 0.5) / PARTS as f64 - 0.5);
     let soil: Vec<bool> = (0..2 * PARTS).map(|k| is_soil(place(k))).collect();
     let begin = (1..2 * PARTS).find(|&k| soil[k - 1] && !soil[k])?;
@@ -131,7 +131,7 @@ mod tests {
     }
 
     fn gap(parts: &[Prism]) -> Option<Gap> {
-        let regions: Vec<&dyn Region<3>> = parts.iter().map(|own| own as _).collect();
+        let regions: Vec<&dyn Region<3>> = parts.iter().map(|part| part as _).collect();
         narrow(&regions, &lines([12, 5, 8]))
     }
 

@@ -2,7 +2,7 @@
 //!
 //! | module | what to find |
 //! |---|---|
-//! | [`region`] | the seam: what lies of a body in a box, and where lines cross it |
+//! | [`region`] | the seam: the part of a body in a box, and where lines cross it |
 //! | [`outline`] | where outlines cross, overlap and face each other, for checks |
 //! | [`gaps`] | gaps narrower than the cells of a grid |
 //! | [`polygon`], [`solid`] | regions of the plane and of space |

@@ -1,4 +1,4 @@
-//! Plane polygons: area, centroid, and what is left of them within a box.
+//! Plane polygons: area, centroid, and their parts within a box.
 
 /// A polygon by its corners, in order; the last is joined to the first.
 pub type Polygon = Vec<[f64; 2]>;

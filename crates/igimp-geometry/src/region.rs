@@ -79,13 +79,13 @@ pub trait Region<const D: usize>: Debug + Send + Sync {
     /// How much of a box belongs to it.
     fn cover(&self, lower: [f64; D], upper: [f64; D]) -> Cover;
 
-    /// What of it lies between two places on the first axis, if boxes are sooner cut from that than from all of it: its
+    /// Its part between two places on the first axis, if boxes are sooner cut from that than from all of it: its
     /// part within such a box is the same to the bit.
     fn strip(&self, _lower: f64, _upper: f64) -> Option<Box<dyn Region<D>>> {
         None
     }
 
-    /// What of it lies above and below a box along the last axis, if boxes one above the other are sooner cut from that:
+    /// Its parts above and below a box along the last axis, if boxes one above the other are sooner cut from that:
     /// their parts are the same but for round-off.
     fn column(&self, _lower: [f64; D], _upper: [f64; D]) -> Option<Box<dyn Column<D>>> {
         None
@@ -99,7 +99,7 @@ pub trait Region<const D: usize>: Debug + Send + Sync {
 
     /// The level of its highest point on the upright line through a place \[length\], if the line meets it.
     fn top(&self, place: &[f64; D]) -> Option<f64> {
-        let levels = self.crossings(place).into_iter().map(|own| own.level);
+        let levels = self.crossings(place).into_iter().map(|hit| hit.level);
         levels.reduce(f64::max)
     }
 
@@ -118,7 +118,7 @@ pub trait Region<const D: usize>: Debug + Send + Sync {
         &[]
     }
 
-    /// What it is, in words.
+    /// Its description in words.
     fn words(&self) -> String;
 
     /// Its volume \[length^D\].

@@ -104,8 +104,8 @@ pub fn fill_in_pieces(
     let parts = Parts::around(grid, polygon, per_direction)?;
     let columns = parts.columns(|[from, to]| clip_to_strip(polygon, 0, from, to));
     let along_first = parts.cells[0].len();
-    let within = |cell: usize, own: usize, from: [f64; 2], to: [f64; 2]| {
-        let column = cell % along_first * per_direction + own % per_direction;
+    let within = |cell: usize, number: usize, from: [f64; 2], to: [f64; 2]| {
+        let column = cell % along_first * per_direction + number % per_direction;
         let clipped = clip_to_strip(&columns[column], 1, from[1], to[1]);
         (part(&clipped), clipped)
     };
@@ -122,7 +122,7 @@ fn part(clipped: &[[f64; 2]]) -> Part<2> {
     }
 }
 
-/// Particles, and what belongs to parts with the particle that each went to.
+/// Particles, and the data of parts with the particle that each went to.
 type Filled<const D: usize, K> = (Vec<ParticleSeed<D>>, Vec<(usize, K)>);
 
 /// The parts of the cells around a region.
@@ -155,8 +155,8 @@ impl<const D: usize> Parts<D> {
         let first = grid.cell_at(&lower).unwrap_or([0; D]);
         let last = grid.cell_at(&upper).unwrap_or(last_of_all);
         let cells = std::array::from_fn(|axis| {
-            let own = &grid.axes[axis];
-            let cell = |cell| [own.nodes()[cell], own.spacing(cell) / per_direction as f64];
+            let ax = &grid.axes[axis];
+            let cell = |cell| [ax.nodes()[cell], ax.spacing(cell) / per_direction as f64];
             (first[axis]..=last[axis]).map(cell).collect()
         });
         let end = std::array::from_fn(|axis| grid.axes[axis].nodes()[last[axis] + 1]);
@@ -192,7 +192,7 @@ impl<const D: usize> Parts<D> {
         )
     }
 
-    /// What a region that stands in columns has of each cell, and where it is cut of its parts; `None` for another
+    /// The cover of each cell by a region that stands in columns, and the parts of cut cells; `None` for another
     /// region. Every column of parts is cut once.
     fn by_columns(&self, region: &(impl Region<D> + ?Sized)) -> Option<Vec<(Cover, Vec<Part<D>>)>> {
         let counts: [usize; D] = std::array::from_fn(|axis| self.cells[axis].len());
@@ -216,13 +216,13 @@ impl<const D: usize> Parts<D> {
                 let covers = columns.iter().map(|column| column.cover(whole));
                 let both = |a, b| if a == b { a } else { Cover::Cut };
                 let cover = covers.reduce(both).unwrap_or(Cover::Nothing);
-                let own = &mut found[level * cells + cell];
-                own.0 = cover;
+                let slot = &mut found[level * cells + cell];
+                slot.0 = cover;
                 if cover == Cover::Cut {
                     let steps = (0..self.per_direction).map(ends);
-                    let cut =
-                        steps.flat_map(|ends| columns.iter().map(move |own| own.within(ends)));
-                    own.1.extend(cut);
+                    let cut = steps
+                        .flat_map(|ends| columns.iter().map(move |column| column.within(ends)));
+                    slot.1.extend(cut);
                 }
             }
         }
@@ -258,24 +258,24 @@ impl<const D: usize> Parts<D> {
                 let ends: [[f64; 2]; D] = std::array::from_fn(|axis| self.ends(axis, place[axis]));
                 let (from, to) = (ends.map(|[from, _]| from), ends.map(|[_, to]| to));
                 let size: [f64; D] = std::array::from_fn(|axis| self.cells[axis][cell[axis]][1]);
-                let (own, keep) = if cover == Cover::Whole {
+                let (piece, keep) = if cover == Cover::Whole {
                     (Part::whole(from, to), K::default())
                 } else {
                     within(number, part, from, to)
                 };
-                if own.volume >= (1.0 - TIE) * SLIVER * size.iter().product::<f64>() {
+                if piece.volume >= (1.0 - TIE) * SLIVER * size.iter().product::<f64>() {
                     kept.push((seeds.len(), keep));
-                    let (x, half_length) = domain(from, size, &own);
+                    let (x, half_length) = domain(from, size, &piece);
                     seeds.push(ParticleSeed {
                         x,
                         half_length,
-                        volume: own.volume,
+                        volume: piece.volume,
                         density,
                         law,
-                        centroid: within_domain(x, half_length, own.centroid),
+                        centroid: within_domain(x, half_length, piece.centroid),
                     });
-                } else if own.volume > 0.0 {
-                    slivers.push((number, own, keep));
+                } else if piece.volume > 0.0 {
+                    slivers.push((number, piece, keep));
                 }
             }
             first.push(seeds.len());
@@ -286,14 +286,14 @@ impl<const D: usize> Parts<D> {
         if !slivers.is_empty() {
             let x: Vec<[f64; D]> = seeds.iter().map(|seed| seed.x).collect();
             let nearest = Nearest::new(self, &x, &first);
-            for (cell, own, keep) in slivers {
-                let particle = nearest_within(first[cell]..first[cell + 1], &x, own.centroid)
-                    .unwrap_or_else(|| nearest.to(own.centroid));
+            for (cell, sliver, keep) in slivers {
+                let particle = nearest_within(first[cell]..first[cell + 1], &x, sliver.centroid)
+                    .unwrap_or_else(|| nearest.to(sliver.centroid));
                 let seed = &mut seeds[particle];
-                let volume = seed.volume + own.volume;
+                let volume = seed.volume + sliver.volume;
                 let together = std::array::from_fn(|axis| {
                     let at = seed.x[axis] + seed.centroid[axis] * seed.half_length[axis];
-                    (seed.volume * at + own.volume * own.centroid[axis]) / volume
+                    (seed.volume * at + sliver.volume * sliver.centroid[axis]) / volume
                 });
                 seed.centroid = within_domain(seed.x, seed.half_length, together);
                 seed.volume = volume;
@@ -332,7 +332,7 @@ fn nearest_within<const D: usize>(
     let least = particles.clone().map(square).reduce(f64::min)?;
     particles
         .into_iter()
-        .find(|&own| square(own) <= (1.0 + TIE) * least)
+        .find(|&particle| square(particle) <= (1.0 + TIE) * least)
 }
 
 /// A centroid within a domain, from its middle, over half-lengths \[-\].
@@ -355,9 +355,9 @@ fn within_domain<const D: usize>(
 fn place_of<const D: usize>(number: usize, counts: [usize; D]) -> [usize; D] {
     let mut rest = number;
     counts.map(|count| {
-        let own = rest % count;
+        let place = rest % count;
         rest /= count;
-        own
+        place
     })
 }
 
@@ -413,15 +413,15 @@ mod tests {
             .map(|piece| area_and_centroid(&piece.polygon).0)
             .sum();
         assert!((area - whole).abs() < 1e-12 * whole);
-        let own = |particle: usize| {
-            let own = pieces
+        let sum = |particle: usize| {
+            let all = pieces
                 .iter()
                 .filter(move |piece| piece.particle == particle);
-            own.map(|piece| area_and_centroid(&piece.polygon).0)
+            all.map(|piece| area_and_centroid(&piece.polygon).0)
                 .sum::<f64>()
         };
         for (particle, seed) in seeds.iter().enumerate() {
-            assert!((own(particle) - seed.volume).abs() < 1e-12, "{particle}");
+            assert!((sum(particle) - seed.volume).abs() < 1e-12, "{particle}");
         }
     }
 
@@ -467,10 +467,10 @@ mod tests {
             let mirrored: Vec<_> = slope.iter().rev().map(|[x, y]| [40.0 - x, *y]).collect();
             for per_direction in [2, 3] {
                 let filled = |slope: &[[f64; 2]]| fill_polygon(&grid, slope, per_direction, 1.0, 0);
-                let own = filled(&slope).unwrap();
+                let seeds = filled(&slope).unwrap();
                 let other = filled(&mirrored).unwrap();
-                assert_eq!(own.len(), other.len(), "{toe:?} {run} {per_direction}");
-                for seed in &own {
+                assert_eq!(seeds.len(), other.len(), "{toe:?} {run} {per_direction}");
+                for seed in &seeds {
                     let image = [40.0 - seed.x[0], seed.x[1]];
                     let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
                     let is_image = |found: &ParticleSeed<2>| {

@@ -1,4 +1,4 @@
-//! The default: a direct method or an iteration, by what the matrix asks for.
+//! The default: a direct method or an iteration, as the matrix demands.
 //!
 //! In the plane, and for small systems, a factorisation: Cholesky for symmetric matrices, LU for the others. In space its
 //! operations grow with the square of the number of unknowns, those of an iteration with multigrid little more than with the
@@ -36,7 +36,7 @@ pub(crate) const FACTOR_BYTES: usize = 8 << 30;
 /// Chooses between a multifrontal factorisation and an iteration with multigrid.
 ///
 /// Near collapse a symmetric tangent can lose positive definiteness; the matrix then goes to LU. Both
-/// share plan and memory. What is chosen depends on the matrix, and within a step on whether an iteration failed
+/// share plan and memory. The choice depends on the matrix, and within a step on whether an iteration failed
 /// before.
 pub struct AutoSolver {
     engine: Engine,
@@ -231,7 +231,7 @@ impl AutoSolver {
         self.factorise(matrix)
     }
 
-    /// What an iteration of at most so many steps must come to. Who asks for more than is accepted of factors needs it.
+    /// The demand on an iteration of at most so many steps; stricter where more is asked for than factors are held to.
     fn demand(&self, most: usize, may_fall_back: bool) -> Demand {
         let usual = self.engine.accuracy.tolerance;
         let (tolerance, patience) = if may_fall_back || self.asked < usual {
@@ -247,7 +247,7 @@ impl AutoSolver {
         }
     }
 
-    /// An error with what factors would take, if an iteration did not converge that they have no room beside.
+    /// An error with the memory that factors would take, if an iteration did not converge that they have no room beside.
     fn without_room(&self, error: LinearSolverError, matrix: &TangentMatrix) -> LinearSolverError {
         match error {
             LinearSolverError::NotConverged {
@@ -277,7 +277,7 @@ impl AutoSolver {
         self.factorise(matrix)
     }
 
-    /// Factorises by what suits the matrix.
+    /// Factorises by the method that suits the matrix.
     fn factorise(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
         self.state = State::Nothing;
         let factorised = if matrix.symmetric {

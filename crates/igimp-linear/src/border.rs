@@ -1,7 +1,7 @@
 //! The rows and columns of the tangent that belong to rigid bodies, and to a load factor that is unknown: few and
 //! long, so they stay out of the sparse matrix.
 
-/// The border of a tangent matrix: what couples the unknowns of rigid bodies, and a load factor that is unknown, to
+/// The border of a tangent matrix: the coupling of the unknowns of rigid bodies, and a load factor that is unknown, to
 /// those of the grid and to one another.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Border {
@@ -33,8 +33,8 @@ impl Border {
         let of_grid = column.len() - of_border;
         self.columns.push(column[..of_grid].to_vec());
         self.rows.push(row[..of_grid].to_vec());
-        for (entries, own) in self.corner.iter_mut().zip(&column[of_grid..]) {
-            entries.push(*own);
+        for (entries, entry) in self.corner.iter_mut().zip(&column[of_grid..]) {
+            entries.push(*entry);
         }
         let mut last = row[of_grid..].to_vec();
         last.push(corner);

@@ -11,13 +11,13 @@ const OF_ELIMINATION: f64 = 1e-10;
 /// A pivot of a border that is no larger than this share of its largest entry is none: no digit is left of it \[-\].
 const NO_PIVOT: f64 = 1e-14;
 
-/// The same where the solution came out wrong: what is left is the error of the systems by which the border is eliminated \[-\].
+/// The same where the solution came out wrong: the residual is the error of the systems by which the border is eliminated \[-\].
 const HARDLY_A_PIVOT: f64 = 10.0 * OF_ELIMINATION;
 
 /// An exact or approximate solver for the unknowns of the grid: the second vector from the first.
 pub(super) type Inverse<'a> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), LinearSolverError> + 'a;
 
-/// The Schur complement of the unknowns of a border, S = K_bb − K_bg K_gg⁻¹ K_gb, with what it is made of. With a
+/// The Schur complement of the unknowns of a border, S = K_bb − K_bg K_gg⁻¹ K_gb, with its parts. With a
 /// preconditioner for K_gg⁻¹ it makes one for all unknowns, which meets the equations of the border.
 #[derive(Debug)]
 pub(super) struct Elimination {
@@ -40,14 +40,14 @@ impl Elimination {
         } = border;
         let mut carried = Vec::with_capacity(columns.len());
         for column in columns {
-            let mut own = vec![0.0; column.len()];
-            inverse(column, &mut own)?;
-            carried.push(own);
+            let mut moved = vec![0.0; column.len()];
+            inverse(column, &mut moved)?;
+            carried.push(moved);
         }
         let mut schur = corner.clone();
         for (entries, row) in schur.iter_mut().zip(rows) {
-            for (entry, own) in entries.iter_mut().zip(&carried) {
-                *entry -= product(row, own);
+            for (entry, column) in entries.iter_mut().zip(&carried) {
+                *entry -= product(row, column);
             }
         }
         Ok(Self { carried, schur })
@@ -75,8 +75,8 @@ impl Elimination {
             }
         })?;
         for (carried, by) in self.carried.iter().zip(&of_border) {
-            for (own, share) in grid.iter_mut().zip(carried) {
-                *own -= by * share;
+            for (value, share) in grid.iter_mut().zip(carried) {
+                *value -= by * share;
             }
         }
         behind.copy_from_slice(&of_border);
@@ -103,7 +103,7 @@ impl Bordered {
         self.elimination.as_ref()?.free_direction()
     }
 
-    /// Solves for all unknowns: those of the grid first, those of the border behind them. What a solver does not iterate
+    /// Solves for all unknowns: those of the grid first, those of the border behind them. A border that a solver does not iterate
     /// for at once is eliminated. As for the grid alone, such a solution is checked against the whole matrix, and
     /// refined once where that helps.
     ///
@@ -146,13 +146,13 @@ impl Bordered {
         }
         let mut refined = vec![0.0; rhs.len()];
         elimination.solve(border, &mut inverse, &residual, &mut refined)?;
-        for (own, first) in refined.iter_mut().zip(&*solution) {
-            *own += first;
+        for (value, first) in refined.iter_mut().zip(&*solution) {
+            *value += first;
         }
-        let own = residual_of(matrix, rhs, &refined, &mut residual) / scale;
-        if own < error {
+        let reduced = residual_of(matrix, rhs, &refined, &mut residual) / scale;
+        if reduced < error {
             solution.copy_from_slice(&refined);
-            error = own;
+            error = reduced;
         }
         // Written so that what is not a number does not pass.
         if error <= tolerance {
@@ -173,13 +173,13 @@ pub(super) fn add_border(border: &Border, x: &[f64], y: &mut [f64]) {
     let (grid, behind) = x.split_at(of_grid);
     let (of_grid, of_border) = y.split_at_mut(of_grid);
     for (column, by) in border.columns.iter().zip(behind) {
-        for (own, entry) in of_grid.iter_mut().zip(column) {
-            *own += by * entry;
+        for (sum, entry) in of_grid.iter_mut().zip(column) {
+            *sum += by * entry;
         }
     }
-    for (own, (row, entries)) in (of_border.iter_mut()).zip(border.rows.iter().zip(&border.corner))
+    for (sum, (row, entries)) in (of_border.iter_mut()).zip(border.rows.iter().zip(&border.corner))
     {
-        *own = product(row, grid) + product(entries, behind);
+        *sum = product(row, grid) + product(entries, behind);
     }
 }
 
@@ -189,10 +189,10 @@ fn residual_of(matrix: &TangentMatrix, rhs: &[f64], x: &[f64], residual: &mut [f
     let of_grid = x.len() - matrix.border.len();
     matrix.multiply(&x[..of_grid], &mut residual[..of_grid]);
     add_border(&matrix.border, x, residual);
-    for (own, rhs) in residual.iter_mut().zip(rhs) {
-        *own = rhs - *own;
+    for (entry, rhs) in residual.iter_mut().zip(rhs) {
+        *entry = rhs - *entry;
     }
-    if residual.iter().all(|own| own.is_finite()) {
+    if residual.iter().all(|entry| entry.is_finite()) {
         max_norm(residual)
     } else {
         f64::INFINITY
@@ -245,8 +245,8 @@ fn eliminate(mut rows: Vec<Vec<f64>>, mut rhs: Vec<f64>, least: f64) -> Result<V
         for i in k + 1..n {
             let factor = rows[i][k] / rows[k][k];
             let (above, below) = rows.split_at_mut(i);
-            for (entry, own) in below[0][k..].iter_mut().zip(&above[k][k..]) {
-                *entry -= factor * own;
+            for (entry, upper) in below[0][k..].iter_mut().zip(&above[k][k..]) {
+                *entry -= factor * upper;
             }
             rhs[i] -= factor * rhs[k];
         }
@@ -291,8 +291,8 @@ mod tests {
             rhs: &[f64],
             solution: &mut [f64],
         ) -> Result<SolveReport, LinearSolverError> {
-            for ((own, rhs), entry) in solution.iter_mut().zip(rhs).zip(&matrix.values) {
-                *own = (1.0 + self.error) * rhs / entry;
+            for ((x, rhs), entry) in solution.iter_mut().zip(rhs).zip(&matrix.values) {
+                *x = (1.0 + self.error) * rhs / entry;
             }
             Ok(SolveReport::new("sloppy", 0.0, 0))
         }

@@ -1,4 +1,4 @@
-//! Checks of what goes into a solver and what comes out of it, shared by all of them.
+//! Checks of the input and the output of a solver, shared by all of them.
 
 use std::sync::Arc;
 
@@ -152,19 +152,19 @@ fn all_finite(values: &[f64]) -> bool {
 }
 
 /// Checks that all values are finite.
-pub(super) fn finite(what: &'static str, values: &[f64]) -> Result<(), LinearSolverError> {
+pub(super) fn finite(array: &'static str, values: &[f64]) -> Result<(), LinearSolverError> {
     if all_finite(values) {
         return Ok(());
     }
     match values.iter().position(|value| !value.is_finite()) {
-        Some(index) => Err(LinearSolverError::NonFinite { what, index }),
+        Some(index) => Err(LinearSolverError::NonFinite { array, index }),
         None => Ok(()),
     }
 }
 
 /// Checks the length of a slice.
 pub(super) fn length(
-    what: &'static str,
+    array: &'static str,
     found: usize,
     expected: usize,
 ) -> Result<(), LinearSolverError> {
@@ -172,7 +172,7 @@ pub(super) fn length(
         Ok(())
     } else {
         Err(LinearSolverError::WrongLength {
-            what,
+            array,
             expected,
             found,
         })

@@ -19,7 +19,7 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    /// The reach of a pattern: what it announces, less if that is due to few nodes only.
+    /// The reach of a pattern: the announced one, less if that is due to few nodes only.
     pub(super) fn of(pattern: &Pattern) -> Self {
         let blocks = pattern.blocks.len();
         let furthest: Vec<usize> = (0..blocks)
@@ -57,8 +57,8 @@ impl Reach {
         let first = self
             .far
             .partition_point(|&(from, _)| (from as usize) < block);
-        let own = self.far[first..].iter();
-        own.take_while(move |&&(from, _)| from as usize == block)
+        let far = self.far[first..].iter();
+        far.take_while(move |&&(from, _)| from as usize == block)
             .map(|&(_, to)| to as usize)
     }
 

@@ -8,10 +8,10 @@ pub enum LinearSolverError {
     Empty,
 
     /// A slice does not have one entry per unknown, or a matrix one value per stored entry.
-    #[error("{what} has {found} entries, expected {expected}")]
+    #[error("{array} has {found} entries, expected {expected}")]
     WrongLength {
         /// The offending slice.
-        what: &'static str,
+        array: &'static str,
         /// Its required length.
         expected: usize,
         /// Its actual length.
@@ -32,11 +32,11 @@ pub enum LinearSolverError {
     NotFactored,
 
     /// An input or the solution holds a NaN or an infinity.
-    #[error("{what} is not finite at index {index}")]
+    #[error("{array} is not finite at index {index}")]
     NonFinite {
         /// `"matrix"` (index into the stored values), `"right-hand side"` or `"solution"` (index
         /// of the unknown).
-        what: &'static str,
+        array: &'static str,
         /// First offending index.
         index: usize,
     },
@@ -114,14 +114,14 @@ fn at_unknown(unknown: Option<usize>) -> String {
 mod tests {
     use super::LinearSolverError;
 
-    /// GOAL: a residual is told with four digits. ORACLE: by hand.
+    /// GOAL: a residual is printed with four digits. ORACLE: by hand.
     #[test]
     fn residuals_have_four_digits() {
         let error = LinearSolverError::Inaccurate {
             relative_residual: 7.061_818_181_818_181,
             tolerance: 1e-6,
         };
-        let told = "relative residual 7.062e0 above the tolerance 1e-6";
-        assert_eq!(error.to_string(), told);
+        let text = "relative residual 7.062e0 above the tolerance 1e-6";
+        assert_eq!(error.to_string(), text);
     }
 }

@@ -1,4 +1,4 @@
-//! Sparse systems of blocks with a border, and what solves them: the tangent system K du = r.
+//! Sparse systems of blocks with a border, and their solvers: the tangent system K du = r.
 //!
 //! A [`Pattern`] says which blocks of unknowns are coupled; a [`TangentMatrix`] has values for it and a [`Border`]. Nothing here
 //! knows of soil. The solvers stand behind one trait, [`LinearSolver`]:

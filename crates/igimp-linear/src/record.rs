@@ -1,4 +1,4 @@
-//! A record of what a solver is given and what it finds, for those who want to look at a system.
+//! A record of the input and the result of a solver, for those who want to look at a system.
 
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -20,7 +20,7 @@ pub struct SolvedSystem {
 }
 
 /// Keeps one of the systems that a solver solves: the n-th since the record was last taken, or the
-/// last one while there are fewer. Clones share what is kept.
+/// last one while there are fewer. Clones share the record.
 #[derive(Clone)]
 pub struct Record {
     wanted: usize,

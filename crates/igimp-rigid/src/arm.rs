@@ -7,7 +7,7 @@ use crate::{RigidBody, Turn, rotations, turn};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arm<const D: usize> {
     start: [f64; D],
-    /// What rotations are multiplied by to be lengths \[length\].
+    /// The factor by which rotations become lengths \[length\].
     size: f64,
     /// Whether it turns with the body: not on a given geometry.
     turns: bool,
@@ -16,7 +16,7 @@ pub struct Arm<const D: usize> {
 impl<const D: usize> RigidBody<D> {
     /// The arm of its centre of mass, unless that is its reference point; whether it `turns` in a step.
     pub fn arm(&self, turns: bool) -> Option<Arm<D>> {
-        let is_off = self.motion.centre.iter().any(|own| *own != 0.0);
+        let is_off = self.motion.centre.iter().any(|x| *x != 0.0);
         is_off.then(|| Arm {
             start: self.pose.direction(&self.motion.centre),
             size: self.surface.size(),
@@ -107,7 +107,7 @@ impl<const D: usize> Arm<D> {
     /// \[force/length\].
     pub fn slope_of_moment(&self, rotation: &[f64; D], force: &[f64; D]) -> [[f64; D]; D] {
         if self.turns {
-            let arms = self.start.map(|own| force.map(|f| own * f));
+            let arms = self.start.map(|x| force.map(|f| x * f));
             Turn::by(rotation, self.size).slope_of_moment(&arms)
         } else {
             [[0.0; D]; D]
@@ -138,12 +138,12 @@ mod tests {
     fn the_centre_of_mass_goes_round() {
         for by in [1e-6, 5e-3, 0.0099, 0.0101, 0.7, 3.0] {
             let rotation = [0.6 * by, -0.2 * by, 0.5 * by];
-            let turn = turn_by::<3>(&rotation.map(|own| own / 1.25));
+            let turn = turn_by::<3>(&rotation.map(|x| x / 1.25));
             let start = [arm().start, [0.0; 3], [0.0; 3]];
             let columns = std::array::from_fn(|a| std::array::from_fn(|b| start[b][a]));
             let turned = multiply(&turn, &columns);
-            for (row, own) in turned.iter().zip(arm().after(&rotation)) {
-                assert!((row[0] - own).abs() < 1e-15, "{by}");
+            for (row, moved) in turned.iter().zip(arm().after(&rotation)) {
+                assert!((row[0] - moved).abs() < 1e-15, "{by}");
             }
         }
     }
@@ -164,9 +164,9 @@ mod tests {
                     rotation
                 };
                 let [plus, minus] = [at(1.0), at(-1.0)];
-                let [more, less] = [&plus, &minus].map(|own| arm().way(own));
+                let [more, less] = [&plus, &minus].map(|turn| arm().way(turn));
                 let [strong, weak] =
-                    [&plus, &minus].map(|own| arm().moment(&arm().after(own), &force));
+                    [&plus, &minus].map(|turn| arm().moment(&arm().after(turn), &force));
                 for i in 0..3 {
                     assert!((0.5 * (more[i] - less[i]) / d - of_way[i][k]).abs() < 1e-9);
                     assert!((0.5 * (strong[i] - weak[i]) / d - of_moment[i][k]).abs() < 1e-9);

@@ -23,7 +23,7 @@ const UNSEEN_HEIGHT: f64 = 1.0;
 /// In a notch, or between two bodies, the way off one side leads to another: the sides are looked at so often.
 const MOST_PASSES: usize = 20;
 
-/// What is missing to the least height after the first pass is round-off, as a share of it \[-\].
+/// The round-off of the least height after the first pass, as a share of it \[-\].
 const ROUND_OFF: f64 = 1e-9;
 
 /// A particle would be carried into a rigid body, through it, or up to it from where the body did not see it.
@@ -236,8 +236,8 @@ fn way_off<const D: usize>(extents: &[Extent<'_, D>], x: &[f64; D], half: f64) -
         let mut is_clear = true;
         for extent in extents {
             let at = std::array::from_fn(|axis| x[axis] + way[axis]);
-            let own = extent.body.pose.into_body(&at);
-            if !extent.may_reach(&own, &own, least) {
+            let local = extent.body.pose.into_body(&at);
+            if !extent.may_reach(&local, &local, least) {
                 continue;
             }
             let (distance, normal) = extent.body.nearest(&at);

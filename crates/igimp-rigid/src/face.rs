@@ -89,7 +89,7 @@ impl<const D: usize> Face<D> {
         };
         let is_far = gap > thickness || nearest.height > most;
         let fades =
-            body.surface.radius().is_none() && normal.iter().any(|own| own.abs() >= ALONG_THE_GRID);
+            body.surface.radius().is_none() && normal.iter().any(|x| x.abs() >= ALONG_THE_GRID);
         let share = match (is_far, fades) {
             (false, _) => 1.0,
             (true, true) => {
@@ -159,16 +159,16 @@ impl<const D: usize> Face<D> {
     pub fn tangents_at(&self, body: &RigidBody<D>, image: Image<D>) -> [[f64; D]; 2] {
         let Some(space) = body.surface.space() else {
             let tangents = tangents(&image.mirrored(&self.normal));
-            return tangents.map(|own| image.mirrored(&own));
+            return tangents.map(|tangent| image.mirrored(&tangent));
         };
         let (pose, knot) = (&body.pose, image.knot);
-        let facing = if image == Image::own(knot) {
+        let facing = if image == Image::alone(knot) {
             self.facing
         } else {
             pose.direction_in_body(&image.mirrored(&self.normal))
         };
         let tangents = space.tangents_at(knot, &facing);
-        tangents.map(|own| image.mirrored(&pose.direction(&own)))
+        tangents.map(|tangent| image.mirrored(&pose.direction(&tangent)))
     }
 
     /// A point of its plane in space.
@@ -232,17 +232,17 @@ impl<const D: usize> Face<D> {
         cuts.sort_by(f64::total_cmp);
         let mut points = Vec::new();
         for pair in cuts.windows(2) {
-            let (middle, own) = (0.5 * (pair[0] + pair[1]), 0.5 * (pair[1] - pair[0]));
-            if own <= 1e-9 * half {
+            let (middle, reach) = (0.5 * (pair[0] + pair[1]), 0.5 * (pair[1] - pair[0]));
+            if reach <= 1e-9 * half {
                 continue;
             }
             for place in [-GAUSS, GAUSS] {
-                let x = self.at(&[middle + place * own, 0.0]);
+                let x = self.at(&[middle + place * reach, 0.0]);
                 let nearest = surface.nearest(&pose.into_body(&x), self.side);
                 if !nearest.is_beyond {
                     points.push(FacePoint {
                         x,
-                        area: self.share * own,
+                        area: self.share * reach,
                         knots: nearest.knots,
                     });
                 }
@@ -264,7 +264,7 @@ fn tangents<const D: usize>(normal: &[f64; D]) -> [[f64; D]; 2] {
     let least = (0..D)
         .min_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs()))
         .unwrap_or(0);
-    let mut flat = normal.map(|own| -normal[least] * own);
+    let mut flat = normal.map(|x| -normal[least] * x);
     flat[least] += 1.0;
     let size = dot(&flat, &flat).sqrt();
     out[0] = flat.map(|a| a / size);
@@ -346,7 +346,7 @@ mod tests {
             let mut body = RigidBody::new(surface, vec![Interface::rough(); 4], [0.0; 2]);
             body.pose = body.pose.moved(&[0.0; 2], &[turn, 0.0, 0.0]);
             let thickness = 0.1 * (turn.cos() + turn.sin());
-            let centre = [turn.sin(), -turn.cos()].map(|own| own * 2.0 * height * thickness);
+            let centre = [turn.sin(), -turn.cos()].map(|x| x * 2.0 * height * thickness);
             Face::of(&body, 0, &centre, &[0.1; 2]).map(|face| face.share)
         };
         for (height, expected) in [

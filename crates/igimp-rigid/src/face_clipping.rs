@@ -74,14 +74,14 @@ pub fn pieces<const D: usize>(
             let mut points = Vec::new();
             for k in 2..cell.len() {
                 let part = [cell[0], cell[k - 1], cell[k]];
-                let own = 0.5 * turn(&part[0], &part[1], &part[2]);
-                if own <= least {
+                let size = 0.5 * turn(&part[0], &part[1], &part[2]);
+                if size <= least {
                     continue;
                 }
                 for (p, weight) in points_in(&part) {
                     let share = |a: usize, b: usize| turn(&triangle[a], &triangle[b], &p) / double;
-                    let shares = [share(1, 2), share(2, 0), share(0, 1)].map(|own| own.max(0.0));
-                    points.push((face.at(&p), face.share * weight * own, shares));
+                    let shares = [share(1, 2), share(2, 0), share(0, 1)].map(|x| x.max(0.0));
+                    points.push((face.at(&p), face.share * weight * size, shares));
                 }
             }
             if !points.is_empty() {
@@ -92,7 +92,7 @@ pub fn pieces<const D: usize>(
     pieces
 }
 
-/// The area of what belongs to each knot \[length²\], as far as it lies within the grid: on a plane of symmetry half
+/// The area of each knot \[length²\], as far as it lies within the grid: on a plane of symmetry half
 /// of a knot has no soil.
 pub fn tents_within<const D: usize>(
     body: &RigidBody<D>,
@@ -116,18 +116,18 @@ pub fn tents_within<const D: usize>(
             let along = |[s, t]: &Flat| {
                 at[0][axis] + s * (at[1][axis] - at[0][axis]) + t * (at[2][axis] - at[0][axis])
             };
-            if at.iter().any(|own| own[axis] < start) {
+            if at.iter().any(|corner| corner[axis] < start) {
                 part = kept(&part, |p| along(p) - start);
             }
-            if at.iter().any(|own| own[axis] > end) {
+            if at.iter().any(|corner| corner[axis] > end) {
                 part = kept(&part, |p| end - along(p));
             }
         }
         let double = cross_size(&minus(&at[1], &at[0]), &minus(&at[2], &at[0]));
         for k in 2..part.len() {
-            let own = [part[0], part[k - 1], part[k]];
-            let area = 0.5 * double * turn(&own[0], &own[1], &own[2]);
-            let [s, t] = [0, 1].map(|a| own.iter().map(|p| p[a]).sum::<f64>() / 3.0);
+            let triangle = [part[0], part[k - 1], part[k]];
+            let area = 0.5 * double * turn(&triangle[0], &triangle[1], &triangle[2]);
+            let [s, t] = [0, 1].map(|a| triangle.iter().map(|p| p[a]).sum::<f64>() / 3.0);
             for (corner, mean) in corners.into_iter().zip([1.0 - s - t, s, t]) {
                 for &(knot, share) in &space.shares[corner] {
                     areas[knot] += area * mean * share;
@@ -175,8 +175,8 @@ fn by_cells<const D: usize>(polygon: Vec<Flat>, face: &Face<D>, grid: &Grid<D>) 
             let (lower, upper) = part
                 .iter()
                 .map(along)
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(lower, upper), own| {
-                    (lower.min(own), upper.max(own))
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(lower, upper), x| {
+                    (lower.min(x), upper.max(x))
                 });
             let first = nodes.partition_point(|line| *line <= lower);
             let last = nodes.partition_point(|line| *line < upper);
@@ -193,18 +193,18 @@ fn by_cells<const D: usize>(polygon: Vec<Flat>, face: &Face<D>, grid: &Grid<D>) 
     parts
 }
 
-/// What of a convex polygon lies where a linear function is not negative.
+/// The part of a convex polygon where a linear function is not negative.
 fn kept(polygon: &[Flat], function: impl Fn(&Flat) -> f64) -> Vec<Flat> {
     let values: Vec<f64> = polygon.iter().map(function).collect();
     let mut out = Vec::with_capacity(polygon.len() + 1);
     for (k, p) in polygon.iter().enumerate() {
         let l = (k + 1) % polygon.len();
-        let (own, next) = (values[k], values[l]);
-        if own >= 0.0 {
+        let (value, next) = (values[k], values[l]);
+        if value >= 0.0 {
             out.push(*p);
         }
-        if (own > 0.0 && next < 0.0) || (own < 0.0 && next > 0.0) {
-            let share = own / (own - next);
+        if (value > 0.0 && next < 0.0) || (value < 0.0 && next > 0.0) {
+            let share = value / (value - next);
             let q = polygon[l];
             out.push([0, 1].map(|a| p[a] + share * (q[a] - p[a])));
         }

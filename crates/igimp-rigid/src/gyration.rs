@@ -14,7 +14,7 @@ const EQUAL: f64 = 1e-12;
 pub struct Gyration<const D: usize> {
     /// About the axes of space through the centre of mass, as the step begins \[mass\].
     start: [[f64; D]; D],
-    /// What rotations are multiplied by to be lengths \[length\].
+    /// The factor by which rotations become lengths \[length\].
     size: f64,
 }
 
@@ -44,9 +44,9 @@ impl<const D: usize> Gyration<D> {
     /// The rate of angular momentum I ω̇ + ω × I ω over the size of the body \[force\]: by moments of inertia \[mass\], the spin and its rate
     /// in lengths.
     pub fn rate(&self, moments: &[[f64; D]; D], [spin, rate]: [&[f64; D]; 2]) -> [f64; D] {
-        let [momentum, own] = [spin, rate].map(|v| apply(moments, v));
+        let [momentum, torque] = [spin, rate].map(|v| apply(moments, v));
         let turning = cross(&self.angle(spin), &momentum);
-        std::array::from_fn(|a| own[a] + turning[a])
+        std::array::from_fn(|a| torque[a] + turning[a])
     }
 
     /// The derivative of that rate \[mass/time²\] by the rotation of the step in lengths, which changes rate and spin by so much each
@@ -57,17 +57,17 @@ impl<const D: usize> Gyration<D> {
         [spin, rate]: [&[f64; D]; 2],
         [of_rate, of_spin, share]: [f64; 3],
     ) -> [[f64; D]; D] {
-        let [momentum, own] = [spin, rate].map(|v| self.across(&apply(moments, v)));
+        let [momentum, torque] = [spin, rate].map(|v| self.across(&apply(moments, v)));
         let [by_spin, by_rate] = [spin, rate].map(|v| self.across(v));
         // As the body turns by dθ, I v changes by dθ × I v − I (dθ × v).
-        let turned = |by: &[[f64; D]; D], own: &[[f64; D]; D]| {
+        let turned = |by: &[[f64; D]; D], matrix: &[[f64; D]; D]| {
             let within = multiply(moments, by);
             std::array::from_fn::<[f64; D], D, _>(|a| {
-                std::array::from_fn(|b| share * (within[a][b] - own[a][b]))
+                std::array::from_fn(|b| share * (within[a][b] - matrix[a][b]))
             })
         };
         let of_momentum = turned(&by_spin, &momentum);
-        let of_own = turned(&by_rate, &own);
+        let of_torque = turned(&by_rate, &torque);
         let carried = multiply(
             &by_spin,
             &std::array::from_fn(|a| {
@@ -76,7 +76,7 @@ impl<const D: usize> Gyration<D> {
         );
         std::array::from_fn(|a| {
             std::array::from_fn(|b| {
-                of_rate * moments[a][b] + of_own[a][b] + carried[a][b] - of_spin * momentum[a][b]
+                of_rate * moments[a][b] + of_torque[a][b] + carried[a][b] - of_spin * momentum[a][b]
             })
         })
     }
@@ -88,8 +88,8 @@ impl<const D: usize> Gyration<D> {
         for column in 0..D {
             let mut unit = [0.0; D];
             unit[column] = 1.0;
-            for (row, own) in matrix.iter_mut().zip(cross(&angle, &unit)) {
-                row[column] = own;
+            for (row, entry) in matrix.iter_mut().zip(cross(&angle, &unit)) {
+                row[column] = entry;
             }
         }
         matrix
@@ -98,8 +98,8 @@ impl<const D: usize> Gyration<D> {
     /// The rotation \[rad\] of one in lengths.
     fn angle(&self, rotation: &[f64; D]) -> [f64; 3] {
         let mut angle = [0.0; 3];
-        for (angle, own) in angle.iter_mut().zip(rotation) {
-            *angle = own / self.size;
+        for (angle, x) in angle.iter_mut().zip(rotation) {
+            *angle = x / self.size;
         }
         angle
     }
@@ -120,7 +120,7 @@ mod tests {
     fn the_rate_changes_as_the_body_turns() {
         let (of_rate, of_spin, share) = (40.0, 6.0, 0.7);
         let at = |by: &[f64; 3]| {
-            let moments = GYRATION.after(&by.map(|own| share * own));
+            let moments = GYRATION.after(&by.map(|x| share * x));
             let spin = std::array::from_fn(|a| [2.0, -1.0, 0.5][a] + of_spin * by[a]);
             let rate = std::array::from_fn(|a| [0.3, 4.0, -5.0][a] + of_rate * by[a]);
             (moments, spin, rate)

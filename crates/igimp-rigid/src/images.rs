@@ -25,7 +25,7 @@ pub struct Image<const D: usize> {
 
 impl<const D: usize> Image<D> {
     /// A knot by itself.
-    pub const fn own(knot: usize) -> Self {
+    pub const fn alone(knot: usize) -> Self {
         Self {
             knot,
             across: [false; D],
@@ -47,7 +47,7 @@ impl<const D: usize> Images<D> {
         let (surface, places) = (&*body.surface, body.knots());
         let spacing = surface.longest_facet();
         let image = |knot: usize| {
-            let own = Image::own(knot);
+            let itself = Image::alone(knot);
             let (mut place, mut across, mut way) = (places[knot], [false; D], 0.0_f64);
             for axis in 0..D {
                 let (start, end) = (grid.axes[axis].start(), grid.axes[axis].end());
@@ -61,7 +61,7 @@ impl<const D: usize> Images<D> {
             }
             // Soil within the grid is further from all other knots than a facet is long.
             if way == 0.0 || way > spacing {
-                return own;
+                return itself;
             }
             let is_there = |&other: &usize| {
                 surface.side_of(other) == surface.side_of(knot)
@@ -69,7 +69,7 @@ impl<const D: usize> Images<D> {
             };
             (0..places.len())
                 .find(is_there)
-                .map_or(own, |knot| Image { knot, across })
+                .map_or(itself, |knot| Image { knot, across })
         };
         Self {
             of: (0..places.len()).map(image).collect(),
@@ -81,10 +81,10 @@ impl<const D: usize> Images<D> {
         self.of[knot]
     }
 
-    /// What belongs to the knots, with that of those beyond a side added to their images.
-    pub fn folded(&self, own: &[f64]) -> Vec<f64> {
-        let mut folded = vec![0.0; own.len()];
-        for (image, value) in std::iter::zip(&self.of, own) {
+    /// The shares of the knots, those beyond a side added to their images.
+    pub fn folded(&self, values: &[f64]) -> Vec<f64> {
+        let mut folded = vec![0.0; values.len()];
+        for (image, value) in std::iter::zip(&self.of, values) {
             folded[image.knot] += value;
         }
         folded
@@ -109,7 +109,7 @@ mod tests {
         let body = RigidBody::new(surface, vec![Interface::smooth(); 4], [5.0, 0.0]);
         let knots = body.knots();
         let base = |x: f64| {
-            let is_it = |own: &[f64; 2]| norm(&minus(own, &[5.0 + x, -1.0])) < 1e-12;
+            let is_it = |knot: &[f64; 2]| norm(&minus(knot, &[5.0 + x, -1.0])) < 1e-12;
             (0..knots.len())
                 .find(|&k| is_it(&knots[k]) && body.surface.side_of(k) == 0)
                 .unwrap()
@@ -130,7 +130,7 @@ mod tests {
                         assert_eq!(found.knot, base(to), "{end} {x}");
                         assert_eq!(found.across, [true, false]);
                     }
-                    None => assert_eq!(found, Image::own(base(x)), "{end} {x}"),
+                    None => assert_eq!(found, Image::alone(base(x)), "{end} {x}"),
                 }
             }
         }

@@ -73,9 +73,9 @@ impl<const D: usize> RigidBody<D> {
         let velocities = self.nodal(&self.motion.velocity, &self.motion.spin);
         let mut energy = 0.0;
         for (mass, velocity) in self.nodal_mass().iter().zip(&velocities) {
-            for (row, own) in mass.iter().zip(velocity) {
+            for (row, one) in mass.iter().zip(velocity) {
                 for (mass, other) in row.iter().zip(velocity) {
-                    energy += 0.5 * own * mass * other;
+                    energy += 0.5 * one * mass * other;
                 }
             }
         }
@@ -85,8 +85,8 @@ impl<const D: usize> RigidBody<D> {
     /// A vector and a rotation vector of the body on these nodes, the latter times its size.
     pub fn nodal(&self, vector: &[f64; D], rotation: &[f64; 3]) -> [[f64; D]; NODES_PER_BODY] {
         let mut turned = [0.0; D];
-        for (k, own) in turned.iter_mut().enumerate().take(rotations(D)) {
-            *own = rotation[k] * self.surface.size();
+        for (k, x) in turned.iter_mut().enumerate().take(rotations(D)) {
+            *x = rotation[k] * self.surface.size();
         }
         [*vector, turned]
     }

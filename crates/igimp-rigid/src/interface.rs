@@ -1,13 +1,13 @@
-//! What the sides of a rigid body are like.
+//! Interfaces: shear and tension of the sides of a rigid body.
 
 use igimp_material::Ratios;
 
 /// An interface between a rigid body and soil.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interface {
-    /// What it carries along the surface.
+    /// Its shear along the surface.
     pub shear: Shear,
-    /// What it carries when soil is pulled off.
+    /// Its tension when soil is pulled off.
     pub tension: Tension,
 }
 
@@ -72,7 +72,7 @@ impl Interface {
     }
 }
 
-/// What an interface carries along the surface.
+/// The shear of an interface along the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shear {
     /// Nothing.
@@ -90,7 +90,7 @@ pub enum Shear {
     },
 }
 
-/// What an interface carries when soil is pulled off.
+/// The tension of an interface when soil is pulled off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tension {
     /// Nothing: it lets go.

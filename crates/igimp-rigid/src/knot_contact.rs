@@ -36,7 +36,7 @@ pub type Functional<const D: usize> = Vec<(usize, [f64; D])>;
 pub struct Arms<const D: usize> {
     /// The node of its rotation.
     pub node: usize,
-    /// What rotations are multiplied by to be lengths \[length\].
+    /// The factor by which rotations become lengths \[length\].
     pub size: f64,
     /// Means of the arm times the normal; first the component of the arm \[length\].
     pub opening: [[f64; D]; D],
@@ -68,11 +68,11 @@ pub struct KnotContact<const D: usize> {
     pub young: f64,
     /// Adhesion of the soil that touches \[stress\].
     pub adhesion: f64,
-    /// Opening of the mean gap, by what is linear in the rotation of the body.
+    /// Opening of the mean gap, by the part linear in the rotation of the body.
     pub opening: Functional<D>,
     /// Slip of the soil along the tangents, likewise.
     pub slip: [Functional<D>; 2],
-    /// What turns with the body; none where it does not turn, and where it is round.
+    /// The arms that turn with the body; none where it does not turn, and where it is round.
     pub arms: Option<Arms<D>>,
     /// As the last step left it.
     pub before: ContactNode,
@@ -125,7 +125,7 @@ impl<const D: usize> KnotContact<D> {
     }
 
     /// Takes over the gap that is `measured` of soil that came in the place of other \[length\], by the share of a cell that slid by in the last
-    /// step (theory, eq. 50a); in steps that take time the gap only grows by it. What slipped then is on its limit still.
+    /// step (theory, eq. 50a); in steps that take time the gap only grows by it. Its slip then is on the limit still.
     pub fn take_soil_that_came(
         &mut self,
         (measured, takes_time): (f64, bool),
@@ -281,7 +281,7 @@ impl<const D: usize> KnotContact<D> {
         let turn = self.turn(u);
         let all = [&self.opening, &self.slip[0], &self.slip[1]];
         let of_arms = turn.as_ref().map(|(arms, turn)| (arms.all(), turn));
-        let moments = of_arms.map(|(arms, turn)| arms.map(|own| turn.moment_beyond(own)));
+        let moments = of_arms.map(|(arms, turn)| arms.map(|arm| turn.moment_beyond(arm)));
         let [opening, first, second] = self.turned(all, moments);
         add(&opening, -self.area * traction.pressure, f);
         for (slip, shear) in [&first, &second]
@@ -295,9 +295,9 @@ impl<const D: usize> KnotContact<D> {
             return;
         };
         if let Some((arms, turn)) = &turn {
-            let [of_opening, first, second] = arms.all().map(|own| {
-                turn.slope_of_moment(own)
-                    .map(|row| row.map(|own| self.area * own))
+            let [of_opening, first, second] = arms.all().map(|arm| {
+                turn.slope_of_moment(arm)
+                    .map(|row| row.map(|x| self.area * x))
             });
             let entry = |a: usize, b: usize| {
                 traction.pressure * of_opening[a][b]
@@ -307,7 +307,7 @@ impl<const D: usize> KnotContact<D> {
             let block = std::array::from_fn(|a| std::array::from_fn(|b| entry(a, b)));
             blocks(arms.node, arms.node, &block);
         }
-        let slopes = of_arms.map(|(arms, turn)| arms.map(|own| turn.slope_beyond(own)));
+        let slopes = of_arms.map(|(arms, turn)| arms.map(|arm| turn.slope_beyond(arm)));
         let [of_gap, of_first, of_second] = self.turned(all, slopes);
         let (slip, of_slip) = ([first, second], [of_first, of_second]);
         let mut outer = |a: &Functional<D>, b: &Functional<D>, factor: f64| {
@@ -341,11 +341,11 @@ impl<const D: usize> KnotContact<D> {
             return functions.map(Cow::Borrowed);
         };
         std::array::from_fn(|k| {
-            let own = |&(at, share): &(usize, [f64; D])| {
+            let reduced = |&(at, share): &(usize, [f64; D])| {
                 let by = if at == arms.node { beyond[k] } else { [0.0; D] };
                 (at, std::array::from_fn(|axis| share[axis] - by[axis]))
             };
-            Cow::Owned(functions[k].iter().map(own).collect())
+            Cow::Owned(functions[k].iter().map(reduced).collect())
         })
     }
 }

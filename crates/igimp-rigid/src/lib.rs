@@ -39,11 +39,11 @@ pub const NODES_PER_BODY: usize = 2;
 /// A rigid body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigidBody<const D: usize> {
-    /// What messages call it.
+    /// Its name in messages.
     pub name: String,
     /// Its surface, in the frame of the body.
     pub surface: Arc<Surface<D>>,
-    /// What its sides are like, in the order of the sides of the surface.
+    /// The interfaces of its sides, in the order of the sides of the surface.
     pub interfaces: Vec<Interface>,
     /// Stiffness of contact.
     pub penalty: Penalty,
@@ -51,7 +51,7 @@ pub struct RigidBody<const D: usize> {
     pub pose: Pose<D>,
     /// Its mass, and how it moves.
     pub motion: RigidInertia<D>,
-    /// What contact has left behind; written in `commit` alone.
+    /// The state of contact; written in `commit` alone.
     pub contact: ContactState,
 }
 

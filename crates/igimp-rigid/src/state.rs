@@ -1,6 +1,6 @@
-//! What contact leaves behind from step to step.
+//! The state of contact from step to step.
 
-/// What contact has left behind on a rigid body.
+/// The state of contact on a rigid body.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactState {
     /// The knots of the surface, in its order.
@@ -23,7 +23,7 @@ pub struct ContactNode {
     pub pressure: f64,
     /// Shear on the soil along the tangents of the surface; one component in the plane \[stress\].
     pub shear: [f64; 2],
-    /// Area that soil covers of what belongs to the knot \[length^(D-1)\].
+    /// Area of the knot that soil covers \[length^(D-1)\].
     pub area: f64,
     /// Mean gap, summed over the motion of the soil since it came near; negative in penetration
     /// \[length\].
@@ -38,7 +38,7 @@ pub struct ContactNode {
     pub is_broken: bool,
 }
 
-/// What a step in motion changes of the contact of a body.
+/// The change of a body's contact by a step in motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactChange {
     /// By how much pressure grows at knots that the motion before the step brings nearer to soil (theory, eq. 68c) \[force\].

@@ -1,22 +1,22 @@
-//! The turn of a rigid body in a step, and what it makes of arms about the reference point (theory, eqs. 48a, 48c and 67b).
+//! The turn of a rigid body in a step, and its effect on arms about the reference point (theory, eqs. 48a, 48c and 67b).
 
 use crate::rotations;
 
 /// From this angle on closed forms keep their digits; below it series do \[rad\].
 const SMALL: f64 = 1e-2;
 
-/// The rotation R of a body over a step, from what its node has of it in lengths.
+/// The rotation R of a body over a step, from the rotation of its node in lengths.
 ///
 /// Arms r of forces f are handed over as their sum Σ r fᵀ, first the component of the arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turn<const D: usize> {
     /// R − 1 by columns.
     ways: [[f64; D]; D],
-    /// R − 1 less what is linear in the rotation, by columns.
+    /// R − 1 less the part linear in the rotation, by columns.
     beyond: [[f64; D]; D],
     /// T − 1 by columns: as the vector of rotation changes by dφ the body turns by T dφ. None in the plane.
     means: [[f64; D]; D],
-    /// What rotations are multiplied by to be lengths \[length\].
+    /// The factor by which rotations become lengths \[length\].
     size: f64,
 }
 
@@ -36,14 +36,14 @@ impl<const D: usize> Turn<D> {
         }
     }
 
-    /// Σ f · (R − 1 − φ×) r of forces at arms: the work beyond that of what is linear in the rotation.
+    /// Σ f · (R − 1 − φ×) r of forces at arms: the work beyond that of the part linear in the rotation.
     pub fn work_beyond(&self, arms: &[[f64; D]; D]) -> f64 {
         let rows = std::iter::zip(&self.beyond, arms);
         rows.map(|(way, force)| std::iter::zip(way, force).map(|(w, f)| w * f).sum::<f64>())
             .sum()
     }
 
-    /// Σ (R − 1) r × f of forces at arms, over the size of the body: what the turn adds to their moment \[force\].
+    /// Σ (R − 1) r × f of forces at arms, over the size of the body: the moment that the turn adds \[force\].
     pub fn moment_beyond(&self, arms: &[[f64; D]; D]) -> [f64; D] {
         moment(&turned(&self.ways, arms), self.size)
     }
@@ -53,26 +53,26 @@ impl<const D: usize> Turn<D> {
     pub fn slope_beyond(&self, arms: &[[f64; D]; D]) -> [f64; D] {
         let [beyond, start] = [self.moment_beyond(arms), moment(arms, self.size)];
         let whole: [f64; D] = std::array::from_fn(|k| beyond[k] + start[k]);
-        let own = |k: usize| -> f64 { (0..D).map(|a| self.means[k][a] * whole[a]).sum() };
-        std::array::from_fn(|k| beyond[k] + own(k))
+        let mean = |k: usize| -> f64 { (0..D).map(|a| self.means[k][a] * whole[a]).sum() };
+        std::array::from_fn(|k| beyond[k] + mean(k))
     }
 
     /// The derivative of the moment R r × f of forces by the rotation, over the squared size of the body \[force/length\].
     pub fn slope_of_moment(&self, arms: &[[f64; D]; D]) -> [[f64; D]; D] {
         let mut now = turned(&self.ways, arms);
         for (now, arms) in now.iter_mut().zip(arms) {
-            for (now, own) in now.iter_mut().zip(arms) {
-                *now += own;
+            for (now, x) in now.iter_mut().zip(arms) {
+                *now += x;
             }
         }
         self.by_vector(&by_turn(&now, self.size))
     }
 
-    /// How what changes so much by a turn of the body changes by its vector of rotation: times T.
+    /// A derivative by the turn of the body as one by its vector of rotation: times T.
     pub(crate) fn by_vector(&self, by_turn: &[[f64; D]; D]) -> [[f64; D]; D] {
         let entry = |row: &[f64; D], k: usize| -> f64 {
-            let own = std::iter::zip(row, &self.means[k]);
-            row[k] + own.map(|(by_turn, mean)| by_turn * mean).sum::<f64>()
+            let pairs = std::iter::zip(row, &self.means[k]);
+            row[k] + pairs.map(|(by_turn, mean)| by_turn * mean).sum::<f64>()
         };
         by_turn.map(|row| std::array::from_fn(|k| entry(&row, k)))
     }
@@ -87,13 +87,13 @@ fn turned<const D: usize>(ways: &[[f64; D]; D], arms: &[[f64; D]; D]) -> [[f64; 
 /// The moment of forces at arms over the size of the body \[force\].
 fn moment<const D: usize>(arms: &[[f64; D]; D], size: f64) -> [f64; D] {
     let mut moment = [0.0; D];
-    for (k, own) in moment.iter_mut().enumerate().take(rotations(D)) {
+    for (k, entry) in moment.iter_mut().enumerate().take(rotations(D)) {
         let (a, b) = if D == 2 {
             (0, 1)
         } else {
             ((k + 1) % D, (k + 2) % D)
         };
-        *own = (arms[a][b] - arms[b][a]) / size;
+        *entry = (arms[a][b] - arms[b][a]) / size;
     }
     moment
 }
@@ -114,15 +114,15 @@ fn by_turn<const D: usize>(arms: &[[f64; D]; D], size: f64) -> [[f64; D]; D] {
 /// The rotation \[rad\] of one in lengths.
 pub(crate) fn angle<const D: usize>(rotation: &[f64; D], size: f64) -> [f64; 3] {
     let mut angle = [0.0; 3];
-    for (angle, own) in angle.iter_mut().zip(rotation).take(rotations(D)) {
-        *angle = own / size;
+    for (angle, x) in angle.iter_mut().zip(rotation).take(rotations(D)) {
+        *angle = x / size;
     }
     angle
 }
 
 /// The mean of an arm over the turn, less the arm as the step begins: (R − 1) s = φ × (s + this).
 pub(crate) fn mean_beyond<const D: usize>(angle: &[f64; 3], start: &[f64; D]) -> [f64; D] {
-    let squared = angle.iter().map(|own| own * own).sum::<f64>();
+    let squared = angle.iter().map(|x| x * x).sum::<f64>();
     let whole = squared.sqrt();
     // (1 − cos φ) / φ² and (φ − sin φ) / φ³.
     let (once, twice) = if whole < SMALL {
@@ -187,16 +187,16 @@ mod tests {
     #[test]
     fn arms_turn_with_the_body() {
         for by in [1e-6, 5e-3, 0.0099, 0.0101, 0.7, 3.0] {
-            let own = [0.6 * by, -0.2 * by, 0.5 * by];
-            let turn = Turn::by(&own.map(|own| SIZE * own), SIZE);
+            let rotation = [0.6 * by, -0.2 * by, 0.5 * by];
+            let turn = Turn::by(&rotation.map(|x| SIZE * x), SIZE);
             let linear: f64 = (0..2)
                 .map(|k| {
-                    let way = cross(&own, &ARMS[k]);
+                    let way = cross(&rotation, &ARMS[k]);
                     (0..3).map(|a| FORCES[k][a] * way[a]).sum::<f64>()
                 })
                 .sum();
-            assert!((linear + turn.work_beyond(&sums()) - work(own)).abs() < 1e-14);
-            let matrix = turn_by::<3>(&own);
+            assert!((linear + turn.work_beyond(&sums()) - work(rotation)).abs() < 1e-14);
+            let matrix = turn_by::<3>(&rotation);
             let mut exact = [0.0; 3];
             for k in 0..2 {
                 let way = |a: usize| -> f64 {
@@ -210,7 +210,7 @@ mod tests {
             }
         }
         let still = Turn::by(&[0.0; 3], SIZE).moment_beyond(&sums());
-        assert!(still.iter().all(|own| own.abs() < 1e-300), "{still:?}");
+        assert!(still.iter().all(|x| x.abs() < 1e-300), "{still:?}");
     }
 
     /// GOAL: work and moment have the derivatives that Newton's method needs.
@@ -220,19 +220,19 @@ mod tests {
     fn derivatives_are_those_of_the_vector_of_rotation() {
         let d = 1e-5;
         for by in [0.0, 5e-3, 0.0099, 0.0101, 0.7, 3.0] {
-            let own = [0.6 * by, -0.2 * by, 0.5 * by].map(|own| SIZE * own);
-            let turn = Turn::by(&own, SIZE);
+            let rotation = [0.6 * by, -0.2 * by, 0.5 * by].map(|x| SIZE * x);
+            let turn = Turn::by(&rotation, SIZE);
             let (slope, of_moment) = (turn.slope_beyond(&sums()), turn.slope_of_moment(&sums()));
             for k in 0..3 {
                 let at = |sign: f64| {
-                    let mut own = own;
-                    own[k] += sign * d;
-                    Turn::by(&own, SIZE)
+                    let mut rotation = rotation;
+                    rotation[k] += sign * d;
+                    Turn::by(&rotation, SIZE)
                 };
                 let [plus, minus] = [at(1.0), at(-1.0)];
-                let [more, less] = [&plus, &minus].map(|own| own.work_beyond(&sums()));
+                let [more, less] = [&plus, &minus].map(|turn| turn.work_beyond(&sums()));
                 assert!((0.5 * (more - less) / d - slope[k]).abs() < 1e-8, "{by}");
-                let [more, less] = [&plus, &minus].map(|own| own.moment_beyond(&sums()));
+                let [more, less] = [&plus, &minus].map(|turn| turn.moment_beyond(&sums()));
                 for i in 0..3 {
                     let difference = 0.5 * (more[i] - less[i]) / d;
                     assert!((difference - of_moment[i][k]).abs() < 1e-8, "{by}");

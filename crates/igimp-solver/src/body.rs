@@ -1,4 +1,4 @@
-//! What a step changes: the particles, the points that carry loads, rigid bodies and
+//! The body that a step changes: the particles, the points that carry loads, rigid bodies and
 //! reinforcement.
 
 use igimp_assembly::{LoadPoint, Particles, Reinforcement, RigidBody, Structures};
@@ -16,7 +16,7 @@ pub struct Body<const D: usize> {
     pub rigid: Vec<RigidBody<D>>,
     /// Anchors, nails and geotextiles in the soil.
     pub reinforcement: Vec<Reinforcement<D>>,
-    /// What stands in free field beside walls, while the body moves in time.
+    /// Columns in free field beside walls, while the body moves in time.
     pub free_fields: Vec<FreeField<D>>,
 }
 
@@ -32,7 +32,7 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    /// What stands in its soil and on it.
+    /// The structures in its soil and on it.
     pub fn structures(&self) -> Structures<'_, D> {
         Structures {
             bodies: &self.rigid,
@@ -41,7 +41,7 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    /// Takes all motion from what moves, as before a march in statics, and with it what stands in free field.
+    /// Takes all motion from the body, as before a march in statics, and with it the free fields.
     pub fn rest(&mut self) {
         self.free_fields.clear();
         self.particles.rest();

@@ -105,7 +105,7 @@ impl<const D: usize> LastStep<D> {
             u: forces.u.clone(),
             change: step.to - step.from,
             work,
-            dissipated: (step.work.as_ref()).map_or(0.0, |own| own.dissipated_share(work)),
+            dissipated: (step.work.as_ref()).map_or(0.0, |report| report.dissipated_share(work)),
         }
     }
 }
@@ -132,7 +132,7 @@ impl<const D: usize> ContinuationState<D> {
         }
     }
 
-    /// What the next step is to reach.
+    /// The target of the next step.
     fn target(&self, settings: &ContinuationSettings) -> Target<D> {
         match &self.last {
             Some(last) if self.is_by_work => {
@@ -245,7 +245,7 @@ const FALLEN: f64 = 1e-3;
 /// Steps between the equilibria beside the largest factor, where it is resolved.
 const STEPS_OF_PEAK: f64 = 16.0;
 
-/// The largest factor of a path so far, and what it takes to follow the path there once more.
+/// The largest factor of a path so far, and the data to follow the path there once more.
 struct Peak<const D: usize> {
     largest: f64,
     /// The equilibrium before the last step.

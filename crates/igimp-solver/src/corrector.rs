@@ -102,7 +102,7 @@ impl Guard {
     }
 }
 
-/// What makes the corrections of one step.
+/// The maker of the corrections of one step.
 ///
 /// The first one uses the elastic tangent, all others the consistent tangent; the last one may use that
 /// of the correction before. One that turns a particle inside out, or raises the residual manyfold, is
@@ -198,7 +198,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
     /// The same with a load factor that is unknown.
     pub(crate) fn on_path(mut self, factor: FreeFactor<'s, D>) -> Self {
         self.guard = Some(match self.guard {
-            Some(own) if own.gives_up => Guard::FADING,
+            Some(guard) if guard.gives_up => Guard::FADING,
             _ => Guard::ON_PATH,
         });
         self.factor = Some(factor);
@@ -297,7 +297,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
             let Err(error) = self.solve_system(force) else {
                 break;
             };
-            let moves_as_mechanism = self.factor.as_ref().is_some_and(|own| own.is_mechanism);
+            let moves_as_mechanism = self.factor.as_ref().is_some_and(|free| free.is_mechanism);
             let is_singular = match error {
                 LinearSolverError::Inaccurate { .. } => moves_as_mechanism,
                 _ => error.is_singular(),
@@ -331,7 +331,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         })
     }
 
-    /// Adds what `du` holds to `u`, and to the load factor where it is unknown.
+    /// Adds `du` to `u`, and to the load factor where it is unknown.
     fn add_correction(&mut self, u: &mut [[f64; D]]) -> Result<(), AssemblyError> {
         self.system.add_correction(u, self.du);
         if let (Some(factor), Some(by)) = (&mut self.factor, self.du.last()) {
@@ -498,22 +498,24 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
     }
 }
 
-/// Names for what fails.
+/// Names of failures.
 impl<const D: usize> Corrector<'_, '_, D> {
-    /// The failure of the linear solver at `u` with a name for what is not finite: the particle whose
-    /// tangent it is, or the node.
+    /// The failure of the linear solver at `u` that names the particle whose tangent is not finite,
+    /// or the node.
     fn named(&self, error: LinearSolverError, u: &[[f64; D]]) -> StepFailure {
         match error {
-            LinearSolverError::NonFinite { what: "matrix", .. } => self
+            LinearSolverError::NonFinite {
+                array: "matrix", ..
+            } => self
                 .finite_tangents(u)
                 .map_or_else(StepFailure::from, |()| error.into()),
-            LinearSolverError::NonFinite { what, index } => {
-                let what = if what == "solution" {
+            LinearSolverError::NonFinite { array, index } => {
+                let vector = if array == "solution" {
                     "correction"
                 } else {
-                    what
+                    array
                 };
-                self.not_finite(what, index)
+                self.not_finite(vector, index)
             }
             LinearSolverError::Singular {
                 unknown: Some(unknown),
@@ -545,7 +547,7 @@ impl<const D: usize> Corrector<'_, '_, D> {
             let (node, axis) = unknowns.place(unknown)?;
             self.system.rigid_body_of(node, axis)
         };
-        let own = match unknown {
+        let by_unknown = match unknown {
             Some(unknown) => Some(body_of(unknown)?),
             None => None,
         };
@@ -559,7 +561,7 @@ impl<const D: usize> Corrector<'_, '_, D> {
             Some((arm * by.abs(), moved))
         });
         let farthest = ways.max_by(|a, b| a.0.total_cmp(&b.0));
-        let (body, component, touches) = farthest.map(|(_, moved)| moved).or(own)?;
+        let (body, component, touches) = farthest.map(|(_, moved)| moved).or(by_unknown)?;
         Some(StepFailure::NotHeld {
             body: body.name.clone(),
             component: match component.checked_sub(D) {
@@ -582,14 +584,14 @@ impl<const D: usize> Corrector<'_, '_, D> {
     }
 
     /// The failure that names the node of an unknown.
-    fn not_finite(&self, what: &'static str, unknown: usize) -> StepFailure {
+    fn not_finite(&self, array: &'static str, unknown: usize) -> StepFailure {
         self.system.unknowns().place(unknown).map_or_else(
             || {
                 let index = unknown;
-                LinearSolverError::NonFinite { what, index }.into()
+                LinearSolverError::NonFinite { array, index }.into()
             },
             |(node, axis)| StepFailure::NotFinite {
-                what,
+                vector: array,
                 position: padded(&self.system.node_position(node)),
                 axis,
             },

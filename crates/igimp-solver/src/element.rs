@@ -32,7 +32,7 @@ const VERTICAL: usize = 1;
 /// Most halvings of a step.
 const MOST_HALVINGS: i32 = 12;
 
-/// What is prescribed of a component.
+/// The prescribed measure of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Control {
     /// Its strain: natural of xx, yy and zz, ∂u_x/∂Y of the shear \[-\].
@@ -43,10 +43,10 @@ pub enum Control {
     AsXx,
 }
 
-/// A path: what is prescribed, and its values at the ends of legs. The first leg begins at the initial state.
+/// A path: the controls, and their values at the ends of legs. The first leg begins at the initial state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElementPath {
-    /// What is prescribed of xx, yy, zz and xy.
+    /// The control of xx, yy, zz and xy.
     pub controls: [Control; COMPONENTS],
     /// Values at the ends of the legs: strain \[-\] or stress \[stress\], extension and tension positive; that of
     /// [`Control::AsXx`] plays no part. A stress that is not a number is the initial one.
@@ -86,7 +86,7 @@ pub struct ElementState {
     pub strain: [f64; COMPONENTS],
     /// Cauchy stress \[stress\], tension positive.
     pub sigma: Tensor,
-    /// What the law remembers.
+    /// The internal variables of the law.
     pub history: History,
     /// Where on the yield surface the stress is.
     pub regime: Regime,
@@ -143,7 +143,7 @@ pub struct StepLost {
     pub leg: usize,
     /// The share of it that was followed \[-\].
     pub share: f64,
-    /// What the law said, if it refused.
+    /// The error of the law, if it refused.
     pub law: Option<MaterialError>,
 }
 
@@ -219,7 +219,7 @@ impl ElementTest {
         })
     }
 
-    /// The values of what is prescribed at the start.
+    /// The prescribed values at the start.
     fn begin(&self, state: &ElementState) -> [f64; COMPONENTS] {
         std::array::from_fn(|c| match self.path.controls[c] {
             Control::Stress => state.stress(c),
@@ -236,7 +236,7 @@ impl ElementTest {
     }
 }
 
-/// Takes a step in as many parts as it needs; else how far it came, and what the law said.
+/// Takes a step in as many parts as it needs; else how far it came, and the error of the law.
 fn follow(
     law: &dyn ConstitutiveModel,
     (point, controls): (&mut Point, [Control; COMPONENTS]),

@@ -13,10 +13,10 @@ const DIFFERENCE: f64 = 1e-6;
 /// Largest change of the load factor in one correction, as a share of it \[-\].
 const LARGEST_CHANGE: f64 = 0.2;
 
-/// Work that a converged step may miss, as a share of what was asked for \[-\].
+/// Work that a converged step may miss, as a share of the work asked for \[-\].
 const WORK_MISSED: f64 = 1e-6;
 
-/// What the residual of a converged step may make of the load factor, as a share of it, in general and where corrections are
+/// The doubt that a converged residual may leave in the load factor, as a share of it, in general and where corrections are
 /// guarded in space: the last digits are the dear ones there \[-\].
 const FACTOR_IN_DOUBT: f64 = 2e-5;
 const FACTOR_IN_DOUBT_IN_SPACE: f64 = 1e-4;
@@ -42,7 +42,7 @@ pub(crate) struct FreeFactor<'p, const D: usize> {
     pub(crate) at: f64,
     /// Whether the body moved as a mechanism in the step before: its tangent without a border may then be singular.
     pub(crate) is_mechanism: bool,
-    /// What the residual may make of the load factor, as a share of it \[-\].
+    /// The doubt that the residual may leave in the load factor, as a share of it \[-\].
     in_doubt: f64,
     /// Gross work of the external force on the step that is asked for \[force·length\].
     work: f64,
@@ -112,12 +112,12 @@ impl<'p, const D: usize> FreeFactor<'p, D> {
         Ok(())
     }
 
-    /// What the equation of the work is multiplied by, so that it weighs as much as a force \[1/length\].
+    /// The factor of the equation of the work, so that it weighs as much as a force \[1/length\].
     fn scale(&self) -> f64 {
         product(&self.force, &self.force).sqrt() / self.work
     }
 
-    /// What is missing of the work at displacements by unknown \[force\].
+    /// The work that is missing at displacements by unknown \[force\].
     pub(crate) fn missing(&self, u: &[f64]) -> f64 {
         self.scale() * (self.work - product(&self.force, u))
     }
@@ -140,7 +140,7 @@ impl<'p, const D: usize> FreeFactor<'p, D> {
         missed <= WORK_MISSED * self.work && (residual.is_round_off || doubt <= self.in_doubt)
     }
 
-    /// What has to be left of a residual at displacements by unknown, so that it leaves no doubt in the load factor \[-\].
+    /// The share that a residual has to fall to at displacements by unknown, so that it leaves no doubt in the load factor \[-\].
     pub(crate) fn share_wanted(&self, u: &[f64], residual: &OutOfBalance) -> f64 {
         self.in_doubt / self.doubt(u, residual)
     }

@@ -35,7 +35,7 @@ pub struct FreeField<const D: usize> {
     pub upper: bool,
     /// The particles.
     pub particles: Particles<D>,
-    /// What stands at the nodes of its own grid: forces that hold it as it was at the start, and displacements since.
+    /// The forces at the nodes of its own grid that hold it as it was at the start, and displacements since.
     pub nodes: Arc<Vec<WallNode<D>>>,
 }
 
@@ -111,17 +111,17 @@ impl<const D: usize> FreeField<D> {
             nodes: Arc::clone(&self.nodes),
             beside: Arc::default(),
         });
-        let mut own = body.clone();
-        own.grid = grid;
-        own.constraints = constraints;
-        own.motions.clear();
-        own.reinforcement.clear();
-        own.flow = None;
-        own.held = None;
-        if let Some(time) = &mut own.time {
+        let mut column = body.clone();
+        column.grid = grid;
+        column.constraints = constraints;
+        column.motions.clear();
+        column.reinforcement.clear();
+        column.flow = None;
+        column.held = None;
+        if let Some(time) = &mut column.time {
             time.must_resolve = false;
         }
-        own.with_walls(walls)
+        column.with_walls(walls)
     }
 
     /// The cells of the body's grid that stand beside the wall.
@@ -141,7 +141,7 @@ impl<const D: usize> FreeField<D> {
         body.node_index(place)
     }
 
-    /// The column after a step under the conditions of the body, and what it does beside the wall.
+    /// The column after a step under the conditions of the body, and its motion beside the wall.
     fn advanced(
         &self,
         method: &Method,
@@ -151,9 +151,9 @@ impl<const D: usize> FreeField<D> {
         let conditions = self.conditions(of_body)?;
         let (particles, forces) = step(self.particles.clone(), &conditions)?;
         let nodes: Vec<_> = std::iter::zip(self.nodes.iter(), &forces.u)
-            .map(|(own, u)| WallNode {
-                displacement: std::array::from_fn(|a| own.displacement[a] + u[a]),
-                ..*own
+            .map(|(node, u)| WallNode {
+                displacement: std::array::from_fn(|a| node.displacement[a] + u[a]),
+                ..*node
             })
             .collect();
         let beside = self.beside_wall((&conditions.grid, &of_body.grid), &nodes, &forces);
@@ -179,11 +179,11 @@ impl<const D: usize> FreeField<D> {
         Particles::from_fields(fields)
     }
 
-    /// What the column does beside every node of the wall. Beside soil that lies higher than the column the ground moves as its top
+    /// The motion of the column beside every node of the wall. Beside soil that lies higher than the column the ground moves as its top
     /// does, and presses on nothing.
     fn beside_wall(
         &self,
-        (own, of_body): (&Grid<D>, &Grid<D>),
+        (grid, of_body): (&Grid<D>, &Grid<D>),
         nodes: &[WallNode<D>],
         forces: &NodalForces<D>,
     ) -> Vec<FreeMotion<D>> {
@@ -194,19 +194,19 @@ impl<const D: usize> FreeField<D> {
         let sign = if self.upper { 1.0 } else { -1.0 };
         let of_tie = |tie: &TieForce<D>| {
             let node = tie.nodes[side];
-            let at_wall = self.node_of_body(of_body, own.node_place(node));
+            let at_wall = self.node_of_body(of_body, grid.node_place(node));
             let free = FreeMotion {
                 node: at_wall,
                 normal: self.normal,
                 displacement: [self.nodes[node].displacement, nodes[node].displacement],
                 velocity: [motion.before[node], motion.after[node]],
-                force: tie.force.map(|force| force.map(|own| sign * own)),
+                force: tie.force.map(|force| force.map(|x| sign * x)),
             };
             (at_wall, free)
         };
         let found: BTreeMap<usize, FreeMotion<D>> = forces.ties.iter().map(of_tie).collect();
         let beside = |node: usize| {
-            let mut place = own.node_place(node);
+            let mut place = grid.node_place(node);
             let at_wall = self.node_of_body(of_body, place);
             if let Some(free) = found.get(&at_wall) {
                 return Some(*free);
@@ -224,15 +224,15 @@ impl<const D: usize> FreeField<D> {
             }
             None
         };
-        let at_side = |node: &usize| own.node_place(*node)[self.normal] == side;
-        (0..own.node_count())
+        let at_side = |node: &usize| grid.node_place(*node)[self.normal] == side;
+        (0..grid.node_count())
             .filter(at_side)
             .filter_map(beside)
             .collect()
     }
 }
 
-/// The free fields of a body after a step, and the conditions of that step with what it does there; none for a body
+/// The free fields of a body after a step, and the conditions of that step with their motion there; none for a body
 /// without free fields, and in statics.
 ///
 /// # Errors
@@ -253,8 +253,8 @@ pub(crate) fn go_ahead<const D: usize>(
     let (mut after, mut beside) = (Vec::new(), Vec::new());
     let mut advance = || {
         for column in free_fields {
-            let (own, motion) = column.advanced(method, conditions, step)?;
-            after.push(own);
+            let (field, motion) = column.advanced(method, conditions, step)?;
+            after.push(field);
             beside.extend(motion);
         }
         let walls = Walls {

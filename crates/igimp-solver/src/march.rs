@@ -24,7 +24,7 @@ where
     }
 }
 
-/// What an observer sees after each accepted step.
+/// The view of an observer after each accepted step.
 #[derive(Clone, Copy, Debug)]
 pub struct Accepted<'a, const D: usize> {
     /// The body in its new state.
@@ -338,7 +338,7 @@ impl<'a> Stride<'a> {
         let share = share.map_or(cut_factor, |share| share.min(cut_factor));
         state.size = share * state.size.min(tried);
         if share < cut_factor {
-            // What a step resolves is known: it is no sign of want of equilibrium.
+            // The resolution of a step is known: it is no sign of want of equilibrium.
             self.smallest = self.smallest.min(self.least * state.size);
         }
         state.successes = 0;
@@ -377,7 +377,7 @@ fn next_landing(at: f64, size: f64, nominal: f64) -> f64 {
 }
 
 /// The load factor after a step: uncut steps land on multiples of the nominal size, and no sliver
-/// is left before 1. What counts as near is told by the step itself: one that was cut often must
+/// is left before 1. The step itself decides which distance is near: one that was cut often must
 /// not end where it began.
 fn next_factor(at: f64, size: f64, nominal: f64) -> f64 {
     let to = at + size;

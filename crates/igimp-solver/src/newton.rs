@@ -59,7 +59,7 @@ pub fn step<const D: usize>(
     step_of_march(body, method, conditions, stretch, settings, workspace)
 }
 
-/// What a step of a march goes along.
+/// The stretch of a step of a march.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stretch {
     /// Load factor at the start \[-\].
@@ -92,13 +92,13 @@ pub(crate) fn step_of_march<const D: usize>(
     workspace: &mut Workspace<D>,
 ) -> Result<(StepReport, NodalForces<D>), StepError> {
     let factors = (stretch.from, stretch.to);
-    let of_column = |particles: Particles<D>, own: &StepConditions<D>| {
+    let of_column = |particles: Particles<D>, conditions: &StepConditions<D>| {
         let mut column = Body::new(particles);
         let mut workspace = Workspace::new(SolverKind::Auto.build());
         step_of_body(
             &mut column,
             method,
-            own,
+            conditions,
             Stretch::WHOLE,
             settings,
             &mut workspace,
@@ -170,9 +170,9 @@ fn step_of_body<const D: usize>(
         None
     };
     for attempt in on_bodies.into_iter().chain(firmly).chain(guarded) {
-        // What fails all the same fails for the first reason.
-        let mut own = ResidualHistory::default();
-        if let Ok(accepted) = equilibrium(&attempt, body, workspace, &mut own) {
+        // A step that fails again fails for the first reason.
+        let mut retry = ResidualHistory::default();
+        if let Ok(accepted) = equilibrium(&attempt, body, workspace, &mut retry) {
             return Ok(accepted);
         }
     }
@@ -188,21 +188,21 @@ fn step_of_body<const D: usize>(
 /// The method with which a step is tried again that was singular at a node which hardly touches soil. On a given geometry nodes are
 /// tied, if the tangent at the start of the step, which is elastic, was singular: soil that yields is no matter of its nodes.
 fn held_again(method: &Method, history: &ResidualHistory) -> Option<Method> {
-    let own = &method.small_cuts;
+    let cuts = &method.small_cuts;
     let mut held = method.clone();
     match method.geometry {
         Geometry::Moving
-            if own.ghost_penalty == 0.0
+            if cuts.ghost_penalty == 0.0
                 && (history.is_weakly_held() || history.begins_weakly_held()) =>
         {
             held.small_cuts.ghost_penalty = GHOST_PENALTY;
         }
-        Geometry::Given if own.below < TIED_BELOW && history.begins_weakly_held() => {
+        Geometry::Given if cuts.below < TIED_BELOW && history.begins_weakly_held() => {
             held.small_cuts = SmallCuts {
                 below: TIED_BELOW,
                 of: CutVolume::Cell,
                 remedy: Remedy::Extrapolate,
-                ..*own
+                ..*cuts
             };
         }
         Geometry::Moving | Geometry::Given => return None,
@@ -213,14 +213,14 @@ fn held_again(method: &Method, history: &ResidualHistory) -> Option<Method> {
 /// Whether a step in statics begins before any soil has touched a rigid body: at no gap and no pressure contact has no stiffness, and
 /// holds no soil that lies on a body.
 fn lies_on_nothing<const D: usize>(body: &Body<D>, conditions: &StepConditions<D>) -> bool {
-    let mut knots = body.rigid.iter().flat_map(|own| &own.contact.knots);
+    let mut knots = body.rigid.iter().flat_map(|rigid| &rigid.contact.knots);
     conditions.time.is_none() && !body.rigid.is_empty() && knots.all(|knot| knot.area == 0.0)
 }
 
 /// Whether a step failed for soil without stiffness: its system was singular, or soil was at the apex of its strength, where
 /// it has none.
 fn has_no_stiffness<const D: usize>(failure: &StepFailure, trial: &Trial<D>) -> bool {
-    let at_apex = || trial.particles.iter().any(|own| own.regime == Regime::Apex);
+    let at_apex = || trial.particles.iter().any(|p| p.regime == Regime::Apex);
     let finds_none = failure.is_want_of_equilibrium() && *failure != StepFailure::MechanismAtOnce;
     failure.is_singular() || finds_none && at_apex()
 }
@@ -274,10 +274,10 @@ pub(crate) fn step_on_path<const D: usize>(
                 again: Some(Again::Held),
                 ..attempt
             });
-            let mut own = ResidualHistory::default();
+            let mut retry = ResidualHistory::default();
             let held = firmly
-                .filter(|own| own.method.geometry == Geometry::Given)
-                .and_then(|attempt| equilibrium(&attempt, body, workspace, &mut own).ok());
+                .filter(|attempt| attempt.method.geometry == Geometry::Given)
+                .and_then(|attempt| equilibrium(&attempt, body, workspace, &mut retry).ok());
             let (report, forces) = held.map_or(found, Ok)?;
             let conditions = load_path.conditions(from, report.to)?;
             Ok((conditions, report, forces))
@@ -291,7 +291,7 @@ pub(crate) fn step_on_path<const D: usize>(
     })
 }
 
-/// What a step on a path is to reach.
+/// The target of a step on a path.
 #[derive(Clone, Debug)]
 pub(crate) enum Target<const D: usize> {
     /// A load factor.
@@ -319,7 +319,7 @@ enum Again {
     Guarded,
 }
 
-/// What one search for equilibrium is given.
+/// The input of one search for equilibrium.
 struct Attempt<'a, const D: usize> {
     method: &'a Method,
     conditions: &'a StepConditions<D>,
@@ -337,7 +337,7 @@ struct Attempt<'a, const D: usize> {
     is_short_of_mechanism: bool,
 }
 
-/// The Newton–Raphson loop. What makes a correction is in the [`Corrector`].
+/// The Newton–Raphson loop. Corrections are made by the [`Corrector`].
 fn equilibrium<const D: usize>(
     attempt: &Attempt<'_, D>,
     body: &mut Body<D>,
@@ -430,7 +430,7 @@ struct Found<'a, const D: usize> {
 }
 
 impl<const D: usize> Found<'_, D> {
-    /// What the step says of itself before it is accepted.
+    /// The report of the step before it is accepted.
     ///
     /// # Errors
     /// [`StepFailure::TooLong`], [`StepFailure::Thrown`], [`StepFailure::MechanismAtOnce`], and those of its energy and its work.
@@ -478,7 +478,7 @@ impl<const D: usize> Found<'_, D> {
         })
     }
 
-    /// What the step changes when it is accepted.
+    /// The changes of the step when it is accepted.
     ///
     /// # Errors
     /// Those of soil that would be in a rigid body.
@@ -498,7 +498,7 @@ impl<const D: usize> Found<'_, D> {
     }
 }
 
-/// What an accepted step changes beside what soil carries along.
+/// The changes of an accepted step beside those that soil carries along.
 struct Changes<const D: usize> {
     forces: NodalForces<D>,
     contact: AcceptedContact<D>,
@@ -526,7 +526,7 @@ impl<const D: usize> Changes<D> {
     }
 }
 
-/// The start of a step, and what is prescribed of its motion carried through the body.
+/// The start of a step, and its prescribed motion carried through the body.
 fn begin<const D: usize>(
     corrector: &mut Corrector<'_, '_, D>,
     u: &mut Vec<[f64; D]>,
@@ -580,7 +580,7 @@ fn pace_after<const D: usize>(
 /// Share of particles that returned to the yield surface \[-\].
 fn plastic_share<const D: usize>(trial: &Trial<D>) -> f64 {
     let particles = trial.particles.iter();
-    let plastic = particles.filter(|own| own.regime.is_plastic()).count();
+    let plastic = particles.filter(|state| state.regime.is_plastic()).count();
     plastic as f64 / trial.particles.len() as f64
 }
 
@@ -622,7 +622,7 @@ fn on_grid<const D: usize>(
     grid: &Grid<D>,
 ) -> Result<(), StepFailure> {
     for member in reinforcement {
-        let mut points = member.stations.iter().flat_map(|own| &own.points);
+        let mut points = member.stations.iter().flat_map(|station| &station.points);
         if let Some(x) = points.find(|x| !grid.contains(x)) {
             return Err(StepFailure::ReinforcementLeavesGrid {
                 name: member.name.clone(),

@@ -1,5 +1,5 @@
 //! How long the next step of a motion may be (theory, eqs. 68 to 68d): by the error of the time integration, by how far the body moves,
-//! by what contact changes, and by how hard equilibrium was to find; where water flows by the error of its pressures alone (eq. 104), and as
+//! by changes of contact, and by how hard equilibrium was to find; where water flows by the error of its pressures alone (eq. 104), and as
 //! long as they may be where a stage takes time and no water is there to flow.
 
 use igimp_assembly::{ContactChange, Drive, RigidMotion, System, Trial};
@@ -58,7 +58,7 @@ pub(crate) struct Pacing {
     pub(crate) again: Option<f64>,
 }
 
-/// What follows from a step by nodal displacements `u` \[length\] of a body that was in this state before.
+/// The pace after a step by nodal displacements `u` \[length\] of a body that was in this state before.
 pub(crate) fn after<const D: usize>(
     system: &System<'_, D>,
     (trial, u): (&Trial<D>, &[[f64; D]]),
@@ -125,10 +125,10 @@ fn by_contact<const D: usize>(system: &System<'_, D>, u: &[[f64; D]], body: &Bod
         if work <= 0.0 {
             continue;
         }
-        let own = body.rigid[index].motion.mass;
+        let of_body = body.rigid[index].motion.mass;
         let (is_free, push) = (conditions.motions.get(index)).map_or((false, 0.0), pushed);
-        let mass = if is_free && own > 0.0 {
-            own * mass_of_soil / (own + mass_of_soil)
+        let mass = if is_free && of_body > 0.0 {
+            of_body * mass_of_soil / (of_body + mass_of_soil)
         } else {
             mass_of_soil
         };

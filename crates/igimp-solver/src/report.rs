@@ -1,4 +1,4 @@
-//! What a step reports: the equilibrium that it reached, or why there is none.
+//! The report of a step: the equilibrium that it reached, or why there is none.
 
 use std::time::Duration;
 
@@ -29,9 +29,9 @@ impl Component {
     }
 }
 
-/// A place as it is told, to a millionth of its unit.
-fn told(position: &[f64]) -> String {
-    let rounded = { position.iter() }.map(|own| ((own * 1e6).round() / 1e6).to_string());
+/// A place as it is printed, to a millionth of its unit.
+fn place(position: &[f64]) -> String {
+    let rounded = { position.iter() }.map(|x| ((x * 1e6).round() / 1e6).to_string());
     rounded.collect::<Vec<_>>().join(", ")
 }
 
@@ -109,7 +109,7 @@ pub enum StepFailure {
     NotHeld {
         /// Name of the body.
         body: String,
-        /// What nothing holds.
+        /// The component that nothing holds.
         component: Component,
         /// Whether soil is near enough to touch it.
         touches: bool,
@@ -130,17 +130,17 @@ pub enum StepFailure {
     #[error("the column of soil in free field beside a wall does not move on")]
     FreeField(#[source] Box<StepFailure>),
     /// A number of the linear system that must be finite is not.
-    #[error("the {what} at {position:?} m, axis {axis}, is not finite")]
+    #[error("the {vector} at {position:?} m, axis {axis}, is not finite")]
     NotFinite {
         /// `"right-hand side"` or `"correction"`.
-        what: &'static str,
+        vector: &'static str,
         /// Place of the node \[length\], axes beyond the dimension 0.
         position: [f64; 3],
         /// The component, from 0.
         axis: usize,
     },
     /// The linear system is singular at a node, which nothing holds.
-    #[error("the linear system is singular at ({}) m, in the {}: nothing holds that node", told(position), component.map_or("scalar of the node", Component::name))]
+    #[error("the linear system is singular at ({}) m, in the {}: nothing holds that node", place(position), component.map_or("scalar of the node", Component::name))]
     Singular {
         /// Place of the node \[length\].
         position: Vec<f64>,
@@ -232,7 +232,7 @@ impl StepFailure {
 /// A step whose work is dissipated by this share moves the body as a mechanism \[-\].
 pub const MECHANISM: f64 = 0.99;
 
-/// A step that was not accepted, with what is known of it.
+/// A step that was not accepted, with its data.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("no equilibrium between load factors {from} and {to}")]
 pub struct StepError {

@@ -88,7 +88,7 @@ impl ResidualHistory {
 /// When a correction went too far.
 impl ResidualHistory {
     /// Whether the residual after a correction is more than `growth` times that before it: the consistent
-    /// tangent told little of the way there, as where many particles change their regime at once. The
+    /// tangent said little of the way there, as where many particles change their regime at once. The
     /// first correction, which the elastic tangent makes, may raise it.
     pub(crate) fn overshoots(&self, residual: &OutOfBalance, growth: f64) -> bool {
         match self.residuals[..] {
@@ -98,7 +98,7 @@ impl ResidualHistory {
     }
 }
 
-/// What the residual has to become over what it is for a step to be worth its corrections \[-\].
+/// The share that the residual has to fall to for a step to be worth its corrections \[-\].
 const WORTHWHILE: f64 = 0.1;
 
 /// Corrections that may bring a residual to the tolerance however it crept before: Newton's method arrives at once, or not.

@@ -1,4 +1,4 @@
-//! What the last step of a path says of the load factor: how it changes with the conditions of the step, and what the step
+//! The load factor at the last step of a path: how it changes with the conditions of the step, and what the step
 //! dissipates as plastic flow (theory, eqs. 33g to 33i).
 
 use std::sync::Arc;
@@ -43,7 +43,7 @@ pub struct Increment<'a, const D: usize> {
     pub body: &'a Body<D>,
     /// How the step was computed.
     pub method: &'a Method,
-    /// What held in the step.
+    /// The conditions of the step.
     pub conditions: &'a StepConditions<D>,
     /// Nodal step displacements \[length\].
     pub u: &'a [[f64; D]],
@@ -80,10 +80,10 @@ impl<const D: usize> Increment<'_, D> {
         let size = product(&force, &force).sqrt();
         let of_column = size / product(by_factor, by_factor).sqrt();
         let of_row = size / product(&force, &system.by_unknown(self.u));
-        let column: Vec<f64> = by_factor.iter().map(|own| -of_column * own).collect();
-        let row: Vec<f64> = force.iter().map(|own| of_row * own).collect();
+        let column: Vec<f64> = by_factor.iter().map(|x| -of_column * x).collect();
+        let row: Vec<f64> = force.iter().map(|x| of_row * x).collect();
         let answers = self.answers(&system, (&column, &row), changes, workspace)?;
-        Ok(answers.into_iter().map(|own| own * of_column).collect())
+        Ok(answers.into_iter().map(|x| x * of_column).collect())
     }
 
     /// The strength reduction factor at which plastic flow by the normality rule dissipates the work that the step has for
@@ -122,7 +122,7 @@ impl<const D: usize> Increment<'_, D> {
         Ok(None)
     }
 
-    /// What of the particles acts on the nodes.
+    /// The supports of the particles at the nodes.
     fn stencils(&self) -> Result<Stencils<D>, StepFailure> {
         let Body {
             particles,
@@ -150,8 +150,8 @@ impl<const D: usize> Increment<'_, D> {
         Ok(system.sharing(pattern))
     }
 
-    /// What keeps equilibrium at no work of the external force after each change of the out-of-balance force: by how much the
-    /// load factor answers, with the column and the row that it has beside the tangent of the step; where that is singular with a
+    /// By how much the load factor answers each change of the out-of-balance force, at no work of the external force: with the
+    /// column and the row that it has beside the tangent of the step; where that is singular with a
     /// share of the elastic tangent.
     fn answers(
         &self,

@@ -1,8 +1,8 @@
-//! What a march is given: conditions of its steps by the load factor, and when Newton's method stops.
+//! The input of a march: conditions of its steps by the load factor, and when Newton's method stops.
 
 use igimp_assembly::{AssemblyError, OutOfBalance, StepConditions};
 
-/// What holds between two load factors. Closures are load paths.
+/// The conditions between two load factors. Closures are load paths.
 pub trait LoadPath<const D: usize> {
     /// Grid, constraints, loads and laws of the step from load factor `from` to `to`.
     ///

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use igimp_assembly::Trial;
 use igimp_linear::{LinearSolver, Pattern, TangentMatrix};
 
-/// What lasts from step to step besides the body: the solver with its symbolic work, and the memory
+/// Data that last from step to step besides the body: the solver with its symbolic work, and the memory
 /// of the matrix and of the trial. It holds nothing that a result depends on.
 pub struct Workspace<const D: usize> {
     pub(crate) solver: Box<dyn LinearSolver>,

@@ -38,13 +38,13 @@ pub(crate) fn closest<const D: usize>(x: &[f64; D], corners: &[[f64; D]; D]) -> 
                 let along = minus(&corners[last], &corners[first]);
                 let t = dot(&minus(x, &corners[first]), &along) / dot(&along, &along);
                 let t = t.clamp(0.0, 1.0);
-                let mut own = [0.0; D];
-                own[first] = 1.0 - t;
-                own[last] = t;
-                let length = norm(&minus(x, &combine(corners, &own)));
+                let mut on_edge = [0.0; D];
+                on_edge[first] = 1.0 - t;
+                on_edge[last] = t;
+                let length = norm(&minus(x, &combine(corners, &on_edge)));
                 if length < least {
                     least = length;
-                    shares = own;
+                    shares = on_edge;
                 }
             }
             (shares, true)

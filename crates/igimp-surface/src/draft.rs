@@ -173,7 +173,7 @@ impl Draft {
 fn frame(normal: &[f64; 3]) -> [[f64; 3]; 3] {
     let size = norm(normal);
     let n = if size > 0.0 {
-        normal.map(|own| own / size)
+        normal.map(|x| x / size)
     } else {
         [0.0, 0.0, 1.0]
     };
@@ -188,7 +188,7 @@ fn frame(normal: &[f64; 3]) -> [[f64; 3]; 3] {
     let flat: [f64; 3] =
         std::array::from_fn(|axis| f64::from(u8::from(axis == least)) - n[least] * n[axis]);
     let size = norm(&flat);
-    let first = flat.map(|own| own / size);
+    let first = flat.map(|x| x / size);
     [n, first, cross(&n, &first)]
 }
 

@@ -22,7 +22,7 @@ use crate::vectors::{dot, minus, norm};
 /// The largest number of knots of a surface.
 const MOST_KNOTS: u32 = 1_000_000;
 
-/// What is round has at least so many knots around it, and a multiple of them: it is the same seen along all axes.
+/// A round surface has at least so many knots around it, and a multiple of them: it is the same seen along all axes.
 const QUARTERS: usize = 4;
 const LEAST_AROUND: usize = 8;
 
@@ -30,7 +30,7 @@ const LEAST_AROUND: usize = 8;
 /// 1e-13 m \[-\].
 const HALVES_GO_UP: f64 = 1e-9;
 
-/// What makes no surface.
+/// Errors of surfaces.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SurfaceError {
     /// Too few corners, or corners that coincide.
@@ -122,10 +122,10 @@ pub enum SurfaceError {
         radius: f64,
     },
     /// A number that is not finite, or a size that is not positive.
-    #[error("{what} must be positive and finite, but is {value}")]
+    #[error("{quantity} must be positive and finite, but is {value}")]
     NotPositive {
-        /// What it is.
-        what: &'static str,
+        /// Its name.
+        quantity: &'static str,
         /// The value.
         value: f64,
     },
@@ -156,7 +156,7 @@ pub struct Surface<const D: usize> {
     sides: usize,
     /// The side of each knot.
     side_of: Vec<usize>,
-    /// What is known beside that of a surface in space.
+    /// Further data of a surface in space.
     space: Option<Box<Space<D>>>,
 }
 
@@ -221,7 +221,7 @@ impl<const D: usize> Surface<D> {
         self.bounds
     }
 
-    /// What holds all of it in the frame of the body: lower and upper corner \[length\]. The knots of a circle
+    /// Its bounding box in the frame of the body: lower and upper corner \[length\]. The knots of a circle
     /// need not lie at its outermost places.
     pub fn extent(&self) -> ([f64; D], [f64; D]) {
         self.radius
@@ -243,7 +243,7 @@ impl<const D: usize> Surface<D> {
         edges.fold(0.0, f64::max)
     }
 
-    /// In the plane the length of what belongs to each knot \[length\].
+    /// In the plane the length of each knot's share \[length\].
     pub fn tents(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.knot_count()];
         for facet in &self.facets {
@@ -272,9 +272,9 @@ impl<const D: usize> Surface<D> {
         let mut look_at = |facet| {
             let (arm, ..) = self.above(facet, x);
             let (length, height) = (norm(&arm), dot(&arm, &facet.normal));
-            let nearer = best.as_ref().is_none_or(|(least, own, ..)| {
+            let nearer = best.as_ref().is_none_or(|(least, highest, ..)| {
                 let tie = (length - least).abs() <= 1e-9 * length;
-                (tie && height.abs() > own.abs()) || (!tie && length < *least)
+                (tie && height.abs() > highest.abs()) || (!tie && length < *least)
             });
             if nearer {
                 best = Some((length, height, arm, facet));
@@ -306,9 +306,9 @@ impl<const D: usize> Surface<D> {
         if let Some(space) = &self.space {
             return self.nearest_in_space(space, x, side);
         }
-        let own = |facet: &&Facet<D>| facet.side == side;
+        let of_side = |facet: &&Facet<D>| facet.side == side;
         let mut best: Option<(f64, &Facet<D>)> = None;
-        for facet in self.facets.iter().filter(own) {
+        for facet in self.facets.iter().filter(of_side) {
             let length = norm(&self.above(facet, x).0);
             if best.is_none_or(|(least, _)| length < least) {
                 best = Some((length, facet));
@@ -374,10 +374,10 @@ fn extent_of<const D: usize>(points: &[[f64; D]], rounding: f64) -> ([f64; D], [
     bounds
 }
 
-fn positive(what: &'static str, value: f64) -> Result<(), SurfaceError> {
+fn positive(quantity: &'static str, value: f64) -> Result<(), SurfaceError> {
     if value > 0.0 && value.is_finite() {
         Ok(())
     } else {
-        Err(SurfaceError::NotPositive { what, value })
+        Err(SurfaceError::NotPositive { quantity, value })
     }
 }

@@ -101,13 +101,13 @@ impl Surface<3> {
         let mut draft = Draft::default();
         let across = shares_along(upper - lower, spacing);
         for k in 0..outline.len() {
-            let (a, b, own) = (outline.core(k), outline.core(k + 1), outline.outward(k));
+            let (a, b, normal) = (outline.core(k), outline.core(k + 1), outline.outward(k));
             let way = [b[0] - a[0], b[1] - a[1]];
             if dot(&way, &outline.side(k)) <= 0.0 {
                 return Err(SurfaceError::RoundedAway { side: k, rounding });
             }
             let quad = |off: f64| {
-                let [a, b] = [a, b].map(|x| [0, 1].map(|d| x[d] + off * own[d]));
+                let [a, b] = [a, b].map(|x| [0, 1].map(|d| x[d] + off * normal[d]));
                 [
                     place(a, lower),
                     place(b, lower),
@@ -117,7 +117,7 @@ impl Surface<3> {
             };
             let along = shares_along(norm(&way), spacing);
             let shares = [along.as_slice(), across.as_slice()];
-            draft.grid(quad(0.0), quad(rounding), shares, k, &place(own, 0.0));
+            draft.grid(quad(0.0), quad(rounding), shares, k, &place(normal, 0.0));
         }
         let cores = outline.cores();
         let mut points: Vec<[f64; 3]> = cores.iter().map(|&x| place(x, 0.0)).collect();
@@ -163,7 +163,7 @@ impl Surface<3> {
             .max()
             .unwrap_or(0);
         if let Some(side) = (0..sides.min(triangles.len() + 1))
-            .find(|side| triangles.iter().all(|(_, own)| own != side))
+            .find(|side| triangles.iter().all(|(_, other)| other != side))
         {
             return Err(SurfaceError::NoSuchSide { side });
         }
@@ -171,18 +171,18 @@ impl Surface<3> {
         closed(&points, &welded)?;
         let volume: f64 = welded
             .iter()
-            .map(|own| {
-                let [a, b, c] = own.map(|corner| points[corner]);
+            .map(|triangle| {
+                let [a, b, c] = triangle.map(|corner| points[corner]);
                 dot(&a, &cross(&b, &c))
             })
             .sum();
         if volume < 0.0 {
-            for own in &mut welded {
-                own.swap(1, 2);
+            for triangle in &mut welded {
+                triangle.swap(1, 2);
             }
         }
-        let area = |own: &[usize; 3]| {
-            let [a, b, c] = own.map(|corner| points[corner]);
+        let area = |triangle: &[usize; 3]| {
+            let [a, b, c] = triangle.map(|corner| points[corner]);
             0.5 * norm(&cross(&minus(&b, &a), &minus(&c, &a)))
         };
         countable(welded.iter().map(area).sum(), spacing)?;
@@ -194,16 +194,16 @@ impl Surface<3> {
             let [a, b, c] = corners.map(|corner| points[corner]);
             let normal = cross(&minus(&b, &a), &minus(&c, &a));
             let size = norm(&normal);
-            let normal = normal.map(|own| own / size);
-            let own = corners
+            let normal = normal.map(|x| x / size);
+            let facet = corners
                 .map(|corner| knots.point(&mut draft, (corner, &points[corner]), side, &normal));
-            draft.facet(own, side, &normal);
+            draft.facet(facet, side, &normal);
         }
         draft.finish(sides, 0.0, None)
     }
 }
 
-/// The outline of a prism, and what a rounding leaves of it.
+/// The outline of a prism, and its core within a rounding.
 struct Outline<'c> {
     corners: &'c [[f64; 2]],
     rounding: f64,
@@ -218,18 +218,18 @@ impl<'c> Outline<'c> {
             let (a, b) = (corners[k], corners[(k + 1) % n]);
             0.5 * (a[0] * b[1] - a[1] * b[0])
         });
-        let own = Self {
+        let outline = Self {
             corners,
             rounding,
             area: area.sum(),
         };
-        if n < 3 || (0..n).any(|k| norm(&own.side(k)) <= 0.0) {
+        if n < 3 || (0..n).any(|k| norm(&outline.side(k)) <= 0.0) {
             return Err(SurfaceError::TooFewCorners);
         }
         if crosses(corners) {
             return Err(SurfaceError::Crossing);
         }
-        Ok(own)
+        Ok(outline)
     }
 
     fn len(&self) -> usize {
@@ -290,9 +290,9 @@ fn welded(corners: &[[f64; 3]], triangles: &[SurfaceTriangle]) -> Result<Welded,
     let mut places: BTreeMap<[u64; 3], usize> = BTreeMap::new();
     let mut points = Vec::new();
     let mut out = Vec::with_capacity(triangles.len());
-    for (triangle, (own, _)) in triangles.iter().enumerate() {
+    for (triangle, (triple, _)) in triangles.iter().enumerate() {
         let mut new = [0; 3];
-        for (k, &corner) in own.iter().enumerate() {
+        for (k, &corner) in triple.iter().enumerate() {
             let count = corners.len();
             let x = corners.get(corner).ok_or(SurfaceError::UnknownCorner {
                 triangle,
@@ -300,8 +300,8 @@ fn welded(corners: &[[f64; 3]], triangles: &[SurfaceTriangle]) -> Result<Welded,
                 count,
             })?;
             if let Some(&value) = x.iter().find(|x| !x.is_finite()) {
-                let what = "a coordinate of a corner";
-                return Err(SurfaceError::NotPositive { what, value });
+                let quantity = "a coordinate of a corner";
+                return Err(SurfaceError::NotPositive { quantity, value });
             }
             // Minus zero is zero.
             new[k] = *places
@@ -356,13 +356,13 @@ fn closed(points: &[[f64; 3]], triangles: &[[usize; 3]]) -> Result<(), SurfaceEr
 struct Knots {
     spacing: f64,
     /// Points with the knots that they made, by place in a grid of the spacing, with side and normal.
-    near: BTreeMap<[i64; 3], Vec<Own>>,
+    near: BTreeMap<[i64; 3], Vec<MeshKnot>>,
     /// Points of the draft by corner and knot.
     known: BTreeMap<(usize, usize), usize>,
 }
 
 /// A knot: its point, where it stands, its side and its normal.
-struct Own {
+struct MeshKnot {
     point: usize,
     x: [f64; 3],
     side: usize,
@@ -391,18 +391,18 @@ impl Knots {
         for k in 0..27_i64 {
             let by = [k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1];
             let at: [i64; 3] = std::array::from_fn(|axis| place[axis].saturating_add(by[axis]));
-            for own in self.near.get(&at).into_iter().flatten() {
-                let far = norm(&minus(x, &own.x));
-                let fits = own.side == side && dot(&own.normal, normal) > SMOOTH;
+            for known in self.near.get(&at).into_iter().flatten() {
+                let far = norm(&minus(x, &known.x));
+                let fits = known.side == side && dot(&known.normal, normal) > SMOOTH;
                 let nearer = best.is_none_or(|(least, _)| far < least);
                 if fits && nearer && far <= NEAREST * self.spacing {
-                    best = Some((far, own.point));
+                    best = Some((far, known.point));
                 }
             }
         }
         let Some((_, knot)) = best else {
             let point = draft.knot(*x, *x, side);
-            self.near.entry(place).or_default().push(Own {
+            self.near.entry(place).or_default().push(MeshKnot {
                 point,
                 x: *x,
                 side,

@@ -143,8 +143,8 @@ mod tests {
             let knots = surface.knots();
             for ([x, y], _) in &knots {
                 for image in [[-x, *y], [*x, -y]] {
-                    let is_there = |own: &([f64; 2], usize)| {
-                        (own.0[0] - image[0]).hypot(own.0[1] - image[1]) < 1e-12
+                    let is_there = |knot: &([f64; 2], usize)| {
+                        (knot.0[0] - image[0]).hypot(knot.0[1] - image[1]) < 1e-12
                     };
                     assert!(knots.iter().any(is_there), "{k}: {image:?}");
                 }

@@ -92,7 +92,7 @@ pub(crate) fn triangulated(corners: &[[f64; 2]]) -> Result<Vec<[usize; 3]>, Surf
         let n = left.len();
         let is_ear = |k: &usize| {
             let [a, b, c] = [left[(k + n - 1) % n], left[*k], left[(k + 1) % n]];
-            let others = left.iter().filter(|own| ![a, b, c].contains(own));
+            let others = left.iter().filter(|other| ![a, b, c].contains(other));
             turn(a, b, c) > 0.0
                 && others
                     .into_iter()

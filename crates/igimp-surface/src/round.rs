@@ -74,10 +74,10 @@ impl Surface<3> {
             return Err(SurfaceError::TooFewCorners);
         }
         let last = profile.len() - 1;
-        for (corner, own) in profile.iter().enumerate() {
+        for (corner, at) in profile.iter().enumerate() {
             let is_end = corner == 0 || corner == last;
-            if own.iter().any(|x| !x.is_finite()) || is_end != (own[0] == 0.0) || own[0] < 0.0 {
-                let radius = own[0];
+            if at.iter().any(|x| !x.is_finite()) || is_end != (at[0] == 0.0) || at[0] < 0.0 {
+                let radius = at[0];
                 return Err(SurfaceError::OffAxis { corner, radius });
             }
         }
@@ -91,7 +91,7 @@ impl Surface<3> {
         }
         let outward = |k: usize| {
             let [r, z] = along(k);
-            [z, -r].map(|own| own / (area.signum() * r.hypot(z)))
+            [z, -r].map(|x| x / (area.signum() * r.hypot(z)))
         };
         countable(
             (0..last)
@@ -149,10 +149,10 @@ impl Surface<3> {
         for part in 0..=parts {
             let angle = 0.5 * TAU * part as f64 / parts as f64;
             let n = [angle.sin(), -angle.cos()];
-            let at = n.map(|own| radius * own);
+            let at = n.map(|x| radius * x);
             let ring = Ring::new(&mut draft, 2, (at, n), 0.0, (spacing, 0));
-            if let Some((before, own)) = before {
-                let mean = [0, 1].map(|k| 0.5 * (own[k] + n[k]));
+            if let Some((before, normal)) = before {
+                let mean = [0, 1].map(|k| 0.5 * (normal[k] + n[k]));
                 before.stitch(&ring, &mut draft, 2, (mean, 0));
             }
             before = Some((ring, n));
@@ -199,7 +199,7 @@ impl Ring {
             outer[0]
         };
         if radius <= POINT * spacing {
-            let place = |own: [f64; 2]| in_space(axis, 0.0, 0.0, own[1]);
+            let place = |x: [f64; 2]| in_space(axis, 0.0, 0.0, x[1]);
             return Self {
                 points: vec![draft.knot(place(at), place(outer), side)],
             };
@@ -240,8 +240,8 @@ impl Ring {
         if a.len() == b.len() && a.len() > 1 {
             for k in 0..a.len() {
                 let l = (k + 1) % a.len();
-                let own = outward((k as f64 + 0.5) / a.len() as f64);
-                draft.quad([a[k], a[l], b[l], b[k]], side, &own);
+                let facing = outward((k as f64 + 0.5) / a.len() as f64);
+                draft.quad([a[k], a[l], b[l], b[k]], side, &facing);
             }
             return;
         }
@@ -252,14 +252,14 @@ impl Ring {
         while open(i, a) || open(j, b) {
             let first =
                 open(i, a) && (!open(j, b) || (2 * i + 1) * b.len() <= (2 * j + 1) * a.len());
-            let (own_a, own_b) = (a[i % a.len()], b[j % b.len()]);
+            let (from_a, from_b) = (a[i % a.len()], b[j % b.len()]);
             if first {
-                let own = outward(turn(i, a) + 0.5 / a.len() as f64);
-                draft.facet([own_a, a[(i + 1) % a.len()], own_b], side, &own);
+                let facing = outward(turn(i, a) + 0.5 / a.len() as f64);
+                draft.facet([from_a, a[(i + 1) % a.len()], from_b], side, &facing);
                 i += 1;
             } else {
-                let own = outward(turn(j, b) + 0.5 / b.len() as f64);
-                draft.facet([own_a, b[(j + 1) % b.len()], own_b], side, &own);
+                let facing = outward(turn(j, b) + 0.5 / b.len() as f64);
+                draft.facet([from_a, b[(j + 1) % b.len()], from_b], side, &facing);
                 j += 1;
             }
         }

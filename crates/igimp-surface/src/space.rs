@@ -1,4 +1,4 @@
-//! What is known of a surface in space beside its core.
+//! Data of a surface in space beside its core.
 
 use crate::closest::{closest, combine};
 use crate::tree::Tree;
@@ -31,16 +31,16 @@ impl<const D: usize> Space<D> {
     /// has them; the second is the normal times the first (theory, eq. 45a).
     pub fn tangents_at(&self, knot: usize, normal: &[f64; D]) -> [[f64; D]; 2] {
         let [_, first, second] = &self.frames[knot];
-        let along = |own: &[f64; D]| {
-            let share = dot(own, normal);
-            let flat: [f64; D] = std::array::from_fn(|axis| own[axis] - share * normal[axis]);
+        let along = |tangent: &[f64; D]| {
+            let share = dot(tangent, normal);
+            let flat: [f64; D] = std::array::from_fn(|axis| tangent[axis] - share * normal[axis]);
             (dot(&flat, &flat).sqrt(), flat)
         };
         let (mut size, mut flat) = along(first);
         if size < 1e-3 {
             (size, flat) = along(second);
         }
-        let t = flat.map(|own| own / size);
+        let t = flat.map(|x| x / size);
         let mut out = [t, [0.0; D]];
         for a in 0..D {
             let (b, c) = ((a + 1) % D, (a + 2) % D);
@@ -54,7 +54,7 @@ impl<const D: usize> Space<D> {
 pub type CarryingTriangle<'a> = ([[f64; 3]; 3], [&'a [(usize, f64)]; 3], usize);
 
 impl<const D: usize> Surface<D> {
-    /// What is known beside the core of a surface in space; none in the plane.
+    /// Data beside the core of a surface in space; none in the plane.
     pub fn space(&self) -> Option<&Space<D>> {
         self.space.as_deref()
     }

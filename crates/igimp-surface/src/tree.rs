@@ -6,7 +6,7 @@ const LEAVES: usize = 4;
 /// Two facets are as near as each other if their distances differ by no more than this share \[-\].
 const TIE: f64 = 1e-6;
 
-/// A tree of boxes around facets. What it finds does not depend on how it is built.
+/// A tree of boxes around facets. Its result does not depend on how it is built.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tree<const D: usize> {
     /// The facets, those of a group next to each other.
@@ -60,7 +60,7 @@ impl<const D: usize> Tree<D> {
                 upper[axis] = upper[axis].max(corner[axis]);
             }
         }
-        let own = self.groups.len();
+        let group = self.groups.len();
         let from = self.facets.len();
         self.groups.push(Group {
             lower,
@@ -71,20 +71,20 @@ impl<const D: usize> Tree<D> {
         });
         if facets.len() <= LEAVES {
             self.facets.extend(facets.iter().map(|(facet, _)| *facet));
-            return own;
+            return group;
         }
         let longest = (0..D)
             .max_by(|&a, &b| (upper[a] - lower[a]).total_cmp(&(upper[b] - lower[b])))
             .unwrap_or(0);
-        let middle = |corners: &[[f64; D]; D]| corners.iter().map(|own| own[longest]).sum::<f64>();
+        let middle = |corners: &[[f64; D]; D]| corners.iter().map(|x| x[longest]).sum::<f64>();
         facets.sort_by(|a, b| {
             let place = middle(&a.1).total_cmp(&middle(&b.1));
             place.then(a.0.cmp(&b.0))
         });
         let (first, second) = facets.split_at_mut(facets.len() / 2);
         let parts = [self.divide(first), self.divide(second)];
-        self.groups[own].parts = Some(parts);
-        own
+        self.groups[group].parts = Some(parts);
+        group
     }
 
     /// Moves all of it.
@@ -111,9 +111,9 @@ impl<const D: usize> Tree<D> {
             match group.parts {
                 None => {
                     for &facet in &self.facets[group.from..group.to] {
-                        let own = distance(facet);
-                        least = least.min(own);
-                        found.push((own, facet));
+                        let off = distance(facet);
+                        least = least.min(off);
+                        found.push((off, facet));
                     }
                 }
                 Some(parts) => {
@@ -126,7 +126,7 @@ impl<const D: usize> Tree<D> {
         }
         let mut near: Vec<usize> = found
             .into_iter()
-            .filter(|(own, _)| *own <= (1.0 + TIE) * least)
+            .filter(|(off, _)| *off <= (1.0 + TIE) * least)
             .map(|(_, facet)| facet)
             .collect();
         near.sort_unstable();

@@ -109,9 +109,9 @@ impl<'a, const D: usize> Nearest<'a, D> {
                 }
                 continue;
             }
-            let own = open.len();
+            let start = open.len();
             self.finer(block, &point, &mut open);
-            open[own..].sort_by(|a, b| b.distance.total_cmp(&a.distance));
+            open[start..].sort_by(|a, b| b.distance.total_cmp(&a.distance));
         }
         nearest
     }

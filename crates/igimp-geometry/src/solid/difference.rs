@@ -39,13 +39,13 @@ impl Difference {
         }
         let mut is_whole = of == Cover::Whole;
         if let Solid::Cuboid(from, to) = &*self.of {
-            let Some(own) = common((*from, *to), corners) else {
+            let Some(overlap) = common((*from, *to), corners) else {
                 return Part::NOTHING;
             };
-            (corners, is_whole) = (own, true);
+            (corners, is_whole) = (overlap, true);
         }
         let (lower, upper) = corners;
-        let own = |lower, upper| {
+        let base = |lower, upper| {
             if is_whole {
                 Part::whole(lower, upper)
             } else {
@@ -53,17 +53,17 @@ impl Difference {
             }
         };
         match cut[..] {
-            [] => own(lower, upper),
+            [] => base(lower, upper),
             [Solid::Cuboid(from, to)] => match common((*from, *to), corners) {
-                Some((from, to)) => less(own(lower, upper), own(from, to)),
-                None => own(lower, upper),
+                Some((from, to)) => less(base(lower, upper), base(from, to)),
+                None => base(lower, upper),
             },
             [solid] if is_whole => less(Part::whole(lower, upper), solid.within(lower, upper)),
             _ if depth > 0 => {
                 sum(eighths(lower, upper).map(|(from, to)| self.left(from, to, depth - 1)))
             }
             _ => {
-                let mut left = own(lower, upper);
+                let mut left = base(lower, upper);
                 let whole = Part::whole(lower, upper).volume;
                 for solid in cut {
                     left.volume *= 1.0 - solid.within(lower, upper).volume / whole;

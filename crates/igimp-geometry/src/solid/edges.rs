@@ -49,24 +49,26 @@ fn upright(solid: &Solid) -> Prism {
 }
 
 /// A cylinder as a prism of many sides.
-fn faceted(own: &Cylinder) -> Prism {
+fn faceted(cylinder: &Cylinder) -> Prism {
     let around = |k| {
         let (sine, cosine) = (2.0 * PI * f64::from(k) / f64::from(AROUND)).sin_cos();
-        [cosine, sine].map(|x| own.radius * x)
+        [cosine, sine].map(|x| cylinder.radius * x)
     };
-    let place = |[x, y]: [f64; 2]| [own.centre[0] + x, own.centre[1] + y];
+    let place = |[x, y]: [f64; 2]| [cylinder.centre[0] + x, cylinder.centre[1] + y];
     let polygon = (0..AROUND).map(around).map(place).collect();
-    Prism::new(polygon, own.axis, own.between)
+    Prism::new(polygon, cylinder.axis, cylinder.between)
 }
 
 /// Both ends of a prism, and its sides where its polygon turns.
-fn of_prism(own: &Prism) -> Vec<Vec<Point>> {
+fn of_prism(prism: &Prism) -> Vec<Vec<Point>> {
     let end = |along: f64| {
-        let corners = own.polygon.iter().chain(own.polygon.first());
-        corners.map(|&at| placed(at, own.axis, along)).collect()
+        let corners = prism.polygon.iter().chain(prism.polygon.first());
+        corners.map(|&at| placed(at, prism.axis, along)).collect()
     };
-    let sides = turns(&own.polygon).map(|at| own.between.map(|along| placed(at, own.axis, along)));
-    own.between
+    let sides =
+        turns(&prism.polygon).map(|at| prism.between.map(|along| placed(at, prism.axis, along)));
+    prism
+        .between
         .map(end)
         .into_iter()
         .chain(sides.map(Vec::from))
@@ -181,23 +183,23 @@ fn along(height: &Height, p: [f64; 2], q: [f64; 2]) -> Vec<Point> {
     shares.into_iter().filter_map(place).collect()
 }
 
-/// The edges of a solid and of what is cut out of it, as far as they bound what is left, and the lines in which upright sides
+/// The edges of a solid and of its cuts, as far as they bound the rest, and the lines in which upright sides
 /// of a cut meet the top and the underside of the solid.
-fn of_difference(own: &Difference) -> Vec<Vec<Point>> {
-    let (lower, upper) = own.bounds();
+fn of_difference(difference: &Difference) -> Vec<Vec<Point>> {
+    let (lower, upper) = difference.bounds();
     let size = (0..3).fold(0.0_f64, |most, k| most.max(upper[k] - lower[k]));
-    let mut lines = of(&own.of);
-    for solid in &own.minus {
+    let mut lines = of(&difference.of);
+    for solid in &difference.minus {
         let Some(prism) = within(solid, lower, upper) else {
             lines.extend(of(solid));
             continue;
         };
         lines.extend(of_prism(&prism));
         if prism.axis == 2 {
-            lines.extend(rims(&own.of, &prism, size));
+            lines.extend(rims(&difference.of, &prism, size));
         }
     }
-    let bounds = |point: &Point| is_bound(own, point, BESIDE * size);
+    let bounds = |point: &Point| is_bound(difference, point, BESIDE * size);
     lines
         .iter()
         .flat_map(|line| kept(line, size, bounds))
@@ -231,7 +233,7 @@ fn rims(of: &Solid, prism: &Prism, size: f64) -> Vec<Vec<Point>> {
     let places = parts(&outline, PART * size);
     let rim = |pick: fn(f64, f64) -> f64| {
         let level = |place: &Point| {
-            let levels = of.crossings(place).into_iter().map(|own| own.level);
+            let levels = of.crossings(place).into_iter().map(|hit| hit.level);
             let level = levels.reduce(pick)?;
             (inside.contains(&level)).then_some([place[0], place[1], level])
         };
@@ -244,9 +246,9 @@ fn rims(of: &Solid, prism: &Prism, size: f64) -> Vec<Vec<Point>> {
 }
 
 /// Whether there is soil on some sides of a point and none on others.
-fn is_bound(own: &Difference, point: &Point, beside: f64) -> bool {
+fn is_bound(difference: &Difference, point: &Point, beside: f64) -> bool {
     let has_soil = |side: usize| {
-        own.encloses(std::array::from_fn(|axis| {
+        difference.encloses(std::array::from_fn(|axis| {
             let sign = if side >> axis & 1 == 1 { 1.0 } else { -1.0 };
             // Not the same along the axes, so that a face across their diagonal is not missed.
             point[axis] + sign * beside * [1.0, 1.3, 0.8][axis]

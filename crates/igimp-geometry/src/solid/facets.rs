@@ -187,7 +187,7 @@ impl Moments {
         }
     }
 
-    /// Of what a face covers in plan, with this height.
+    /// Of the area that a face covers in plan, with this height.
     pub(super) fn add_prism(&mut self, face: &Face, height: f64, sign: f64) {
         for [a, b, c] in fan(face.corners()) {
             let volume = sign * height * area(a, b, c);
@@ -225,7 +225,7 @@ fn area(a: &Point, b: &Point, c: &Point) -> f64 {
     0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]))
 }
 
-/// Calls with what of a face lies over a polygon in plan, as faces with signs that add up to it: the polygon is the
+/// Calls with the part of a face over a polygon in plan, as faces with signs that add up to it: the polygon is the
 /// sum of the triangles between its first corner and its sides, counted with their sense.
 pub(super) fn over(face: &Face, plan: &Polygon, mut call: impl FnMut(&Face, f64)) {
     for k in 2..plan.len() {
@@ -237,9 +237,9 @@ pub(super) fn over(face: &Face, plan: &Polygon, mut call: impl FnMut(&Face, f64)
         if cross < 0.0 {
             (b, c) = (c, b);
         }
-        let own = face.left_of(a, b).left_of(b, c).left_of(c, a);
-        if own.count > 2 {
-            call(&own, cross.signum());
+        let part = face.left_of(a, b).left_of(b, c).left_of(c, a);
+        if part.count > 2 {
+            call(&part, cross.signum());
         }
     }
 }

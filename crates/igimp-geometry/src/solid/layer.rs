@@ -197,8 +197,8 @@ fn covered(plan: &[[f64; 2]], facets: &Facets, lower: [f64; 2], upper: [f64; 2])
 
 fn check_cover(plan: &[[f64; 2]], facets: &Facets, which: &'static str) -> Result<(), LayerError> {
     let (mut lower, mut upper) = bounding_box(plan);
-    let [area, own] = covered(plan, facets, lower, upper);
-    let share = (area - own) / area;
+    let [area, matched] = covered(plan, facets, lower, upper);
+    let share = (area - matched) / area;
     if share <= COVERED {
         return Ok(());
     }
@@ -210,8 +210,8 @@ fn check_cover(plan: &[[f64; 2]], facets: &Facets, which: &'static str) -> Resul
         let (mut first, mut second) = (upper, lower);
         (first[axis], second[axis]) = (middle, middle);
         let missing = |lower, upper| {
-            let [area, own] = covered(plan, facets, lower, upper);
-            area - own
+            let [area, matched] = covered(plan, facets, lower, upper);
+            area - matched
         };
         if missing(lower, first) >= missing(second, upper) {
             upper = first;

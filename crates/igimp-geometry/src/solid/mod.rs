@@ -1,7 +1,7 @@
 //! Bodies in space: boxes, prisms, cylinders, spheres, closed surfaces, layers of ground, and what is
 //! left of one when others are taken out.
 //!
-//! The axes are x, y and z, z up. What lies of a solid within a box is exact but for round-off where its
+//! The axes are x, y and z, z up. The part of a solid within a box is exact but for round-off where its
 //! faces are flat (theory, eq. 44a and 44b), for a cylinder too; [`Sphere`] and [`Difference`] say how right they are.
 
 mod difference;

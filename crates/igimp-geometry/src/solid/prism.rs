@@ -41,8 +41,8 @@ pub(super) fn placed(at: [f64; 2], axis: usize, along: f64) -> [f64; 3] {
 
 /// The overlap of two intervals, if it has length.
 pub(super) fn overlap(a: [f64; 2], b: [f64; 2]) -> Option<[f64; 2]> {
-    let own = [a[0].max(b[0]), a[1].min(b[1])];
-    (own[0] < own[1]).then_some(own)
+    let common = [a[0].max(b[0]), a[1].min(b[1])];
+    (common[0] < common[1]).then_some(common)
 }
 
 /// Overlap of an interval of an axis, and of the area seen along it, with a solid between two places.
@@ -51,7 +51,7 @@ pub(super) fn both(
     stretch: [f64; 2],
     seen: impl FnOnce() -> Cover,
 ) -> Cover {
-    match along.map(|own| (own[0] <= stretch[0] && stretch[1] <= own[1], seen())) {
+    match along.map(|span| (span[0] <= stretch[0] && stretch[1] <= span[1], seen())) {
         None | Some((_, Cover::Nothing)) => Cover::Nothing,
         Some((true, Cover::Whole)) => Cover::Whole,
         Some(_) => Cover::Cut,

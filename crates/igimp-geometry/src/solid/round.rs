@@ -16,7 +16,7 @@ fn chord(level: f64, radius: f64, distance: f64) -> Option<[f64; 2]> {
     (square > 0.0).then(|| [level - square.sqrt(), level + square.sqrt()])
 }
 
-/// A circular cylinder along an axis. What lies of it within a box is exact but for round-off.
+/// A circular cylinder along an axis. Its part within a box is exact but for round-off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cylinder {
     /// The axis along which it lies: 0, 1 or 2.
@@ -29,7 +29,7 @@ pub struct Cylinder {
     pub between: [f64; 2],
 }
 
-/// A sphere. What lies of it within a box is right to 1e-11 of the smaller of the two volumes' cubes around.
+/// A sphere. Its part within a box is right to 1e-11 of the smaller of the two volumes' cubes around.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sphere {
     /// Centre \[length\].

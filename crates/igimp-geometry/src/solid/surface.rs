@@ -193,18 +193,18 @@ fn welded(triangles: &[[[f64; 3]; 3]]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
         for neighbour in 0..27 {
             let shift = [neighbour % 3, neighbour / 3 % 3, neighbour / 9].map(|shift| shift - 1);
             let beside = std::array::from_fn(|axis| cell[axis].saturating_add(shift[axis]));
-            let near = |&&own: &&u32| {
-                let own = points[own as usize];
-                (0..3).all(|axis| (own[axis] - point[axis]).abs() <= reach)
+            let near = |&&corner: &&u32| {
+                let at = points[corner as usize];
+                (0..3).all(|axis| (at[axis] - point[axis]).abs() <= reach)
             };
-            if let Some(&own) = cells.get(&beside).and_then(|own| own.iter().find(near)) {
-                return own;
+            if let Some(&corner) = cells.get(&beside).and_then(|list| list.iter().find(near)) {
+                return corner;
             }
         }
-        let own = points.len() as u32;
+        let corner = points.len() as u32;
         points.push(point);
-        cells.entry(cell).or_default().push(own);
-        own
+        cells.entry(cell).or_default().push(corner);
+        corner
     };
     let faces = triangles.iter().map(|triangle| triangle.map(&mut number));
     let faces = faces.collect();

@@ -69,14 +69,14 @@ impl Terrain {
         let mut points = Vec::new();
         let mut numbers = Vec::new();
         for (&y, row) in std::iter::zip(y, rows) {
-            let own = std::iter::zip(x, row).map(|(&x, height)| {
+            let entries = std::iter::zip(x, row).map(|(&x, height)| {
                 let number = points.len() as u32;
                 height.map(|height| {
                     points.push([x, y, height]);
                     number
                 })
             });
-            numbers.push(own.collect::<Vec<_>>());
+            numbers.push(entries.collect::<Vec<_>>());
         }
         check(&points)?;
         let mut triangles = Vec::new();

@@ -97,7 +97,7 @@ struct Direction {
 }
 
 impl Direction {
-    /// Takes a direction over and leaves what is kept of it.
+    /// Takes a direction over and leaves its kept part.
     fn rounded(z: &mut [f64]) -> Self {
         let largest = z.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
         let scale = if largest > 0.0 { largest } else { 1.0 };
@@ -215,11 +215,11 @@ fn orthogonalise(w: &mut [f64], basis: &[Vec<f64>]) -> Vec<f64> {
     let mut parts = vec![0.0; basis.len()];
     // Twice is enough.
     for _ in 0..2 {
-        for (own, part) in basis.iter().zip(&mut parts) {
-            let share = dot(own, w);
+        for (vector, part) in basis.iter().zip(&mut parts) {
+            let share = dot(vector, w);
             *part += share;
-            for (w, own) in w.iter_mut().zip(own) {
-                *w -= share * own;
+            for (w, v) in w.iter_mut().zip(vector) {
+                *w -= share * v;
             }
         }
     }

@@ -32,7 +32,7 @@ impl LinearSystem<'_> {
         self.rhs.len() > self.matrix.pattern.unknowns()
     }
 
-    /// Refuses vectors of a wrong length, and what is not finite; the number of unknowns.
+    /// Refuses vectors of a wrong length, and values that are not finite; the number of unknowns.
     fn check(&self, solution: &[f64]) -> Result<usize, LinearSolverError> {
         let of_border = if self.with_border() {
             self.matrix.border.len()
@@ -66,7 +66,7 @@ impl Demand {
         self.target.max(self.tolerance)
     }
 
-    /// The error of an iteration that ended above it. What factors would take stays open.
+    /// The error of an iteration that ended above it. The memory of factors stays open.
     fn missed(&self, iterations: usize, relative_residual: f64) -> LinearSolverError {
         LinearSolverError::NotConverged {
             iterations,

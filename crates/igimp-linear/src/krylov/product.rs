@@ -41,14 +41,14 @@ impl Product {
             .par_iter_mut()
             .enumerate()
             .for_each(|(part, (first, sums))| {
-                let own = part * nodes / PARTS..(part + 1) * nodes / PARTS;
-                let lists = own.clone().map(|node| pattern.coupled_to(node));
+                let range = part * nodes / PARTS..(part + 1) * nodes / PARTS;
+                let lists = range.clone().map(|node| pattern.coupled_to(node));
                 let reach = lists.filter_map(|list| Some((*list.first()?, *list.last()?)));
-                let (low, high) = reach.fold((u32::MAX, 0), |all, own| {
-                    (all.0.min(own.0), all.1.max(own.1))
+                let (low, high) = reach.fold((u32::MAX, 0), |all, ends| {
+                    (all.0.min(ends.0), all.1.max(ends.1))
                 });
                 sums.clear();
-                if own.is_empty() {
+                if range.is_empty() {
                     return;
                 }
                 *first = pattern.blocks[low as usize].first;
@@ -57,7 +57,7 @@ impl Product {
                 let first = *first;
                 Arch::new().dispatch(Columns {
                     matrix,
-                    own,
+                    range,
                     x,
                     first,
                     sums,
@@ -75,7 +75,7 @@ impl Product {
 /// The contribution of some columns to the rows from `first` on.
 struct Columns<'a> {
     matrix: &'a TangentMatrix,
-    own: Range<usize>,
+    range: Range<usize>,
     x: &'a [f64],
     first: usize,
     sums: &'a mut [f64],
@@ -92,13 +92,13 @@ impl WithSimd for Columns<'_> {
     fn with_simd<S: Simd>(self, _: S) {
         let Self {
             matrix,
-            own,
+            range,
             x,
             first,
             sums,
         } = self;
         let pattern = &*matrix.pattern;
-        for node in own {
+        for node in range {
             let block = pattern.blocks[node];
             let height = pattern.height(node);
             let columns = &matrix.values[pattern.values_of(node)];
@@ -106,10 +106,10 @@ impl WithSimd for Columns<'_> {
                 let value = x[block.first + column];
                 let mut entries = entries;
                 for run in pattern.runs(node) {
-                    let (own, later) = entries.split_at(run.len());
+                    let (values, later) = entries.split_at(run.len());
                     entries = later;
                     let rows = &mut sums[run.start - first..run.end - first];
-                    for (row, entry) in rows.iter_mut().zip(own) {
+                    for (row, entry) in rows.iter_mut().zip(values) {
                         *row += entry * value;
                     }
                 }
@@ -128,14 +128,14 @@ fn by_rows(matrix: &TangentMatrix, x: &[f64], y: &mut [f64]) {
         let end = (start + CHUNK).min(nodes);
         let last = pattern.blocks[end - 1];
         let len = last.first + last.len - pattern.blocks[start].first;
-        let (own, later) = rest.split_at_mut(len);
+        let (part, later) = rest.split_at_mut(len);
         rest = later;
-        parts.push((start..end, own));
+        parts.push((start..end, part));
     }
-    parts.into_par_iter().for_each(|(own, part)| {
+    parts.into_par_iter().for_each(|(range, part)| {
         Arch::new().dispatch(Rows {
             matrix,
-            own,
+            range,
             x,
             part,
         });
@@ -145,7 +145,7 @@ fn by_rows(matrix: &TangentMatrix, x: &[f64], y: &mut [f64]) {
 /// The product of the columns of some nodes of a symmetric matrix, as rows.
 struct Rows<'a> {
     matrix: &'a TangentMatrix,
-    own: Range<usize>,
+    range: Range<usize>,
     x: &'a [f64],
     part: &'a mut [f64],
 }
@@ -161,22 +161,22 @@ impl WithSimd for Rows<'_> {
     fn with_simd<S: Simd>(self, _: S) {
         let Self {
             matrix,
-            own,
+            range,
             x,
             part,
         } = self;
         let pattern = &*matrix.pattern;
         let mut gathered = Vec::new();
         let mut part = part;
-        for node in own {
+        for node in range {
             gathered.clear();
             for run in pattern.runs(node) {
                 gathered.extend_from_slice(&x[run]);
             }
             let columns = &matrix.values[pattern.values_of(node)];
-            let (own, later) = std::mem::take(&mut part).split_at_mut(pattern.blocks[node].len);
+            let (rows, later) = std::mem::take(&mut part).split_at_mut(pattern.blocks[node].len);
             part = later;
-            for (y, column) in own.iter_mut().zip(columns.chunks_exact(gathered.len())) {
+            for (y, column) in rows.iter_mut().zip(columns.chunks_exact(gathered.len())) {
                 *y = dot(column, &gathered);
             }
         }

@@ -13,7 +13,7 @@
 //! *Symmetric quasidefinite matrices*, SIAM Journal on Optimization 5, 1995). A column of L has the sign of its pivot on the
 //! diagonal, and J is stored nowhere else.
 //!
-//! A keeps the room of a [`Layout`]; what is above its diagonal is never read. Of C only the lower half is worked out,
+//! A keeps the room of a [`Layout`]; entries above its diagonal are never read. Of C only the lower half is worked out,
 //! a few columns at a time, and never stored as a whole.
 
 use std::ops::Range;
@@ -150,9 +150,9 @@ impl<T: Scalar> Kernel<T> for Cholesky<'_> {
         large: bool,
     ) -> Result<(), LinearSolverError> {
         let (w, r) = (contribution.front.pivots, contribution.front.border);
-        let own = Layout::lower(w);
-        let (pivots, lower) = contribution.factors.split_at(own.entries());
-        let signs = Signs::of(own, pivots, w);
+        let child = Layout::lower(w);
+        let (pivots, lower) = contribution.factors.split_at(child.entries());
+        let signs = Signs::of(child, pivots, w);
         let lower = MatRef::from_column_major_slice(lower, r, w);
         let layout = Layout::lower(room.parent.pivots);
         let (pivots, below) = room.factors.split_at_mut(layout.entries());
@@ -220,7 +220,7 @@ impl<T: Scalar> Work<'_, T> {
         self.tile(columns, &mut target, &mut tile);
     }
 
-    /// Works out some columns from the diagonal on, adds them to the parent, and keeps what waits.
+    /// Works out some columns from the diagonal on, adds them to the parent, and keeps the waiting entries.
     fn tile(&self, columns: &Range<usize>, target: &mut Target<'_, T>, tile: &mut [T]) {
         let map = self.contribution.map;
         let height = map.rows - columns.start;
@@ -288,9 +288,9 @@ fn factor_strides<T: Scalar>(
     let rows = lower.ncols();
     for (first, columns) in layout.strides() {
         let height = rows - first;
-        let (own, later) = std::mem::take(&mut rest).split_at_mut(height * columns);
-        let own = MatMut::from_column_major_slice_mut(own, height, columns);
-        let (mut block, mut below) = own.split_at_row_mut(columns);
+        let (stride, later) = std::mem::take(&mut rest).split_at_mut(height * columns);
+        let stride = MatMut::from_column_major_slice_mut(stride, height, columns);
+        let (mut block, mut below) = stride.split_at_row_mut(columns);
         factor_block(block.as_mut(), signed, false).map_err(|pivot| pivot + first)?;
         divide(block.as_ref(), below.as_mut(), true);
         let (_, right) = lower.as_mut().split_at_col_mut(first);
@@ -376,15 +376,15 @@ fn multiply_tile<T: Scalar>(
     first: usize,
 ) {
     let (rows, columns) = (lower.nrows(), tile.ncols());
-    let own = lower.subrows(first, columns);
+    let band = lower.subrows(first, columns);
     let mut copy = Vec::new();
-    let across = signs.times(own, &mut copy).transpose();
+    let across = signs.times(band, &mut copy).transpose();
     let (square, below) = tile.split_at_row_mut(columns);
     triangular::matmul(
         square,
         BlockStructure::TriangularLower,
         accum,
-        own,
+        band,
         BlockStructure::Rectangular,
         across,
         BlockStructure::Rectangular,

@@ -25,7 +25,7 @@ const FALLBACK_UNKNOWNS: usize = 50_000;
 const SUSPICIOUS_GROWTH: f64 = 1e6;
 
 /// Relative residual beyond which a solution is refined in any case \[-\]: one pass more costs little beside
-/// the factorisation, and Newton's method does not have to come back for what it leaves.
+/// the factorisation, and Newton's method does not have to come back for its error.
 const REFINED: f64 = 1e-9;
 
 /// Plan and factors of one matrix after the other.
@@ -213,7 +213,7 @@ impl Engine {
         self.factored = Some(Factorisation::Lu);
         if suspect.is_some() {
             let unknowns = matrix.pattern.unknowns();
-            let probed = probe(unknowns, suspect, |rhs, x| self.solve_own(matrix, rhs, x));
+            let probed = probe(unknowns, suspect, |rhs, x| self.substitute(matrix, rhs, x));
             if let Err(cause) = probed {
                 self.factored = None;
                 self.fall_back(matrix, cause)?;
@@ -240,10 +240,10 @@ impl Engine {
             Some(Factorisation::General(general)) => return general.solve(matrix, rhs, solution),
             Some(Factorisation::Cholesky | Factorisation::Lu) => {}
         }
-        let mut found = self.solve_own(matrix, rhs, solution);
+        let mut found = self.substitute(matrix, rhs, solution);
         if self.has_signs() && matches!(found, Err(LinearSolverError::Inaccurate { .. })) {
             self.factor_lu(matrix)?;
-            found = self.solve_own(matrix, rhs, solution);
+            found = self.substitute(matrix, rhs, solution);
         }
         match found {
             Err(cause) if self.blames_pivots(&cause) => self.fall_back(matrix, cause)?,
@@ -262,8 +262,8 @@ impl Engine {
             && plan.is_some_and(|plan| plan.pattern.has_scalars())
     }
 
-    /// Solves with the own factors.
-    fn solve_own(
+    /// Solves with the factors.
+    fn substitute(
         &mut self,
         matrix: &TangentMatrix,
         rhs: &[f64],
@@ -303,12 +303,12 @@ impl Engine {
     /// Whether another choice of pivots may help against an error.
     fn blames_pivots(&self, error: &LinearSolverError) -> bool {
         let record = &self.factors.record;
-        let what_is_wrong = match error {
+        let is_wrong = match error {
             LinearSolverError::Inaccurate { .. } => true,
-            LinearSolverError::NonFinite { what, .. } => *what == "solution",
+            LinearSolverError::NonFinite { array, .. } => *array == "solution",
             _ => false,
         };
-        what_is_wrong && (record.replaced > 0 || record.largest > SUSPICIOUS_GROWTH)
+        is_wrong && (record.replaced > 0 || record.largest > SUSPICIOUS_GROWTH)
     }
 
     /// Factorises the matrix with free pivoting, unless it is too large for that.

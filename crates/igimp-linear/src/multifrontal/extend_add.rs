@@ -1,8 +1,8 @@
-//! Adding what a child contributes to the front of its parent, stretch by stretch.
+//! Adding the contribution of a child to the front of its parent, stretch by stretch.
 //!
 //! I. S. Duff & J. K. Reid, *The multifrontal solution of indefinite sparse symmetric linear
-//! systems*, ACM Trans. Math. Softw. 9 (1983). What falls on the pivots of the parent is added to its factors at
-//! once; only what falls on its border waits for it.
+//! systems*, ACM Trans. Math. Softw. 9 (1983). Entries at the pivots of the parent are added to its factors at
+//! once; only entries at its border wait for it.
 
 use std::ops::Range;
 
@@ -96,13 +96,13 @@ pub(super) struct Waiting<'a, T> {
 }
 
 impl<T: Scalar> Waiting<'_, T> {
-    /// Adds what is in some columns of the parent's border, from their diagonal on, to a tile of them whose rows begin with
-    /// the first column. What waits is a [`triangle`].
+    /// Adds entries of some columns of the parent's border, from their diagonal on, to a tile of them whose rows begin with
+    /// the first column. Waiting entries are a [`triangle`].
     pub(super) fn add_lower(&self, tile: &mut [T], height: usize, columns: &Range<usize>) {
         let rows = self.map.rows - self.map.taken;
         let stretches = self.map.in_border();
-        for (index, own, target) in within(stretches, columns) {
-            let stretch = stretches[index].from(own);
+        for (index, offset, target) in within(stretches, columns) {
+            let stretch = stretches[index].from(offset);
             let source = &self.entries[triangle_column(rows, stretch.source - self.map.taken)];
             let into = &mut tile[(target - columns.start) * height..][..height];
             let shift = (self.map.taken, columns.start);
@@ -113,7 +113,7 @@ impl<T: Scalar> Waiting<'_, T> {
         }
     }
 
-    /// The same with all rows from `first_row` on of the parent's border. What waits is a square.
+    /// The same with all rows from `first_row` on of the parent's border. Waiting entries are a square.
     pub(super) fn add_square(
         &self,
         tile: &mut [T],
@@ -123,9 +123,9 @@ impl<T: Scalar> Waiting<'_, T> {
     ) {
         let rows = self.map.rows - self.map.taken;
         let stretches = self.map.in_border();
-        let first = stretches.partition_point(|own| own.target + own.len <= first_row);
-        for (index, own, target) in within(stretches, columns) {
-            let column = stretches[index].source + own - self.map.taken;
+        let first = stretches.partition_point(|run| run.target + run.len <= first_row);
+        for (index, offset, target) in within(stretches, columns) {
+            let column = stretches[index].source + offset - self.map.taken;
             let source = &self.entries[column * rows..][..rows];
             let into = &mut tile[(target - columns.start) * height..][..height];
             for stretch in &stretches[first..] {
@@ -135,7 +135,7 @@ impl<T: Scalar> Waiting<'_, T> {
         }
     }
 
-    /// Adds the columns from `first_column` on of some rows of the parent's border, transposed. What waits is a square.
+    /// Adds the columns from `first_column` on of some rows of the parent's border, transposed. Waiting entries are a square.
     pub(super) fn add_transposed(
         &self,
         tile: &mut [T],
@@ -145,9 +145,9 @@ impl<T: Scalar> Waiting<'_, T> {
     ) {
         let rows = self.map.rows - self.map.taken;
         let stretches = self.map.in_border();
-        let first = stretches.partition_point(|own| own.target + own.len <= first_column);
-        for (index, own, target) in within(stretches, rows_of_parent) {
-            let row = stretches[index].source + own - self.map.taken;
+        let first = stretches.partition_point(|run| run.target + run.len <= first_column);
+        for (index, offset, target) in within(stretches, rows_of_parent) {
+            let row = stretches[index].source + offset - self.map.taken;
             let into = &mut tile[(target - rows_of_parent.start) * height..][..height];
             for stretch in &stretches[first..] {
                 let stretch = stretch.from(first_column.saturating_sub(stretch.target));
@@ -166,18 +166,18 @@ fn within(
     stretches: &[Stretch],
     targets: &Range<usize>,
 ) -> impl Iterator<Item = (usize, usize, usize)> {
-    let first = stretches.partition_point(|own| own.target + own.len <= targets.start);
+    let first = stretches.partition_point(|run| run.target + run.len <= targets.start);
     let later = stretches[first..].iter().enumerate();
     later
-        .take_while(|(_, own)| own.target < targets.end)
-        .flat_map(move |(index, own)| {
-            let from = targets.start.saturating_sub(own.target);
-            let to = own.len.min(targets.end - own.target);
-            (from..to).map(move |k| (first + index, k, own.target + k))
+        .take_while(|(_, run)| run.target < targets.end)
+        .flat_map(move |(index, run)| {
+            let from = targets.start.saturating_sub(run.target);
+            let to = run.len.min(targets.end - run.target);
+            (from..to).map(move |k| (first + index, k, run.target + k))
         })
 }
 
-/// A part of the factors of a parent that some columns of its child are added to, and of what the child leaves.
+/// A part of the factors of a parent that some columns of its child are added to, and of the waiting entries of the child.
 pub(super) struct Target<'a, T> {
     pub(super) layout: Layout,
     /// First pivot of the part.
@@ -238,20 +238,20 @@ impl<T: Scalar> Target<'_, T> {
     ) {
         let height = map.rows - first_row;
         let (into_pivots, into_border) = (map.among_pivots(), map.in_border());
-        let first = into_pivots.partition_point(|own| own.source + own.len <= columns.start);
-        for (index, own) in into_pivots.iter().enumerate().skip(first) {
-            if own.source >= columns.end {
+        let first = into_pivots.partition_point(|run| run.source + run.len <= columns.start);
+        for (index, run) in into_pivots.iter().enumerate().skip(first) {
+            if run.source >= columns.end {
                 break;
             }
-            for k in columns.start.saturating_sub(own.source)..own.len.min(columns.end - own.source)
+            for k in columns.start.saturating_sub(run.source)..run.len.min(columns.end - run.source)
             {
-                let source = &tile[(own.source + k - columns.start) * height..][..height];
-                let pivot = own.target + k;
+                let source = &tile[(run.source + k - columns.start) * height..][..height];
+                let pivot = run.target + k;
                 let start = self.layout.offset(pivot) - self.layout.offset(self.first_pivot);
                 let shift = (first_row, self.layout.first_row(pivot));
                 let into = &mut self.pivots[start..];
                 let stretches = if lower_half {
-                    add_stretch(into, source, own.from(k), shift);
+                    add_stretch(into, source, run.from(k), shift);
                     &into_pivots[index + 1..]
                 } else {
                     into_pivots
@@ -278,12 +278,12 @@ impl<T: Scalar> Target<'_, T> {
         first_row: usize,
     ) {
         let height = map.rows - first_row;
-        for own in map.among_pivots() {
-            let from = columns.start.saturating_sub(own.source);
-            let to = own.len.min(columns.end.saturating_sub(own.source));
+        for run in map.among_pivots() {
+            let from = columns.start.saturating_sub(run.source);
+            let to = run.len.min(columns.end.saturating_sub(run.source));
             for k in from..to {
-                let source = &tile[(own.source + k - columns.start) * height..][..height];
-                let first = (own.target + k - self.first_pivot) * self.border;
+                let source = &tile[(run.source + k - columns.start) * height..][..height];
+                let first = (run.target + k - self.first_pivot) * self.border;
                 let into = &mut self.lower[first..][..self.border];
                 for &stretch in map.in_border() {
                     add_stretch(into, source, stretch, (first_row, 0));

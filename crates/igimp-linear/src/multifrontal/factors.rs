@@ -30,7 +30,7 @@ struct Done<T> {
     record: PivotRecord,
 }
 
-/// The front that the tasks below it contribute to, and what waits for it.
+/// The front that the tasks below it contribute to, and contributions that wait for it.
 struct Above<'a, T> {
     front: &'a Front,
     factors: &'a mut [T],
@@ -100,7 +100,7 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
         }
     }
 
-    /// The same, and adds what they contribute to the front above them, in their order: those on the left as soon as
+    /// The same, and adds their contributions to the front above them, in their order: those on the left as soon as
     /// they are done.
     fn tasks_below(
         &self,
@@ -126,16 +126,16 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
                 );
                 let mut record = record?;
                 for (task, done) in right.iter().zip(done?) {
-                    let (own, later) = right_values.split_at_mut(K::entries(&task.total));
+                    let (part, later) = right_values.split_at_mut(K::entries(&task.total));
                     right_values = later;
-                    record.add(&self.pass_on(task, own, &done, above)?);
+                    record.add(&self.pass_on(task, part, &done, above)?);
                 }
                 Ok(record)
             }
         }
     }
 
-    /// Adds what a task contributes to the front above; the threads share the work.
+    /// Adds the contribution of a task to the front above; the threads share the work.
     fn pass_on(
         &self,
         task: &Task,
@@ -161,15 +161,15 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
             factors: above.factors,
             waiting: &mut waiting[..K::SHAPE.entries(front.passed_on)],
         };
-        let own = K::entries(&front.extent());
-        let factors = &values[values.len() - own..];
+        let entries = K::entries(&front.extent());
+        let factors = &values[values.len() - entries..];
         self.contribute(front, factors, left, room, &mut tools.rest(), true)?;
         self.scratch.give_back(tools);
         above.waiting.push(waiting);
         Ok(done.record)
     }
 
-    /// Works out what a front contributes to its parent.
+    /// Works out the contribution of a front to its parent.
     fn contribute<'b>(
         &self,
         front: &Front,
@@ -211,10 +211,10 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
         values: &mut [T],
         exchanges: &mut [u32],
     ) -> Result<Done<T>, LinearSolverError> {
-        let below = K::entries(&task.total) - K::entries(&task.own);
+        let below = K::entries(&task.total) - K::entries(&task.extent);
         let (values_below, values) = values.split_at_mut(below);
         let (exchanges_below, exchanges) =
-            exchanges.split_at_mut(task.total.pivots - task.own.pivots);
+            exchanges.split_at_mut(task.total.pivots - task.extent.pivots);
         if task.is_large() {
             let front = &self.plan.fronts[task.fronts.start];
             let mut tools = self.scratch.tools(self.plan)?;
@@ -265,17 +265,15 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
         tools.offsets.push(end);
         let mut record = PivotRecord::default();
         for (number, front) in fronts.iter().enumerate() {
-            let (own_exchanges, later_exchanges) = exchanges.split_at_mut(front.pivots);
+            let (swaps, later_exchanges) = exchanges.split_at_mut(front.pivots);
             exchanges = later_exchanges;
             let (values, later) = values.split_at_mut(tools.offsets[number + 1]);
-            let own = &mut values[tools.offsets[number]..];
+            let panel = &mut values[tools.offsets[number]..];
             if front.children.is_empty() {
                 plan.locate(front, &mut tools.local);
-                self.kernel.load(plan, front, own, &tools.local);
+                self.kernel.load(plan, front, panel, &tools.local);
             }
-            let found = self
-                .kernel
-                .eliminate(plan, front, own, own_exchanges, false)?;
+            let found = self.kernel.eliminate(plan, front, panel, swaps, false)?;
             record.add(&found);
             let index = task.fronts.start + number;
             if index + 1 == task.fronts.end {
@@ -288,7 +286,7 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
             let factors = &mut later[first..][..K::entries(&parent.extent())];
             let is_first = plan.children[parent.children.start] as usize == index;
             let [even, odd] = &mut tools.stacks;
-            let (own_stack, stack_below) = if front.stack == 0 {
+            let (stack, stack_below) = if front.stack == 0 {
                 (even, &*odd)
             } else {
                 (odd, &*even)
@@ -310,9 +308,9 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
             let room = Room {
                 parent,
                 factors,
-                waiting: &mut own_stack[front.contribution[shape].clone()],
+                waiting: &mut stack[front.contribution[shape].clone()],
             };
-            self.contribute(front, own, children, room, &mut rest, false)?;
+            self.contribute(front, panel, children, room, &mut rest, false)?;
         }
         let last = &fronts[fronts.len() - 1];
         let children = plan.children[last.children.clone()].iter();

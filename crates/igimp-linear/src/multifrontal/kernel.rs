@@ -34,7 +34,7 @@ pub(super) trait Kernel<T: Scalar>: Sync {
         large: bool,
     ) -> Result<PivotRecord, LinearSolverError>;
 
-    /// Works out what a front contributes to its parent: adds to the factors of the parent what falls on
+    /// Works out the contribution of a front to its parent: adds to the factors of the parent what falls on
     /// its pivots, and leaves the rest.
     ///
     /// # Errors

@@ -41,7 +41,7 @@ pub(super) struct Lu<'a> {
     pub(super) scale: &'a [f64],
 }
 
-/// The blocks of a front: pivots, below them, and the transpose of what is beside them.
+/// The blocks of a front: pivots, below them, and the transpose of the block beside them.
 fn blocks<T>(pivots: usize, border: usize, factors: &mut [T]) -> [&mut [T]; 3] {
     let (square, borders) = factors.split_at_mut(pivots * pivots);
     let (lower, upper) = borders.split_at_mut(border * pivots);

@@ -11,7 +11,7 @@
 //!
 //! | module | what it does |
 //! |---|---|
-//! | [`neighbours`], [`supernodes`], [`plan`], [`tasks`] | analysis: fronts, their order, their memory, what threads share |
+//! | [`neighbours`], [`supernodes`], [`plan`], [`tasks`] | analysis: fronts, their order, their memory, the shares of threads |
 //! | [`scaling`], [`kernel`], [`lu`], [`cholesky`], [`extend_add`], [`factors`] | factorisation |
 //! | [`dense_lu`], [`tiles`], [`panels`], [`layout`], [`scalar`], [`scratch`] | dense kernels, numbers, memory |
 //! | [`substitution`] | solution |

@@ -1,7 +1,7 @@
 //! Memory to work in, kept from factorisation to factorisation.
 //!
-//! Each thread takes a set of tools from the shelf and puts it back. What is on the shelf depends on
-//! how many threads there were; what is computed with it does not.
+//! Each thread takes a set of tools from the shelf and puts it back. The stock of the shelf depends on
+//! how many threads there were; results computed with it do not.
 
 use std::sync::Mutex;
 
@@ -56,7 +56,7 @@ fn lock<C>(mutex: &Mutex<C>) -> std::sync::MutexGuard<'_, C> {
         .unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
-/// Makes room for `len` entries; what was there before is of no interest.
+/// Makes room for `len` entries; earlier entries are of no interest.
 ///
 /// Memory is kept while it suffices, and some is added to spare when it does not: a body that
 /// spreads over the grid asks for a little more in every step. Fresh memory comes zeroed from the
@@ -64,14 +64,14 @@ fn lock<C>(mutex: &Mutex<C>) -> std::sync::MutexGuard<'_, C> {
 pub(crate) fn make_room<T: Copy + Default>(
     values: &mut Vec<T>,
     len: usize,
-    what: &'static str,
+    part: &'static str,
 ) -> Result<(), LinearSolverError> {
     if values.len() < len {
         *values = Vec::new();
         let roomy = len + len / 16;
         values
             .try_reserve_exact(roomy)
-            .map_err(|_| LinearSolverError::OutOfMemory { what })?;
+            .map_err(|_| LinearSolverError::OutOfMemory { what: part })?;
         *values = Vec::new();
         *values = vec![T::default(); roomy];
     }

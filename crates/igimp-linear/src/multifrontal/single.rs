@@ -16,7 +16,7 @@ const MOST: usize = 60;
 /// Names of the methods.
 const NAMES: [&str; 2] = ["single-cg", "single-gmres"];
 
-/// Factors in single precision, and what it takes to make them and to use them.
+/// Factors in single precision, and the memory to make them and to use them.
 #[derive(Default)]
 pub(super) struct Single {
     factors: Factors<f32>,

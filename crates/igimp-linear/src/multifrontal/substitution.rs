@@ -1,7 +1,7 @@
 //! Solving with the factors, over the tree of tasks.
 //!
-//! What a task changes in the part of the vector that belongs to the tasks above it, it keeps apart
-//! until they add it up in their order; the bits of the solution do not depend on the number of
+//! Changes that a task makes in the part of the vector that belongs to the tasks above it are kept apart
+//! until these add them up in their order; the bits of the solution do not depend on the number of
 //! threads.
 
 use super::super::LinearSolverError;
@@ -129,8 +129,8 @@ impl<S: Substitution<T>, T: Scalar> Job<'_, S, T> {
         y: &mut [T],
         outer: &mut [T],
     ) -> Result<(), LinearSolverError> {
-        let (y_below, y) = y.split_at_mut(task.total.pivots - task.own.pivots);
-        let (outer_below, outer) = outer.split_at_mut(task.total.outer - task.own.outer);
+        let (y_below, y) = y.split_at_mut(task.total.pivots - task.extent.pivots);
+        let (outer_below, outer) = outer.split_at_mut(task.total.outer - task.extent.outer);
         self.each(Direction::Forward, &task.below, place, y_below, outer_below)?;
 
         let mut tools = self.scratch.tools(self.plan)?;
@@ -141,13 +141,13 @@ impl<S: Substitution<T>, T: Scalar> Job<'_, S, T> {
             let child = &self.plan.fronts[child];
             part.add(self.plan, child, &outer_below[changes]);
         }
-        let mut values = &self.factors.values[Self::own_entries(task, place)..];
+        let mut values = &self.factors.values[Self::first_entry(task, place)..];
         for front in &self.plan.fronts[task.fronts.clone()] {
-            let (own, later) = values.split_at(S::entries(&front.extent()));
+            let (lu, later) = values.split_at(S::entries(&front.extent()));
             values = later;
             let exchanges = &self.factors.exchanges[front.first..front.end()];
             let product = &mut border[..front.border];
-            S::forward(own, exchanges, part.pivots(front), product, task.is_large());
+            S::forward(lu, exchanges, part.pivots(front), product, task.is_large());
             part.add(self.plan, front, product);
         }
         self.scratch.give_back(tools);
@@ -161,19 +161,19 @@ impl<S: Substitution<T>, T: Scalar> Job<'_, S, T> {
         y: &mut [T],
         outer: &mut [T],
     ) -> Result<(), LinearSolverError> {
-        let (y_below, y) = y.split_at_mut(task.total.pivots - task.own.pivots);
-        let (outer_below, outer) = outer.split_at_mut(task.total.outer - task.own.outer);
+        let (y_below, y) = y.split_at_mut(task.total.pivots - task.extent.pivots);
+        let (outer_below, outer) = outer.split_at_mut(task.total.outer - task.extent.outer);
         let mut tools = self.scratch.tools(self.plan)?;
         let Tools { local, border, .. } = &mut tools;
         let mut part = Part::new(self.plan, task, y, outer, local);
-        let first = Self::own_entries(task, place);
-        let mut values = &self.factors.values[first..first + S::entries(&task.own)];
+        let first = Self::first_entry(task, place);
+        let mut values = &self.factors.values[first..first + S::entries(&task.extent)];
         for front in self.plan.fronts[task.fronts.clone()].iter().rev() {
-            let (earlier, own) = values.split_at(values.len() - S::entries(&front.extent()));
+            let (earlier, factors) = values.split_at(values.len() - S::entries(&front.extent()));
             values = earlier;
             part.gather(self.plan, front, &mut border[..front.border]);
             let border = &border[..front.border];
-            S::backward(own, part.pivots(front), border, task.is_large());
+            S::backward(factors, part.pivots(front), border, task.is_large());
         }
         for (child, known) in task.outer_parts() {
             let child = &self.plan.fronts[child];
@@ -190,8 +190,8 @@ impl<S: Substitution<T>, T: Scalar> Job<'_, S, T> {
     }
 
     /// Where the factors of a task itself begin.
-    fn own_entries(task: &Task, place: Place) -> usize {
-        place.entries + S::entries(&task.total) - S::entries(&task.own)
+    fn first_entry(task: &Task, place: Place) -> usize {
+        place.entries + S::entries(&task.total) - S::entries(&task.extent)
     }
 }
 
@@ -245,9 +245,9 @@ impl<'a, T: Scalar> Part<'a, T> {
     fn add(&mut self, plan: &Plan, front: &Front, mut changes: &[T]) {
         for &rank in plan.rows(front) {
             let entries = self.entries(plan, rank);
-            let (own, later) = changes.split_at(entries.len());
+            let (part, later) = changes.split_at(entries.len());
             changes = later;
-            for (entry, change) in entries.iter_mut().zip(own) {
+            for (entry, change) in entries.iter_mut().zip(part) {
                 *entry += *change;
             }
         }
@@ -257,8 +257,8 @@ impl<'a, T: Scalar> Part<'a, T> {
     fn gather(&mut self, plan: &Plan, front: &Front, mut border: &mut [T]) {
         for &rank in plan.rows(front) {
             let entries = self.entries(plan, rank);
-            let (own, later) = border.split_at_mut(entries.len());
-            own.copy_from_slice(entries);
+            let (part, later) = border.split_at_mut(entries.len());
+            part.copy_from_slice(entries);
             border = later;
         }
     }

@@ -64,7 +64,7 @@ impl BoundaryNodes {
 
     /// Finds the nodes whose diagonal is small beside those of their neighbours.
     fn find(&mut self, pattern: &Pattern, diagonal: &[f64]) {
-        let largest = |entries: &[f64]| entries.iter().fold(0.0, |most: f64, own| most.max(*own));
+        let largest = |entries: &[f64]| entries.iter().fold(0.0, |most: f64, x| most.max(*x));
         let size = |block: &NodeBlock| largest(&diagonal[block.first..block.first + block.len]);
         let sizes: Vec<f64> = pattern.blocks.iter().map(size).collect();
         let is_weak = |&node: &u32| {
@@ -82,8 +82,8 @@ impl BoundaryNodes {
         let mut index = vec![u32::MAX; pattern.blocks.len()];
         let mut blocks = Vec::with_capacity(self.nodes.len());
         let mut first = 0;
-        for (own, &node) in self.nodes.iter().enumerate() {
-            index[node as usize] = own as u32;
+        for (number, &node) in self.nodes.iter().enumerate() {
+            index[node as usize] = number as u32;
             let block = pattern.blocks[node as usize];
             blocks.push(NodeBlock { first, ..block });
             first += block.len;
@@ -92,7 +92,7 @@ impl BoundaryNodes {
         for &node in &self.nodes {
             let list = pattern.coupled_to(node as usize);
             let known = list.iter().map(|&other| index[other as usize]);
-            coupled.extend(known.filter(|&own| own != u32::MAX));
+            coupled.extend(known.filter(|&number| number != u32::MAX));
             starts.push(coupled.len());
             let columns = &matrix.values[pattern.values_of(node as usize)];
             for column in columns.chunks_exact(pattern.height(node as usize)) {
@@ -128,12 +128,12 @@ impl BoundaryNodes {
                 .extend_from_slice(&r[block.first..block.first + block.len]);
         }
         self.solve();
-        let mut own = 0;
+        let mut row = 0;
         for &node in &self.nodes {
             let columns = &matrix.values[pattern.values_of(node as usize)];
             for column in columns.chunks_exact(pattern.height(node as usize)) {
-                let value = self.change[own];
-                own += 1;
+                let value = self.change[row];
+                row += 1;
                 let mut left = column;
                 for run in pattern.runs(node as usize) {
                     let (entries, later) = left.split_at(run.len());
@@ -148,17 +148,17 @@ impl BoundaryNodes {
 
     /// z ← z + the change that was found.
     pub(crate) fn add(&self, matrix: &TangentMatrix, z: &mut [f64]) {
-        let mut own = 0;
+        let mut row = 0;
         for &node in &self.nodes {
             let block = matrix.pattern.blocks[node as usize];
             for z in &mut z[block.first..block.first + block.len] {
-                *z += self.change[own];
-                own += 1;
+                *z += self.change[row];
+                row += 1;
             }
         }
     }
 
-    /// Solves for the skin with what is left of its rows; the matrix is symmetric.
+    /// Solves for the skin with the residual of its rows; the matrix is symmetric.
     pub(crate) fn after(&mut self, matrix: &TangentMatrix, r: &[f64], z: &mut [f64]) {
         self.rhs.clear();
         let pattern = &*matrix.pattern;

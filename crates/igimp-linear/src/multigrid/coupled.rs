@@ -1,6 +1,6 @@
 //! Soil and the water in it: a preconditioner by blocks (theory, eq. 104a).
 //!
-//! The displacement of drained soil and the pressure of water each have a multigrid of their own. What soil gives way
+//! The displacement of drained soil and the pressure of water each have a multigrid of their own. The way that soil gives
 //! under a pressure stands for the elimination of displacement, at each node alone: the diagonal of Bᵀ D⁻¹ B, with the coupling
 //! B and the diagonal D of the stiffness (P. Benzi, G. H. Golub and J. Liesen, *Numerical solution of saddle point problems*,
 //! Acta Numerica 14 (2005), section 10).
@@ -67,8 +67,8 @@ impl Part {
             .collect();
         let mut index = vec![u32::MAX; pattern.blocks.len()];
         let (mut blocks, mut unknowns) = (Vec::with_capacity(kept.len()), Vec::new());
-        for (own, &node) in kept.iter().enumerate() {
-            index[node as usize] = own as u32;
+        for (number, &node) in kept.iter().enumerate() {
+            index[node as usize] = number as u32;
             let block = &pattern.blocks[node as usize];
             let range = of(block);
             blocks.push(NodeBlock {
@@ -85,7 +85,7 @@ impl Part {
             let node = node as usize;
             let list = pattern.coupled_to(node);
             let known = list.iter().map(|&other| index[other as usize]);
-            coupled.extend(known.filter(|&own| own != u32::MAX));
+            coupled.extend(known.filter(|&number| number != u32::MAX));
             starts.push(coupled.len());
             for column in of(&pattern.blocks[node]) {
                 let mut at = pattern.first_value[node] + column * pattern.height(node);
@@ -112,8 +112,8 @@ impl Part {
 
     /// Takes its values from those of the whole, times a factor.
     fn take(&mut self, values: &[f64], factor: f64) {
-        for (own, &entry) in self.matrix.values.iter_mut().zip(&self.entries) {
-            *own = factor * values[entry as usize];
+        for (value, &entry) in self.matrix.values.iter_mut().zip(&self.entries) {
+            *value = factor * values[entry as usize];
         }
     }
 
@@ -127,7 +127,7 @@ impl Part {
     /// The part of a vector.
     fn of(&self, whole: &[f64], part: &mut Vec<f64>) {
         part.clear();
-        part.extend(self.unknowns.iter().map(|&own| whole[own as usize]));
+        part.extend(self.unknowns.iter().map(|&unknown| whole[unknown as usize]));
     }
 
     /// Puts a part of a vector in its place.
@@ -154,8 +154,8 @@ impl Coupled {
         ];
         let mut number = vec![0; pattern.unknowns()];
         for part in [&soil, &water] {
-            for (own, &unknown) in part.unknowns.iter().enumerate() {
-                number[unknown as usize] = own as u32;
+            for (index, &unknown) in part.unknowns.iter().enumerate() {
+                number[unknown as usize] = index as u32;
             }
         }
         let mut couplings = Vec::new();
@@ -190,11 +190,11 @@ impl Coupled {
         self.soil.take(&matrix.values, 1.0);
         self.water.take(&matrix.values, -1.0);
         let stiffness = self.soil.diagonal();
-        for own in &mut self.couplings {
-            own.value = matrix.values[own.entry as usize];
-            let gives = GIVES * own.value * own.value / stiffness[own.displacement as usize].abs();
+        for c in &mut self.couplings {
+            c.value = matrix.values[c.entry as usize];
+            let gives = GIVES * c.value * c.value / stiffness[c.displacement as usize].abs();
             if gives.is_finite() {
-                let place = self.water.on_diagonal[own.pressure as usize];
+                let place = self.water.on_diagonal[c.pressure as usize];
                 self.water.matrix.values[place as usize] += gives;
             }
         }
@@ -204,7 +204,7 @@ impl Coupled {
         }
     }
 
-    /// z ← P⁻¹ r: displacement of soil without water, and pressure of what is left.
+    /// z ← P⁻¹ r: displacement of soil without water, and pressure of the residual.
     pub(super) fn apply(&mut self, r: &[f64], z: &mut [f64]) {
         let Self {
             soil,
@@ -222,8 +222,8 @@ impl Coupled {
         for residual in &mut *water_residual {
             *residual = -*residual;
         }
-        for own in &*couplings {
-            water_residual[own.pressure as usize] += own.value * moved[own.displacement as usize];
+        for c in &*couplings {
+            water_residual[c.pressure as usize] += c.value * moved[c.displacement as usize];
         }
         of_water.apply(&water.matrix, water_residual, pressed);
         soil.put(moved, z);

@@ -45,8 +45,8 @@ impl Dense {
                 let factor = other[k] * row[k];
                 other[k] = factor;
                 if factor != 0.0 {
-                    for (other, own) in other[k + 1..].iter_mut().zip(&row[k + 1..]) {
-                        *other -= factor * own;
+                    for (other, entry) in other[k + 1..].iter_mut().zip(&row[k + 1..]) {
+                        *other -= factor * entry;
                     }
                 }
             }

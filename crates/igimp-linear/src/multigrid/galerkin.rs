@@ -36,9 +36,9 @@ pub(super) fn product<const B: usize>(
     let mut rest = &mut target[..];
     for start in (0..coarse.len()).step_by(CHUNK) {
         let end = (start + CHUNK).min(coarse.len());
-        let (own, later) = rest.split_at_mut(coarse.first::<B>(end) - coarse.first::<B>(start));
+        let (part, later) = rest.split_at_mut(coarse.first::<B>(end) - coarse.first::<B>(start));
         rest = later;
-        parts.push((start..end, own));
+        parts.push((start..end, part));
     }
     let scratch = || Scratch {
         fine: vec![NONE; fine.len()],
@@ -50,9 +50,9 @@ pub(super) fn product<const B: usize>(
         .into_par_iter()
         .for_each_init(scratch, |scratch, (nodes, mut part)| {
             for node in nodes {
-                let (own, later) = part.split_at_mut(B * B * coarse.of(node).len());
+                let (out, later) = part.split_at_mut(B * B * coarse.of(node).len());
                 part = later;
-                row::<B>(transfer, fine, values, coarse.of(node), node, scratch, own);
+                row::<B>(transfer, fine, values, coarse.of(node), node, scratch, out);
             }
         });
 }

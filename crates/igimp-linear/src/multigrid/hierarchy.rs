@@ -182,16 +182,16 @@ fn growth<const B: usize>(
     for _ in 0..POWERS {
         residual::<B>(couplings, values, &nothing, x, work);
         smoother.apply::<B>(couplings, slabs, values, work, change);
-        let (mut own, mut next) = (0.0, 0.0);
+        let (mut energy, mut next) = (0.0, 0.0);
         for ((work, x), change) in work.iter().zip(&*x).zip(&*change) {
-            own -= f64::from(*work) * f64::from(*x);
+            energy -= f64::from(*work) * f64::from(*x);
             next += f64::from(*work) * f64::from(*change);
         }
-        found = (next / own).abs() as f32;
+        found = (next / energy).abs() as f32;
         if found > MOST_GROWTH {
             break;
         }
-        let size = change.iter().fold(0.0_f32, |most, own| most.max(own.abs()));
+        let size = change.iter().fold(0.0_f32, |most, x| most.max(x.abs()));
         for (x, change) in x.iter_mut().zip(&*change) {
             *x = change / size;
         }

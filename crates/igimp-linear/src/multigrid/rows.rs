@@ -1,4 +1,4 @@
-//! Matrices by rows of nodes, in single precision: what a preconditioner reads.
+//! Matrices by rows of nodes, in single precision, as a preconditioner reads them.
 //!
 //! Every node has B components, those without an unknown among them: their rows and columns are zero. The
 //! entries of a node are B rows, one after the other, each with B entries for every node that it is coupled
@@ -22,18 +22,18 @@ pub(super) struct Couplings {
     /// For each node those that it is coupled to, ascending, itself among them.
     pub(super) nodes: Vec<u32>,
     /// Where each node itself stands in its list.
-    pub(super) own: Vec<u32>,
+    pub(super) diagonal: Vec<u32>,
 }
 
 impl Couplings {
     /// From lists, each with the node itself.
     pub(super) fn new(starts: Vec<usize>, nodes: Vec<u32>) -> Self {
-        let own = (0..starts.len() - 1).map(|node| {
+        let diagonal = (0..starts.len() - 1).map(|node| {
             let list = &nodes[starts[node]..starts[node + 1]];
             list.partition_point(|&other| (other as usize) < node) as u32
         });
         Self {
-            own: own.collect(),
+            diagonal: diagonal.collect(),
             starts,
             nodes,
         }
@@ -41,7 +41,7 @@ impl Couplings {
 
     /// Number of nodes.
     pub(super) fn len(&self) -> usize {
-        self.own.len()
+        self.diagonal.len()
     }
 
     /// The nodes that a node is coupled to.
@@ -60,7 +60,7 @@ impl Couplings {
     }
 }
 
-/// Calls `work` with runs of nodes and what is stored for them, on several threads; `first` says where the part of
+/// Calls `work` with runs of nodes and the values stored for them, on several threads; `first` says where the part of
 /// a node begins.
 pub(super) fn each_chunk<T: Send>(
     nodes: usize,
@@ -72,9 +72,9 @@ pub(super) fn each_chunk<T: Send>(
     let mut rest = values;
     for start in (0..nodes).step_by(CHUNK) {
         let end = (start + CHUNK).min(nodes);
-        let (own, later) = rest.split_at_mut(first(end) - first(start));
+        let (part, later) = rest.split_at_mut(first(end) - first(start));
         rest = later;
-        parts.push((start..end, own));
+        parts.push((start..end, part));
     }
     parts
         .into_par_iter()
@@ -91,8 +91,8 @@ pub(super) fn slots<const B: usize>(pattern: &Pattern) -> Vec<u32> {
         } else {
             (1 << block.len) - 1
         };
-        let own = (0..B).filter(|axis| free >> axis & 1 == 1);
-        slots.extend(own.map(|axis| (node * B + axis) as u32));
+        let axes = (0..B).filter(|axis| free >> axis & 1 == 1);
+        slots.extend(axes.map(|axis| (node * B + axis) as u32));
     }
     slots
 }
@@ -169,7 +169,7 @@ pub(super) fn residual<const B: usize>(
     );
 }
 
-/// What [`residual`] does for some nodes.
+/// The work of [`residual`] for some nodes.
 struct Residual<'a, const B: usize> {
     couplings: &'a Couplings,
     values: &'a [f32],
@@ -196,13 +196,13 @@ impl<const B: usize> WithSimd for Residual<'_, B> {
             nodes,
             part,
         } = self;
-        for (node, own) in nodes.zip(part.chunks_exact_mut(B)) {
+        for (node, residual) in nodes.zip(part.chunks_exact_mut(B)) {
             let list = couplings.of(node);
             let first = couplings.first::<B>(node);
             let entries = &values[first..first + B * B * list.len()];
             let sums = row_products::<B>(entries, B * list.len(), 0, list, x, 0);
-            for ((own, rhs), sum) in own.iter_mut().zip(&rhs[B * node..]).zip(sums) {
-                *own = rhs - sum;
+            for ((r, rhs), sum) in residual.iter_mut().zip(&rhs[B * node..]).zip(sums) {
+                *r = rhs - sum;
             }
         }
     }
@@ -210,7 +210,7 @@ impl<const B: usize> WithSimd for Residual<'_, B> {
 
 /// Partial sums of a product.
 const LANES: usize = 16;
-/// Partial sums of what is left of it.
+/// Partial sums of its rest.
 const FEW: usize = 4;
 /// Nodes whose part of a vector is gathered at once.
 const GATHERED: usize = 64;
@@ -235,8 +235,8 @@ pub(super) fn row_products<const B: usize>(
     let mut begin = skip;
     for nodes in list.chunks(GATHERED) {
         let len = B * nodes.len();
-        for (own, &node) in gathered[..len].chunks_exact_mut(B).zip(nodes) {
-            own.copy_from_slice(&x[B * node as usize - before..][..B]);
+        for (slot, &node) in gathered[..len].chunks_exact_mut(B).zip(nodes) {
+            slot.copy_from_slice(&x[B * node as usize - before..][..B]);
         }
         let rows: [&[f32]; B] = std::array::from_fn(|r| &entries[r * width + begin..][..len]);
         let found = products(&rows, &gathered[..len]);

@@ -62,22 +62,22 @@ impl Slabs {
     pub(super) fn split(&self, slab: usize, node: usize, couplings: &Couplings) -> Split {
         let (begin, end) = self.spans[node];
         let (begin, end) = (begin as usize, end as usize);
-        let own = couplings.own[node] as usize;
+        let diagonal = couplings.diagonal[node] as usize;
         let len = couplings.of(node).len();
         if slab.is_multiple_of(2) {
             Split {
-                lower: [0..0, len..len, begin..own],
-                upper: [0..begin, own + 1..end, end..len],
+                lower: [0..0, len..len, begin..diagonal],
+                upper: [0..begin, diagonal + 1..end, end..len],
             }
         } else {
             Split {
-                lower: [0..begin, end..len, begin..own],
-                upper: [0..0, own + 1..end, len..len],
+                lower: [0..begin, end..len, begin..diagonal],
+                upper: [0..0, diagonal + 1..end, len..len],
             }
         }
     }
 
-    /// Calls `work` for the slabs of one colour with their own parts of what is stored for all nodes, and with
+    /// Calls `work` for the slabs of one colour with their own parts of the values stored for all nodes, and with
     /// the parts of the two neighbours. `first` says where the part of a node begins.
     pub(super) fn each<T: Send + Sync>(
         &self,
@@ -86,20 +86,20 @@ impl Slabs {
         first: impl Fn(usize) -> usize + Sync,
         work: impl Fn(usize, &mut Parts<'_, T>) + Sync,
     ) {
-        let (mut own, mut others) = (Vec::new(), Vec::new());
+        let (mut same, mut others) = (Vec::new(), Vec::new());
         let mut rest = values;
         for slab in 0..self.len() {
             let nodes = self.nodes(slab);
             let (part, later) = rest.split_at_mut(first(nodes.end) - first(nodes.start));
             rest = later;
             if (slab % 2 == 1) == odd {
-                own.push((slab, first(nodes.start), part));
+                same.push((slab, first(nodes.start), part));
             } else {
                 others.push((first(nodes.start), &*part));
             }
         }
         // Slab k of one colour lies between k − 1 and k of the other, or k and k + 1.
-        own.into_par_iter()
+        same.into_par_iter()
             .enumerate()
             .for_each(|(k, (slab, before, part))| {
                 let nothing = (0, &[][..]);
@@ -116,7 +116,7 @@ impl Slabs {
                 };
                 let mut parts = Parts {
                     before,
-                    own: part,
+                    slab: part,
                     neighbours,
                 };
                 work(slab, &mut parts);
@@ -128,7 +128,7 @@ impl Slabs {
 pub(super) struct Parts<'a, T> {
     /// How much is stored for the nodes before the slab.
     pub(super) before: usize,
-    pub(super) own: &'a mut [T],
+    pub(super) slab: &'a mut [T],
     /// The same of the slabs before and after it.
     pub(super) neighbours: [(usize, &'a [T]); 2],
 }

@@ -55,9 +55,9 @@ impl Smoother {
         match kind {
             Kind::GaussSeidel => {
                 self.values = Vec::new();
-                for (node, own) in self.inverse.chunks_exact_mut(B * B + 1).enumerate() {
+                for (node, inverse) in self.inverse.chunks_exact_mut(B * B + 1).enumerate() {
                     let block = diagonal_block::<B>(couplings, node, matrix);
-                    own[B * B] = f32::from(invert::<B>(&block, &block, own));
+                    inverse[B * B] = f32::from(invert::<B>(&block, &block, inverse));
                 }
             }
             Kind::Incomplete => {
@@ -73,7 +73,7 @@ impl Smoother {
                 job.run(&mut self.values, &mut self.inverse);
             }
         }
-        let flags = self.inverse.chunks_exact(B * B + 1).map(|own| own[B * B]);
+        let flags = self.inverse.chunks_exact(B * B + 1).map(|x| x[B * B]);
         self.replaced = flags.filter(|&flag| flag != 0.0).count();
     }
 
@@ -137,13 +137,13 @@ impl<const B: usize> Sweep<'_, B> {
     fn forward(&self, slab: usize, rhs: &[f32], parts: &mut Parts<'_, f32>) {
         for node in self.slabs.nodes(slab) {
             let split = self.slabs.split(slab, node, self.couplings);
-            let [before, after, own] = &split.lower;
+            let [before, after, within] = &split.lower;
             let mut left: [f32; B] = std::array::from_fn(|k| rhs[B * node + k]);
             self.subtract(node, before, parts.neighbours[0], &mut left);
-            self.subtract(node, own, (parts.before, parts.own), &mut left);
+            self.subtract(node, within, (parts.before, parts.slab), &mut left);
             self.subtract(node, after, parts.neighbours[1], &mut left);
             let found = self.divide(node, &left);
-            parts.own[B * node - parts.before..][..B].copy_from_slice(&found);
+            parts.slab[B * node - parts.before..][..B].copy_from_slice(&found);
         }
     }
 
@@ -156,13 +156,13 @@ impl<const B: usize> Sweep<'_, B> {
     fn backward(&self, slab: usize, parts: &mut Parts<'_, f32>) {
         for node in self.slabs.nodes(slab).rev() {
             let split = self.slabs.split(slab, node, self.couplings);
-            let [before, own, after] = &split.upper;
+            let [before, within, after] = &split.upper;
             let mut left = [0.0; B];
             self.subtract(node, before, parts.neighbours[0], &mut left);
-            self.subtract(node, own, (parts.before, parts.own), &mut left);
+            self.subtract(node, within, (parts.before, parts.slab), &mut left);
             self.subtract(node, after, parts.neighbours[1], &mut left);
             let found = self.divide(node, &left);
-            for (x, found) in parts.own[B * node - parts.before..][..B]
+            for (x, found) in parts.slab[B * node - parts.before..][..B]
                 .iter_mut()
                 .zip(found)
             {
@@ -272,27 +272,27 @@ impl<const B: usize> Elimination<'_, B> {
             self.slabs.each(odd, values, first, |slab, parts| {
                 let nodes = self.slabs.nodes(slab);
                 let size = B * B + 1;
-                let mut own = vec![0.0; size * nodes.len()];
+                let mut inverses = vec![0.0; size * nodes.len()];
                 let mut local = vec![NONE; self.couplings.len()];
                 for node in nodes.clone() {
                     Arch::new().dispatch(Row {
                         elimination: self,
                         place: (slab, node),
                         parts,
-                        inverses: (known, nodes.start, &mut own),
+                        inverses: (known, nodes.start, &mut inverses),
                         local: &mut local,
                     });
                 }
                 done.lock()
                     .unwrap_or_else(std::sync::PoisonError::into_inner)
-                    .push((nodes.start, own));
+                    .push((nodes.start, inverses));
             });
-            for (start, own) in done
+            for (start, inverses) in done
                 .into_inner()
                 .unwrap_or_else(std::sync::PoisonError::into_inner)
             {
                 let first = start * (B * B + 1);
-                stored[first..first + own.len()].copy_from_slice(&own);
+                stored[first..first + inverses.len()].copy_from_slice(&inverses);
             }
         }
         inverse.copy_from_slice(&stored);
@@ -308,7 +308,7 @@ impl<const B: usize> Elimination<'_, B> {
         slab: usize,
         node: usize,
         parts: &mut Parts<'_, f32>,
-        (known, start, own_inverse): (&[f32], usize, &mut [f32]),
+        (known, start, inverses): (&[f32], usize, &mut [f32]),
         local: &mut [u32],
     ) {
         let size = B * B + 1;
@@ -319,12 +319,12 @@ impl<const B: usize> Elimination<'_, B> {
             local[other as usize] = place as u32;
         }
         let first = self.couplings.first::<B>(node) - parts.before;
-        let (earlier, own) = parts.own.split_at_mut(first);
-        let own = &mut own[..B * width];
+        let (earlier, row) = parts.slab.split_at_mut(first);
+        let row = &mut row[..B * width];
         if self.shift > 0.0 {
-            let place = self.couplings.own[node] as usize;
+            let place = self.couplings.diagonal[node] as usize;
             for k in 0..B {
-                own[k * width + B * place + k] *= 1.0 + self.shift;
+                row[k * width + B * place + k] *= 1.0 + self.shift;
             }
         }
         let sources = [
@@ -344,11 +344,11 @@ impl<const B: usize> Elimination<'_, B> {
                 let step = B * others.len();
                 let entries = &source[self.couplings.first::<B>(other) - before..][..B * step];
                 let inverse = if which == 2 {
-                    &own_inverse[(other - start) * size..][..size]
+                    &inverses[(other - start) * size..][..size]
                 } else {
                     &known[other * size..][..size]
                 };
-                let factor = times_inverse::<B>(own, (width, place), inverse);
+                let factor = times_inverse::<B>(row, (width, place), inverse);
                 for range in self.slabs.split(slab_of, other, self.couplings).upper {
                     let mut next = range.start;
                     while next < range.end {
@@ -366,7 +366,7 @@ impl<const B: usize> Elimination<'_, B> {
                         }
                         let len = B * (next - begin);
                         for (r, factor) in factor.iter().enumerate() {
-                            let target = &mut own[r * width + B * into as usize..][..len];
+                            let target = &mut row[r * width + B * into as usize..][..len];
                             subtract_rows::<B>(target, factor, entries, step, B * begin);
                         }
                     }
@@ -377,12 +377,12 @@ impl<const B: usize> Elimination<'_, B> {
             local[other as usize] = NONE;
         }
         let mut block = [0.0; 9];
-        let place = self.couplings.own[node] as usize;
+        let place = self.couplings.diagonal[node] as usize;
         for r in 0..B {
-            block[B * r..][..B].copy_from_slice(&own[r * width + B * place..][..B]);
+            block[B * r..][..B].copy_from_slice(&row[r * width + B * place..][..B]);
         }
         let original = diagonal_block::<B>(self.couplings, node, self.matrix);
-        let into = &mut own_inverse[(node - start) * size..][..size];
+        let into = &mut inverses[(node - start) * size..][..size];
         into[B * B] = f32::from(invert::<B>(&block, &original, into));
     }
 }
@@ -464,7 +464,7 @@ fn subtract_rows<const B: usize>(
 fn diagonal_block<const B: usize>(couplings: &Couplings, node: usize, values: &[f32]) -> [f32; 9] {
     let width = B * couplings.of(node).len();
     let entries = &values[couplings.first::<B>(node)..][..B * width];
-    let place = couplings.own[node] as usize;
+    let place = couplings.diagonal[node] as usize;
     let mut block = [0.0; 9];
     for r in 0..B {
         block[B * r..][..B].copy_from_slice(&entries[r * width + B * place..][..B]);

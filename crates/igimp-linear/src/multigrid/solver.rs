@@ -20,7 +20,7 @@ pub(crate) struct Iteration {
     preconditioned: Preconditioned,
 }
 
-/// What a matrix is made of.
+/// The blocks of a matrix.
 enum Blocks {
     Soil(Box<Cycle>),
     SoilAndWater(Box<Coupled>),

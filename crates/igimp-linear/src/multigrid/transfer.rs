@@ -51,8 +51,8 @@ impl Transfer {
         let mut next = transfer.coarse_starts.clone();
         transfer.children = vec![(0, 0.0); transfer.parents.len()];
         for node in 0..places.len() {
-            let own = transfer.starts[node] as usize..transfer.starts[node + 1] as usize;
-            for &(parent, weight) in &transfer.parents[own] {
+            let range = transfer.starts[node] as usize..transfer.starts[node + 1] as usize;
+            for &(parent, weight) in &transfer.parents[range] {
                 let slot = &mut next[parent as usize];
                 transfer.children[*slot as usize] = (node as u32, weight);
                 *slot += 1;
@@ -105,23 +105,23 @@ impl Transfer {
 
     /// b_c ← Pᵀ r.
     pub(super) fn restrict<const B: usize>(&self, fine: &[f32], coarse: &mut [f32]) {
-        for (node, own) in coarse.chunks_exact_mut(B).enumerate() {
+        for (node, out) in coarse.chunks_exact_mut(B).enumerate() {
             let mut sum = [0.0; B];
             for &(child, weight) in self.children(node) {
                 for (sum, value) in sum.iter_mut().zip(&fine[B * child as usize..][..B]) {
                     *sum += weight * value;
                 }
             }
-            own.copy_from_slice(&sum);
+            out.copy_from_slice(&sum);
         }
     }
 
     /// x ← x + P e.
     pub(super) fn add_interpolated<const B: usize>(&self, coarse: &[f32], fine: &mut [f32]) {
-        for (node, own) in fine.chunks_exact_mut(B).enumerate() {
+        for (node, out) in fine.chunks_exact_mut(B).enumerate() {
             for &(parent, weight) in self.parents(node) {
-                for (own, value) in own.iter_mut().zip(&coarse[B * parent as usize..][..B]) {
-                    *own += weight * value;
+                for (x, value) in out.iter_mut().zip(&coarse[B * parent as usize..][..B]) {
+                    *x += weight * value;
                 }
             }
         }

@@ -90,10 +90,10 @@ fn pressures_are_factorised_with_their_signs() {
     let mut matrix = Body::plane(9, 8).pressure().tangent();
     let last = matrix.pattern.unknowns() - 1;
     let mut entries = stored(&matrix.pattern).into_iter();
-    let (_, _, own) = entries
+    let (_, _, index) = entries
         .find(|&(column, row, _)| column == last && row == last)
         .unwrap();
-    matrix.values[own] *= -50.0;
+    matrix.values[index] *= -50.0;
     assert_eq!(
         method(&mut *SolverKind::Auto.build(), &matrix),
         "multifrontal-lu"

@@ -41,19 +41,19 @@ fn values_that_are_not_finite_are_refused() {
             solver.factor(&matrix).unwrap();
             rhs[5] = poison;
             let refused = solver.solve(&matrix, &rhs, &mut vec![0.0; rhs.len()]);
-            let what = "right-hand side";
+            let array = "right-hand side";
             assert_eq!(
                 refused,
-                Err(LinearSolverError::NonFinite { what, index: 5 }),
+                Err(LinearSolverError::NonFinite { array, index: 5 }),
                 "{kind:?}"
             );
 
             matrix.values[17] = poison;
             let refused = solver.factor(&matrix);
-            let what = "matrix";
+            let array = "matrix";
             assert_eq!(
                 refused,
-                Err(LinearSolverError::NonFinite { what, index: 17 }),
+                Err(LinearSolverError::NonFinite { array, index: 17 }),
                 "{kind:?}"
             );
             rhs[5] = 1.0;

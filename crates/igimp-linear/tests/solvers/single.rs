@@ -1,5 +1,5 @@
 //! GOAL: factors in single precision, with an iteration around them, solve to what is asked; where they
-//! do not serve, double precision does, and the reason is told.
+//! do not serve, double precision does, and the reason is reported.
 //! ORACLE: known solutions; the solution of the factors in double precision.
 
 use crate::support::{Body, distance, manufactured};

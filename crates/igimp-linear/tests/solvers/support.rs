@@ -151,8 +151,10 @@ impl Body {
             }
         }
         if self.pressure {
-            let pressures: BTreeSet<usize> =
-                blocks.iter().map(|own| own.first + own.len - 1).collect();
+            let pressures: BTreeSet<usize> = blocks
+                .iter()
+                .map(|block| block.first + block.len - 1)
+                .collect();
             for ((column, row), value) in &mut couplings {
                 if pressures.contains(column) && pressures.contains(row) {
                     *value = -*value;

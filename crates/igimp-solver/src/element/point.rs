@@ -66,8 +66,8 @@ impl Point {
         })
     }
 
-    /// The soil at the end of a step of this length and duration \[time\], with these values of what is prescribed; nothing where no equilibrium was
-    /// found, and what the law said if it refused.
+    /// The soil at the end of a step of this length and duration \[time\], with these prescribed values; nothing where no equilibrium was
+    /// found, and the error of the law if it refused.
     pub(super) fn advanced(
         &self,
         law: &dyn ConstitutiveModel,
@@ -220,8 +220,8 @@ impl Trial {
         let mut slope = [[0.0; 3]; 3];
         for a in 0..3 {
             for b in 0..3 {
-                let own = modulus[a][b].as_flattened().iter().zip(rate.as_flattened());
-                let tau: f64 = own.map(|(modulus, rate)| modulus * rate).sum();
+                let pairs = modulus[a][b].as_flattened().iter().zip(rate.as_flattened());
+                let tau: f64 = pairs.map(|(modulus, rate)| modulus * rate).sum();
                 slope[a][b] = tau / self.volume - self.sigma[a][b] * growth;
             }
         }

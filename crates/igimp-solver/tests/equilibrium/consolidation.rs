@@ -249,9 +249,9 @@ fn large_strain() {
         for &(time, share, base) in rows {
             column.along(time, 1.03, STIFF);
             let found = column.settlement() / (1.0 - end);
-            let own = column.base() / load;
-            println!("{load:.2} {time}: {found:.5} {share:.5}, {own:.5} {base:.5}");
-            worst = worst.max((found - share).abs()).max((own - base).abs());
+            let at_base = column.base() / load;
+            println!("{load:.2} {time}: {found:.5} {share:.5}, {at_base:.5} {base:.5}");
+            worst = worst.max((found - share).abs()).max((at_base - base).abs());
         }
         assert!(worst < 0.005, "{worst:e}");
     }
@@ -293,11 +293,11 @@ fn the_end_is_drained() {
         column.to(1e15, STIFF);
         let mut drained = Column::new(20, part, 0.05);
         drained.statics(0.0);
-        let own = &column.body.particles;
+        let particles = &column.body.particles;
         for (p, other) in drained.body.particles.x.iter().enumerate() {
-            let missed = own.x[p][0] - other[0];
+            let missed = particles.x[p][0] - other[0];
             assert!(missed.abs() < 1e-11, "{part}: {p} {missed:e}");
-            assert!(own.excess[p].abs() < 1e-11, "{part}: {p}");
+            assert!(particles.excess[p].abs() < 1e-11, "{part}: {p}");
         }
     }
 }
@@ -367,10 +367,10 @@ fn a_column_in_space_is_that_of_a_line() {
             .unwrap();
         }
         for (p, excess) in body.particles.excess.iter().enumerate() {
-            let own = line.body.particles.excess[p / 4];
+            let of_line = line.body.particles.excess[p / 4];
             assert!(
-                (excess / own - 1.0).abs() < 1e-6,
-                "{part}: {p} {excess} {own}"
+                (excess / of_line - 1.0).abs() < 1e-6,
+                "{part}: {p} {excess} {of_line}"
             );
         }
     }
@@ -511,12 +511,12 @@ fn mandel() {
             let on_plate: f64 = (0..=cells[0])
                 .map(|column| forces.reactions[grid.node_index([column, cells[1]])][1])
                 .sum();
-            let own = body.particles.excess[0];
+            let excess = body.particles.excess[0];
             if to > 1e-3 {
-                worst = worst.max((own - pressure(to)).abs() / start);
+                worst = worst.max((excess - pressure(to)).abs() / start);
                 unloaded = unloaded.max((on_plate / force + 1.0).abs());
             }
-            largest = largest.max(own / start);
+            largest = largest.max(excess / start);
             before = if time > 1e-9 { duration } else { 0.0 };
             (time, next) = (to, to * 1.06);
             next = next.max(1e-4);
@@ -569,9 +569,9 @@ fn under_strip(cells: usize, coupled: bool) -> [f64; 2] {
 #[test]
 fn a_short_step_is_undrained() {
     let missed = [6, 12, 24].map(|cells| {
-        let (own, other) = (under_strip(cells, true), under_strip(cells, false));
-        println!("{cells} cells: {own:?}, undrained {other:?}");
-        (own[0] / other[0] - 1.0).abs()
+        let (coupled, other) = (under_strip(cells, true), under_strip(cells, false));
+        println!("{cells} cells: {coupled:?}, undrained {other:?}");
+        (coupled[0] / other[0] - 1.0).abs()
     });
     assert!(
         missed[1] < 0.75 * missed[0] && missed[2] < 0.75 * missed[1],

@@ -42,11 +42,11 @@ fn driven(
     run.states
 }
 
-fn close(value: f64, expected: f64, band: f64, what: &str) {
-    println!("{what}: {value:.6} expected {expected:.6}");
+fn close(value: f64, expected: f64, band: f64, label: &str) {
+    println!("{label}: {value:.6} expected {expected:.6}");
     assert!(
         (value / expected - 1.0).abs() < band,
-        "{what}: {value} not {expected}"
+        "{label}: {value} not {expected}"
     );
 }
 
@@ -167,8 +167,8 @@ fn drained_cam_clay_follows_the_table() {
             1e-3,
             "drained p",
         );
-        let own = at_ratio(&states, eta, ElementState::volumetric_strain);
-        close(own, volume, 1e-3, "drained eps_v");
+        let found = at_ratio(&states, eta, ElementState::volumetric_strain);
+        close(found, volume, 1e-3, "drained eps_v");
         close(
             at_ratio(&states, eta, shear),
             deviatoric,
@@ -176,8 +176,8 @@ fn drained_cam_clay_follows_the_table() {
             "drained eps_s",
         );
     }
-    let own = at_ratio(&states, 0.95, shear);
-    close(own, 0.278_320, 1e-3, "drained eps_s at 0.95");
+    let found = at_ratio(&states, 0.95, shear);
+    close(found, 0.278_320, 1e-3, "drained eps_s at 0.95");
     let more = driven(
         &law,
         StandardTest::TriaxialDrained,
@@ -386,11 +386,11 @@ fn a_cone_bears_what_mohr_coulomb_does_where_it_is_matched() {
                 extension,
             ),
         ] {
-            let what = format!("{kind:?} {friction} {dilation}");
-            let (own, own_flow) = bears(&cone(kind), test, strain);
-            close(own, strength, 1e-9, &what);
-            close(own, bears(&pyramid, test, strain).0, 1e-9, &what);
-            assert!((own_flow - flow).abs() < 1e-9, "{what}: {own_flow} {flow}");
+            let label = format!("{kind:?} {friction} {dilation}");
+            let (borne, dilates) = bears(&cone(kind), test, strain);
+            close(borne, strength, 1e-9, &label);
+            close(borne, bears(&pyramid, test, strain).0, 1e-9, &label);
+            assert!((dilates - flow).abs() < 1e-9, "{label}: {dilates} {flow}");
         }
         let far = |kind, test| bears(&cone(kind), test, 4.0).0;
         let outer = far(Cone::Compression, StandardTest::PlaneStrainDrained);

@@ -25,7 +25,7 @@ const PARTICLE: usize = 17;
 
 const NOT_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
-/// What of an answer is spoilt.
+/// The part of an answer that is spoilt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Part {
     Tau,
@@ -96,12 +96,12 @@ impl Strength for Spoilt {
 }
 
 /// The yielding block with a law of its own for [`PARTICLE`].
-fn with_law(own: &SharedLaw) -> (Body<2>, StepConditions<2>) {
+fn with_law(law: &SharedLaw) -> (Body<2>, StepConditions<2>) {
     let (mut body, mut conditions) = loaded(&von_mises(), 1.0);
     let mut fields = (*body.particles).clone();
     fields.law[PARTICLE] = 1;
     body.particles = Particles::from_fields(fields).unwrap();
-    conditions.laws.push(Arc::clone(own));
+    conditions.laws.push(Arc::clone(law));
     (body, conditions)
 }
 
@@ -163,7 +163,7 @@ fn a_fault_of_a_law_is_caught_in_its_pass_and_named() {
                         unused += 1;
                     }
                     Err(error) => {
-                        let told = chain(&error);
+                        let message = chain(&error);
                         let quantity = match part {
                             Part::Tau => "stress",
                             Part::Tangent => "tangent",
@@ -173,7 +173,7 @@ fn a_fault_of_a_law_is_caught_in_its_pass_and_named() {
                             format!("particle {PARTICLE}: the constitutive law failed"),
                             format!("the {quantity} must be finite"),
                         ] {
-                            assert!(told.contains(&word), "{place}: {told}");
+                            assert!(message.contains(&word), "{place}: {message}");
                         }
                         assert_eq!(bits(&body), bits(&before), "{place}");
                     }
@@ -188,8 +188,8 @@ fn a_fault_of_a_law_is_caught_in_its_pass_and_named() {
 /// A fault that happens once costs one cut, and the march ends where it would have ended.
 #[test]
 fn a_march_goes_on_after_a_fault_that_passes() {
-    let run = |own: &SharedLaw| {
-        let (mut body, conditions) = with_law(own);
+    let run = |law: &SharedLaw| {
+        let (mut body, conditions) = with_law(law);
         let load_path = |_: f64, to: f64| {
             let mut conditions = conditions.clone();
             conditions.loads.gravity[1] *= to;
@@ -301,7 +301,7 @@ fn a_correction_that_is_not_finite_names_its_node() {
                 assert_eq!(
                     *error.failure,
                     StepFailure::NotFinite {
-                        what: "correction",
+                        vector: "correction",
                         position: [x, y, 0.0],
                         axis,
                     }
@@ -399,7 +399,7 @@ fn a_saved_state_that_is_not_finite_is_refused_by_field_and_particle() {
     );
 }
 
-/// What acts on a body is held at the beginning of a step.
+/// Conditions of a body are checked at the beginning of a step.
 #[test]
 fn conditions_that_are_not_finite_are_named() {
     type Spoil = fn(&mut Body<2>, &mut StepConditions<2>, f64);
@@ -424,7 +424,7 @@ fn conditions_that_are_not_finite_are_named() {
             body.load_points[2].force[1] = value;
         }),
     ];
-    for (what, index, spoil) in places {
+    for (quantity, index, spoil) in places {
         for value in NOT_FINITE {
             let (mut body, mut conditions) = loaded(&von_mises(), 1.0);
             point(&mut body);
@@ -433,7 +433,10 @@ fn conditions_that_are_not_finite_are_named() {
             let error = solve_with(&mut body, &conditions, &mut default_workspace()).unwrap_err();
             assert_eq!(
                 *error.failure,
-                StepFailure::Assembly(AssemblyError::NonFinite { what, index })
+                StepFailure::Assembly(AssemblyError::NonFinite {
+                    what: quantity,
+                    index
+                })
             );
         }
     }
@@ -460,8 +463,12 @@ fn conditions_that_are_not_finite_are_named() {
         );
         let mut constraints = conditions.constraints.clone();
         let error = constraints.prescribe(5, 1, value).unwrap_err();
-        let what = "prescribed displacement";
-        assert_eq!(error, AssemblyError::NonFinite { what, index: 5 });
+        let quantity = "prescribed displacement";
+        let refused = AssemblyError::NonFinite {
+            what: quantity,
+            index: 5,
+        };
+        assert_eq!(error, refused);
         assert!(igimp_shape::Axis::uniform(value, 1.0, 3).is_err());
         assert!(igimp_shape::Axis::uniform(0.0, value, 3).is_err());
         assert!(igimp_shape::Axis::from_nodes(vec![0.0, value, 2.0]).is_err());

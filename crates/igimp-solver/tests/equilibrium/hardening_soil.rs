@@ -11,15 +11,15 @@ fn dense() -> HardeningSoilParameters {
     HardeningSoilParameters::dense_hostun_sand()
 }
 
-fn law(own: HardeningSoilParameters) -> HardeningSoil {
-    HardeningSoil::new(own).unwrap()
+fn law(soil: HardeningSoilParameters) -> HardeningSoil {
+    HardeningSoil::new(soil).unwrap()
 }
 
 /// Soil whose cap is far.
-fn without_cap(own: HardeningSoilParameters) -> HardeningSoil {
+fn without_cap(soil: HardeningSoilParameters) -> HardeningSoil {
     law(HardeningSoilParameters {
         overconsolidation: 100.0,
-        ..own
+        ..soil
     })
 }
 
@@ -51,29 +51,29 @@ fn driven(
     along(law, [-side; 3], test.path(strain), steps)
 }
 
-fn close(value: f64, expected: f64, band: f64, what: &str) {
-    println!("{what}: {value:.8} expected {expected:.8}");
+fn close(value: f64, expected: f64, band: f64, label: &str) {
+    println!("{label}: {value:.8} expected {expected:.8}");
     assert!(
         (value / expected - 1.0).abs() < band,
-        "{what}: {value} not {expected}"
+        "{label}: {value} not {expected}"
     );
 }
 
 /// The axial strain of the hyperbola (eq. 126b) at a deviator, from the parameters alone.
-fn kondner(own: &HardeningSoilParameters, side: f64, q: f64) -> f64 {
-    let (sin, cos) = own.friction_angle.sin_cos();
+fn kondner(soil: &HardeningSoilParameters, side: f64, q: f64) -> f64 {
+    let (sin, cos) = soil.friction_angle.sin_cos();
     let stress =
-        (own.cohesion * cos + side * sin) / (own.cohesion * cos + own.reference_pressure * sin);
-    let e50 = own.secant * stress.powf(own.power);
-    let q_a = 2.0 * (own.cohesion * cos + side * sin) / (1.0 - sin) / own.failure_ratio;
-    (2.0 - own.failure_ratio) / (2.0 * e50) * q / (1.0 - q / q_a)
+        (soil.cohesion * cos + side * sin) / (soil.cohesion * cos + soil.reference_pressure * sin);
+    let e50 = soil.secant * stress.powf(soil.power);
+    let q_a = 2.0 * (soil.cohesion * cos + side * sin) / (1.0 - sin) / soil.failure_ratio;
+    (2.0 - soil.failure_ratio) / (2.0 * e50) * q / (1.0 - q / q_a)
 }
 
 /// The deviator from which soil dilates, that of φ_cv.
-fn dilates_from(own: &HardeningSoilParameters, side: f64) -> f64 {
-    let (sin, psi) = (own.friction_angle.sin(), own.dilation_angle.sin());
+fn dilates_from(soil: &HardeningSoilParameters, side: f64) -> f64 {
+    let (sin, psi) = (soil.friction_angle.sin(), soil.dilation_angle.sin());
     let critical = (sin - psi) / (1.0 - sin * psi);
-    let attraction = own.cohesion / own.friction_angle.tan();
+    let attraction = soil.cohesion / soil.friction_angle.tan();
     2.0 * critical / (1.0 - critical) * (side + attraction)
 }
 
@@ -87,23 +87,23 @@ fn drained_compression_follows_the_hyperbola() {
         cohesion: 20e3,
         ..HardeningSoilParameters::loose_hostun_sand()
     };
-    for own in [
+    for soil in [
         dense(),
         HardeningSoilParameters::loose_hostun_sand(),
         cohesive,
     ] {
         for side in [P0, 300e3] {
-            let law = without_cap(own);
-            let (sin, cos) = own.friction_angle.sin_cos();
-            let failed = 2.0 * (own.cohesion * cos + side * sin) / (1.0 - sin);
+            let law = without_cap(soil);
+            let (sin, cos) = soil.friction_angle.sin_cos();
+            let failed = 2.0 * (soil.cohesion * cos + side * sin) / (1.0 - sin);
             for steps in [7, 100] {
-                let most = dilates_from(&own, side).min(0.98 * failed);
-                let strain = 0.999 * kondner(&own, side, most);
+                let most = dilates_from(&soil, side).min(0.98 * failed);
+                let strain = 0.999 * kondner(&soil, side, most);
                 for state in &driven(&law, side, StandardTest::TriaxialDrained, strain, steps)[1..]
                 {
                     close(
                         -state.strain[1],
-                        kondner(&own, side, state.q()),
+                        kondner(&soil, side, state.q()),
                         1e-9,
                         "eps_1",
                     );
@@ -111,15 +111,15 @@ fn drained_compression_follows_the_hyperbola() {
             }
             let far = driven(&law, side, StandardTest::TriaxialDrained, 0.2, 50);
             close(far.last().unwrap().q(), failed, 1e-9, "q at failure");
-            let ratio = (own.cohesion * cos + side * sin) / (own.cohesion * cos + P0 * sin);
-            let scale = ratio.powf(own.power);
-            let half = kondner(&own, side, 0.5 * failed);
+            let ratio = (soil.cohesion * cos + side * sin) / (soil.cohesion * cos + P0 * sin);
+            let scale = ratio.powf(soil.power);
+            let half = kondner(&soil, side, 0.5 * failed);
             let up = driven(&law, side, StandardTest::TriaxialDrained, half, 40);
             let last = up.last().unwrap();
             // Dense sand dilates a little before half of its strength.
-            let dilates = dilates_from(&own, side) < 0.5 * failed;
+            let dilates = dilates_from(&soil, side) < 0.5 * failed;
             let band = if dilates { 2e-3 } else { 1e-9 };
-            close(last.q() / half, own.secant * scale, band, "E50");
+            close(last.q() / half, soil.secant * scale, band, "E50");
             let mut back = StandardTest::TriaxialDrained.path(half);
             let first = back.legs[0];
             back.legs.push(first);
@@ -128,7 +128,7 @@ fn drained_compression_follows_the_hyperbola() {
             let (from, to) = (&states[40], &states[80]);
             close(
                 (from.q() - to.q()) / 1e-4,
-                own.unloading * scale,
+                soil.unloading * scale,
                 1e-9,
                 "Eur",
             );
@@ -142,19 +142,19 @@ fn drained_compression_follows_the_hyperbola() {
 #[test]
 fn soil_on_its_cap_is_softer_than_the_hyperbola() {
     let loose = HardeningSoilParameters::loose_hostun_sand();
-    for (own, secants) in [
+    for (soil, secants) in [
         (loose, [16.4e6, 18.5e6, 20.0e6, 20.0e6]),
         (dense(), [26.4e6, 27.7e6, 29.4e6, 30.0e6]),
     ] {
-        let sin = own.friction_angle.sin();
+        let sin = soil.friction_angle.sin();
         let half = P0 * sin / (1.0 - sin);
         for (overconsolidation, expected) in std::iter::zip([1.0, 1.5, 2.0, 4.0], secants) {
             let law = law(HardeningSoilParameters {
                 overconsolidation,
-                ..own
+                ..soil
             });
             let states = driven(&law, P0, StandardTest::TriaxialDrained, 0.02, 2000);
-            let at = states.iter().position(|own| own.q() > half).unwrap();
+            let at = states.iter().position(|state| state.q() > half).unwrap();
             let (before, after) = (&states[at - 1], &states[at]);
             let share = (half - before.q()) / (after.q() - before.q());
             let strain = before.strain[1] + share * (after.strain[1] - before.strain[1]);
@@ -162,7 +162,7 @@ fn soil_on_its_cap_is_softer_than_the_hyperbola() {
         }
         let on_cap = law(HardeningSoilParameters {
             overconsolidation: 1.0,
-            ..own
+            ..soil
         });
         let step = 1e-7;
         let sheared = driven(&on_cap, P0, StandardTest::TriaxialDrained, step, 1);
@@ -174,8 +174,8 @@ fn soil_on_its_cap_is_softer_than_the_hyperbola() {
         let last = pressed.last().unwrap();
         let volume = -(last.strain[0] + last.strain[1] + last.strain[2]);
         let modulus = (last.p() - P0) / volume;
-        let unloading = own.unloading / (3.0 * (1.0 - 2.0 * own.poisson));
-        let initial = 2.0 * own.secant / (2.0 - own.failure_ratio);
+        let unloading = soil.unloading / (3.0 * (1.0 - 2.0 * soil.poisson));
+        let initial = 2.0 * soil.secant / (2.0 - soil.failure_ratio);
         let compliance = 1.0 / initial + (1.0 / modulus - 1.0 / unloading) / 9.0;
         close(sheared[1].q() / step, 1.0 / compliance, 1e-3, "first slope");
     }
@@ -187,20 +187,20 @@ fn soil_on_its_cap_is_softer_than_the_hyperbola() {
 /// volume with steps of 0.004 %, which are implicit; 1e-9 of the slope at failure.
 #[test]
 fn dilatancy_is_rowes() {
-    let (own, side) = (dense(), P0);
-    let law = without_cap(own);
-    let sin = own.friction_angle.sin();
+    let (soil, side) = (dense(), P0);
+    let law = without_cap(soil);
+    let sin = soil.friction_angle.sin();
     let failed = 2.0 * side * sin / (1.0 - sin);
     let critical = {
-        let psi = own.dilation_angle.sin();
+        let psi = soil.dilation_angle.sin();
         (sin - psi) / (1.0 - sin * psi)
     };
-    let gamma_p = |q: f64| 2.0 * (kondner(&own, side, q) - q / own.unloading);
+    let gamma_p = |q: f64| 2.0 * (kondner(&soil, side, q) - q / soil.unloading);
     let dilation = |q: f64| {
         let mobilised = q / (q + 2.0 * side);
         ((mobilised - critical) / (1.0 - mobilised * critical)).max(0.0)
     };
-    let strain = 0.5 * kondner(&own, side, failed);
+    let strain = 0.5 * kondner(&soil, side, failed);
     let states = driven(&law, side, StandardTest::TriaxialDrained, strain, 900);
     let last = states.last().unwrap();
     let end = last.q();
@@ -209,16 +209,16 @@ fn dilatancy_is_rowes() {
         let at = |k: f64| end * (f64::from(part) + k) / f64::from(parts);
         volume -= dilation(at(0.5)) * (gamma_p(at(1.0)) - gamma_p(at(0.0)));
     }
-    let elastic = end * (1.0 - 2.0 * own.poisson) / own.unloading;
+    let elastic = end * (1.0 - 2.0 * soil.poisson) / soil.unloading;
     let error = (last.volumetric_strain() - elastic - volume).abs();
     println!("plastic volume {volume:e}, error {error:e}");
     assert!(volume < -1e-3 && error < 2e-3 * volume.abs());
-    let axial = kondner(&own, side, end) + 0.5 * volume;
+    let axial = kondner(&soil, side, end) + 0.5 * volume;
     assert!((-last.strain[1] - axial).abs() < 2e-3 * volume.abs());
     let far = driven(&law, side, StandardTest::TriaxialDrained, 0.1, 100);
     let (a, b) = (&far[90], &far[100]);
     let slope = (b.volumetric_strain() - a.volumetric_strain()) / (b.strain[1] - a.strain[1]);
-    let psi = own.dilation_angle.sin();
+    let psi = soil.dilation_angle.sin();
     close(
         slope,
         2.0 * psi / (1.0 - psi),
@@ -241,18 +241,18 @@ fn the_oedometer_has_its_modulus_and_its_ratio() {
         k0_normal: 0.58,
         ..dense()
     };
-    for own in [dense(), HardeningSoilParameters::loose_hostun_sand(), clay] {
-        let law = law(own);
-        let k0 = own.k0_normal;
+    for soil in [dense(), HardeningSoilParameters::loose_hostun_sand(), clay] {
+        let law = law(soil);
+        let k0 = soil.k0_normal;
         let start = [-0.5 * k0 * P0, -0.5 * P0, -0.5 * k0 * P0];
-        let strain = 1.5 * P0 / own.oedometer;
+        let strain = 1.5 * P0 / soil.oedometer;
         let path = StandardTest::Oedometer.path(strain);
         let states = along(&law, start, path, 2000);
         for pair in states.windows(2).skip(10) {
             let (a, b) = (&pair[0], &pair[1]);
             let middle = -0.5 * (a.sigma[1][1] + b.sigma[1][1]);
             let modulus = (b.sigma[1][1] - a.sigma[1][1]) / (b.strain[1] - a.strain[1]);
-            let expected = own.oedometer * (middle / P0).powf(own.power);
+            let expected = soil.oedometer * (middle / P0).powf(soil.power);
             assert!(
                 (modulus / expected - 1.0).abs() < 1e-3,
                 "{modulus} {expected}"
@@ -269,12 +269,12 @@ fn the_oedometer_has_its_modulus_and_its_ratio() {
 /// GOAL: where soil is compressed from another ratio of stresses, it comes to K_0nc. ORACLE: the parameter. BAND: 1 %.
 #[test]
 fn compression_without_strain_aside_comes_to_its_ratio() {
-    let own = dense();
-    let states = driven(&law(own), 20e3, StandardTest::Oedometer, 0.08, 2000);
+    let soil = dense();
+    let states = driven(&law(soil), 20e3, StandardTest::Oedometer, 0.08, 2000);
     let last = states.last().unwrap();
     close(
         last.sigma[0][0] / last.sigma[1][1],
-        own.k0_normal,
+        soil.k0_normal,
         1e-2,
         "K0nc",
     );
@@ -285,25 +285,25 @@ type Rates = [f64; 4];
 
 /// The rates of a triaxial state by axial strain at constant volume, from the published equations: elasticity, flow of shear with Rowe's
 /// dilatancy, associated flow of the cap, and both consistency conditions, γ_p of stress differentiated numerically.
-fn undrained_rates(own: &HardeningSoilParameters, cap: [f64; 2], state: &Rates) -> Rates {
+fn undrained_rates(soil: &HardeningSoilParameters, cap: [f64; 2], state: &Rates) -> Rates {
     let [s1, s3, gamma_p, tip] = *state;
     let [steepness, hardening] = cap;
     let (p, q, square) = ((s1 + 2.0 * s3) / 3.0, s1 - s3, steepness * steepness);
-    let young = |s3: f64| own.unloading * (s3 / own.reference_pressure).powf(own.power);
-    let hyperbola = |s1: f64, s3: f64| 2.0 * (kondner(own, s3, s1 - s3) - (s1 - s3) / young(s3));
+    let young = |s3: f64| soil.unloading * (s3 / soil.reference_pressure).powf(soil.power);
+    let hyperbola = |s1: f64, s3: f64| 2.0 * (kondner(soil, s3, s1 - s3) - (s1 - s3) / young(s3));
     let h = 1e-5 * s3;
     let by_s1 = (hyperbola(s1 + h, s3) - hyperbola(s1 - h, s3)) / (2.0 * h);
     let by_s3 = (hyperbola(s1, s3 + h) - hyperbola(s1, s3 - h)) / (2.0 * h);
-    let (sin, psi) = (own.friction_angle.sin(), own.dilation_angle.sin());
+    let (sin, psi) = (soil.friction_angle.sin(), soil.dilation_angle.sin());
     let critical = (sin - psi) / (1.0 - sin * psi);
     let mobilised = q / (s1 + s3);
     let y = ((mobilised - critical) / (1.0 - mobilised * critical)).max(0.0);
-    let (e, nu) = (young(s3), own.poisson);
+    let (e, nu) = (young(s3), soil.poisson);
     let normal = [
         2.0 * q / square + 2.0 / 3.0 * p,
         -q / square + 2.0 / 3.0 * p,
     ];
-    let growth = hardening * (tip / own.reference_pressure).powf(own.power);
+    let growth = hardening * (tip / soil.reference_pressure).powf(soil.power);
     let fails = q >= 2.0 * s3 * sin / (1.0 - sin) * (1.0 - 1e-9);
     // Unknown rates: σ_1, σ_3, γ_p, multiplier of the cap.
     let shear = if fails {
@@ -364,7 +364,7 @@ fn solved(mut rows: [[f64; 4]; 4], mut rhs: [f64; 4]) -> [f64; 4] {
 /// 0.001 %, whose stiffness is that of their start.
 #[test]
 fn undrained_compression_follows_the_rate_equations() {
-    for (own, ratio) in [
+    for (soil, ratio) in [
         (dense(), 1.0),
         (dense(), 4.0),
         (HardeningSoilParameters::loose_hostun_sand(), 1.0),
@@ -372,7 +372,7 @@ fn undrained_compression_follows_the_rate_equations() {
     ] {
         let law = law(HardeningSoilParameters {
             overconsolidation: ratio,
-            ..own
+            ..soil
         });
         let strain = 0.02;
         let states = driven(&law, P0, StandardTest::TriaxialUndrained, strain, 2000);
@@ -381,8 +381,8 @@ fn undrained_compression_follows_the_rate_equations() {
         let mut state = [P0 * (1.0 + 1e-9), P0, 0.0, ratio * P0];
         for part in 1..=parts {
             let add = |by: &Rates, h: f64| std::array::from_fn(|k| state[k] + h * by[k]);
-            let first = undrained_rates(&own, law.cap(), &state);
-            let middle = undrained_rates(&own, law.cap(), &add(&first, 0.5 * h));
+            let first = undrained_rates(&soil, law.cap(), &state);
+            let middle = undrained_rates(&soil, law.cap(), &add(&first, 0.5 * h));
             state = add(&middle, h);
             if part % 4_000 == 0 {
                 let at = &states[usize::try_from(part).unwrap() / 10];
@@ -402,8 +402,8 @@ fn undrained_compression_follows_the_rate_equations() {
 /// ORACLE: the hyperbola of Kirchhoff stress, τ = J σ, at the natural strain. BAND: 1e-3 with steps of 0.01 %, as J σ_3 goes with J.
 #[test]
 fn finite_strain_follows_the_hyperbola_of_kirchhoff_stress() {
-    let own = HardeningSoilParameters::loose_hostun_sand();
-    let law = without_cap(own);
+    let soil = HardeningSoilParameters::loose_hostun_sand();
+    let law = without_cap(soil);
     let test = ElementTest {
         sigma: [-P0; 3],
         path: StandardTest::TriaxialDrained.path(0.02),
@@ -415,7 +415,7 @@ fn finite_strain_follows_the_hyperbola_of_kirchhoff_stress() {
     assert_eq!(run.failure, None);
     for state in &run.states[20..] {
         let volume = (-state.volumetric_strain()).exp();
-        let expected = kondner(&own, volume * P0, volume * state.q());
+        let expected = kondner(&soil, volume * P0, volume * state.q());
         close(-state.strain[1], expected, 1e-3, "natural strain");
     }
 }

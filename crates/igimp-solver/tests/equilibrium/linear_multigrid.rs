@@ -119,9 +119,7 @@ fn solve(
 
 /// Largest difference over the largest entry.
 fn off(found: &[f64], expected: &[f64]) -> f64 {
-    let size = expected
-        .iter()
-        .fold(0.0, |most: f64, own| most.max(own.abs()));
+    let size = expected.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let differences = found.iter().zip(expected).map(|(a, b)| (a - b).abs());
     differences.fold(0.0, f64::max) / size
 }
@@ -197,7 +195,7 @@ fn soil_and_water_are_iterated_for() {
             solver.ask_for(target);
             let (found, report) = solve(&mut *solver, &(matrix.clone(), rhs.clone()));
             assert_eq!(report.method, "multigrid-coupled-gmres");
-            // What is asked for is Euclid's norm, and this the largest entry.
+            // The norm asked for is Euclid's, and this the largest entry.
             let mut force = vec![0.0; found.len()];
             matrix.multiply(&found, &mut force);
             assert!(off(&force, &rhs) < 30.0 * target, "{time}");
@@ -249,8 +247,8 @@ fn a_border_is_iterated_for_with_the_grid() {
             matrix.multiply(grid, &mut product);
             let parts = &matrix.border;
             for (column, by) in parts.columns.iter().zip(border) {
-                let own = product.iter_mut().zip(column);
-                own.for_each(|(product, entry)| *product += entry * by);
+                let pairs = product.iter_mut().zip(column);
+                pairs.for_each(|(product, entry)| *product += entry * by);
             }
             for (row, corner) in parts.rows.iter().zip(&parts.corner) {
                 let sums = [(&row[..], grid), (corner, border)];
@@ -386,7 +384,7 @@ fn without_room_a_tenth_may_be_left() {
     for (left, rhs) in left.iter_mut().zip(&equations.1) {
         *left -= rhs;
     }
-    let size = |of: &[f64]| of.iter().map(|own| own * own).sum::<f64>().sqrt();
+    let size = |of: &[f64]| of.iter().map(|x| x * x).sum::<f64>().sqrt();
     let share = size(&left) / size(&equations.1);
     assert!(share > 1e-6 && share < 0.1, "{share}, {report:?}");
 
@@ -406,7 +404,7 @@ fn without_room_a_tenth_may_be_left() {
     assert!(iterations < 1500, "{iterations}");
 }
 
-/// What is said of a pattern before there is a matrix is what is done with the matrix.
+/// The forecast for a pattern before there is a matrix comes true with the matrix.
 #[test]
 fn a_forecast_comes_true() {
     let equations = equations(&ground::<3>(&mohr_coulomb(), 9, 4, |_| false));
@@ -414,19 +412,19 @@ fn a_forecast_comes_true() {
     let forecast = |solver: &mut AutoSolver| solver.forecast(pattern, false).unwrap();
     for bytes in [1000, 60 << 20, 8 << 30] {
         let solver = || AutoSolver::default().with_factor_bytes(bytes);
-        let told = forecast(&mut solver());
+        let expected = forecast(&mut solver());
         let mut solver = solver();
         let _ = solve(&mut solver, &equations);
         let effort = solver.effort();
-        assert_eq!(told.reason, effort.reason);
-        assert_eq!(told.iterates, effort.iterations > 0);
-        assert_eq!(told.iterates, told.factor_bytes > bytes);
+        assert_eq!(expected.reason, effort.reason);
+        assert_eq!(expected.iterates, effort.iterations > 0);
+        assert_eq!(expected.iterates, expected.factor_bytes > bytes);
         // In single precision they may fit where they do not in double.
-        let fits = told.factor_bytes / 2 <= bytes;
-        let fallback = if fits { told.factor_bytes / 2 } else { 0 };
+        let fits = expected.factor_bytes / 2 <= bytes;
+        let fallback = if fits { expected.factor_bytes / 2 } else { 0 };
         assert_eq!(
-            told.fallback_bytes,
-            if told.iterates { fallback } else { 0 }
+            expected.fallback_bytes,
+            if expected.iterates { fallback } else { 0 }
         );
     }
     let single = forecast(&mut AutoSolver::in_single());

@@ -159,8 +159,8 @@ fn reports_add_up(run: &Run, settings: &MarchSettings) -> Result<(), TestCaseErr
         report, attempts, ..
     } = run;
     let part = |is_accepted: bool| -> Vec<(u64, u64)> {
-        let own = attempts.iter().filter(|a| a.is_accepted == is_accepted);
-        own.map(|a| (a.from.to_bits(), a.to.to_bits())).collect()
+        let kept = attempts.iter().filter(|a| a.is_accepted == is_accepted);
+        kept.map(|a| (a.from.to_bits(), a.to.to_bits())).collect()
     };
     let steps: Vec<_> = report
         .steps

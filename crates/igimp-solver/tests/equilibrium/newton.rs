@@ -537,7 +537,7 @@ fn a_load_that_whole_corrections_overshoot_is_taken_in_one_step() {
     }
 }
 
-/// What dropped nodes take is what the supports do not get: the report says how much. A tied node
+/// Dropped nodes take the force that the supports do not get: the report says how much. A tied node
 /// takes nothing.
 #[test]
 fn the_report_tells_of_false_supports() {

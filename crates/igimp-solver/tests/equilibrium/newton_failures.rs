@@ -71,8 +71,8 @@ fn poisoned(tangent_alone: bool) -> SharedLaw {
 fn a_body_that_floats_or_falls_is_singular() {
     let singular = |failure: &StepFailure| matches!(failure, StepFailure::Singular { .. });
     let falls = |failure: &StepFailure| {
-        let told = "in the displacement in y: nothing holds that node";
-        singular(failure) && failure.to_string().ends_with(told)
+        let message = "in the displacement in y: nothing holds that node";
+        singular(failure) && failure.to_string().ends_with(message)
     };
     let mut constraints = Constraints::free(&grid());
     let free = conditions(&grid(), &constraints, &elastic(), 0.3);

@@ -262,14 +262,15 @@ impl Point {
     /// The width over which plastic strain grew since another point, two rows on either side drawn on to zero \[length\].
     fn width_since(&self, other: &Self) -> f64 {
         let grew: Vec<f64> = std::iter::zip(&self.plastic, &other.plastic)
-            .map(|(own, other)| own - other)
+            .map(|(now, other)| now - other)
             .collect();
         let most = grew.iter().copied().fold(0.0, f64::max);
         let rows: Vec<(f64, f64)> = (grew.into_iter().enumerate())
-            .filter(|(_, own)| *own > EDGE * most)
-            .map(|(row, own)| (row as f64, own))
+            .filter(|(_, value)| *value > EDGE * most)
+            .map(|(row, value)| (row as f64, value))
             .collect();
-        let zero = |[(y, own), (next, more)]: [(f64, f64); 2]| y - own * (next - y) / (more - own);
+        let zero =
+            |[(y, value), (next, more)]: [(f64, f64); 2]| y - value * (next - y) / (more - value);
         let n = rows.len();
         zero([rows[n - 1], rows[n - 2]]) - zero([rows[0], rows[1]])
     }
@@ -323,9 +324,11 @@ fn layer(length: usize, over_nonlocal: f64) -> Layer {
 /// Slope over slip and width over the closed form, and the peak over the strength.
 fn over_closed_form(layer: &Layer, method: &Method) -> [f64; 3] {
     let path = layer.followed(method, 0.6);
-    let peak = path.iter().fold(0.0, |peak: f64, own| own.tau.max(peak));
-    let mut behind = path.iter().skip_while(|own| own.tau < peak);
-    let begun = behind.find(|own| own.tau <= 0.9).unwrap();
+    let peak = path
+        .iter()
+        .fold(0.0, |peak: f64, point| point.tau.max(peak));
+    let mut behind = path.iter().skip_while(|point| point.tau < peak);
+    let begun = behind.find(|point| point.tau <= 0.9).unwrap();
     let last = &path[path.len() - 1];
     let fall = last.tau - begun.tau;
     let elastic = layer.cells as f64 / elasticity().shear();
@@ -340,8 +343,8 @@ fn over_closed_form(layer: &Layer, method: &Method) -> [f64; 3] {
 /// Holds what was found against the closed form: 1 %, and the peak between the strengths of both laws.
 fn holds(label: &str, found: [f64; 3]) {
     println!("{label}: slope, width, peak over exact {found:.5?}");
-    for own in &found[..2] {
-        assert!((own - 1.0).abs() < 0.01, "{label}: {found:?}");
+    for ratio in &found[..2] {
+        assert!((ratio - 1.0).abs() < 0.01, "{label}: {found:?}");
     }
     assert!(found[2] > WEAK && found[2] <= 1.0, "{label}: {found:?}");
 }
@@ -383,8 +386,8 @@ fn other_laws_and_methods_have_the_same_band() {
 #[test]
 fn without_overshoot_plastic_strain_gathers_in_one_row() {
     let method = small_strain(Method::igimp_bbar());
-    let share = |own: &Layer| {
-        let (path, _) = own.sheared(&method, [0.985, 0.06], 0.98);
+    let share = |layer: &Layer| {
+        let (path, _) = layer.sheared(&method, [0.985, 0.06], 0.98);
         let last = &path[path.len() - 1];
         assert!(last.tau < WEAK, "beyond the peak: {}", last.tau);
         last.most_plastic() / last.plastic.iter().sum::<f64>()
@@ -414,7 +417,7 @@ fn a_layer_snaps_back_from_its_closed_form_on() {
     let [low, high] = [50, 58].map(|cells| {
         let (path, is_passed) = of_height(cells).sheared(&method, slowly, 0.5);
         assert!(is_passed, "{cells} cells");
-        let by_stress = by_stress(&path, [0.85, 0.55], |own| own.travel);
+        let by_stress = by_stress(&path, [0.85, 0.55], |point| point.travel);
         println!("{cells} cells: dU/dτ = {by_stress:.5}");
         (cells as f64, by_stress)
     });

@@ -88,8 +88,8 @@ fn a_line_is_a_plane_between_smooth_walls() {
                     let twin = 4 * (p / 2) + 2 * (p % 2);
                     let (x, y) = (line.x[p][0], plane.x[twin][1]);
                     assert!((x - y).abs() < 1e-9, "{label}: {p} {x} {y}");
-                    let (own, other) = (line.sigma[p], plane.sigma[twin]);
-                    for (a, b) in [(own[0][0], other[1][1]), (own[2][2], other[2][2])] {
+                    let (of_line, other) = (line.sigma[p], plane.sigma[twin]);
+                    for (a, b) in [(of_line[0][0], other[1][1]), (of_line[2][2], other[2][2])] {
                         assert!((a - b).abs() < 1e-7, "{label}: {p} {a} {b}");
                     }
                     assert_eq!(line.regime[p], plane.regime[twin], "{label}");

@@ -49,7 +49,7 @@ fn a_step_moves_particles_off_a_rigid_body() {
             body.particles.sigma[particle]
                 .iter()
                 .flatten()
-                .all(|own| own.abs() < 1e-9)
+                .all(|x| x.abs() < 1e-9)
         );
     }
     assert_eq!(moved, 8);

@@ -173,11 +173,11 @@ fn a_free_plate_hands_its_load_to_the_floor() {
     let (mut sum, mut about) = ([0.0; 2], 0.0);
     for node in 0..conditions.grid.node_count() {
         let x = conditions.grid.node_position(node);
-        let own = forces.reactions[node];
+        let reaction = forces.reactions[node];
         for axis in 0..2 {
-            sum[axis] += own[axis];
+            sum[axis] += reaction[axis];
         }
-        about += (x[0] - after[0]) * own[1] - (x[1] - after[1]) * own[0];
+        about += (x[0] - after[0]) * reaction[1] - (x[1] - after[1]) * reaction[0];
     }
     for axis in 0..2 {
         assert!((sum[axis] + force[axis]).abs() < 1e-7, "{sum:?}");
@@ -214,7 +214,7 @@ fn soil_lets_go_and_carries_again() {
     assert!((second / first - 1.0).abs() < 0.01, "{first} {second}");
 }
 
-/// What carries no shear takes the way of a smooth plate, step by step and correction by correction.
+/// A plate that carries no shear takes the way of a smooth one, step by step and correction by correction.
 #[test]
 fn friction_of_nothing_is_smooth() {
     let without = Interface {

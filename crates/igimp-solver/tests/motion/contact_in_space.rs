@@ -169,13 +169,16 @@ fn a_slice_is_the_plane() {
         // Particles of the slice stand in the order of the plane, four for each of its own.
         let largest = |sigma: &[[[f64; 3]; 3]]| {
             let all = sigma.iter().flatten().flatten();
-            all.fold(0.0, |most: f64, own| most.max(own.abs()))
+            all.fold(0.0, |most: f64, x| most.max(x.abs()))
         };
         let scale = largest(&plane.particles.sigma).max(1.0);
         for (k, x) in space.particles.x.iter().enumerate() {
             let near = |other: &[f64; 2]| (x[0] - other[0]).hypot(x[2] - other[1]);
-            let own = plane.particles.x.iter().map(near);
-            let (twin, far) = own.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+            let distances = plane.particles.x.iter().map(near);
+            let (twin, far) = distances
+                .enumerate()
+                .min_by(|a, b| a.1.total_cmp(&b.1))
+                .unwrap();
             assert!(far < 1e-6, "{interface:?}: {far:e}");
             let (thick, flat) = (&space.particles.sigma[k], &plane.particles.sigma[twin]);
             for (a, b) in [(0, 0), (2, 1), (1, 2)] {
@@ -240,14 +243,14 @@ fn below_a_turned_plate(angle: f64, cells: usize) -> f64 {
     let exact = 100.0 * (1.0 - strain).ln() / (1.0 - strain).powi(3);
     let (mut square, mut volume) = (0.0, 0.0);
     for (particle, sigma) in body.particles.sigma.iter().enumerate() {
-        let own = body.particles.volume0[particle];
+        let size = body.particles.volume0[particle];
         for a in 0..3 {
             for b in a..3 {
                 let off = sigma[a][b] - if a == b { exact } else { 0.0 };
-                square += own * off * off;
+                square += size * off * off;
             }
         }
-        volume += own;
+        volume += size;
     }
     (square / volume).sqrt() / exact.abs()
 }
@@ -284,12 +287,12 @@ fn a_free_plate_hands_six_components_to_the_floor() {
     let nodes = conditions.grid.node_count();
     for node in 0..nodes {
         let x = conditions.grid.node_position(node);
-        let own = forces.reactions[node];
+        let reaction = forces.reactions[node];
         for axis in 0..3 {
             let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
-            sum[axis] += own[axis];
+            sum[axis] += reaction[axis];
             let arm = |k: usize| x[k] - before.origin[k];
-            about[axis] += arm(a) * own[b] - arm(b) * own[a];
+            about[axis] += arm(a) * reaction[b] - arm(b) * reaction[a];
         }
     }
     for axis in 0..3 {
@@ -382,8 +385,8 @@ fn a_plate_turns_about_its_axis() {
         let mut motion = RigidMotion::held();
         motion.rotation[2] = Drive::Moved(0.03);
         let (_, forces) = advance(&mut body, &conditions, motion);
-        let own = &forces.reactions[forces.reactions.len() - 1];
-        let next = own[2] * body.rigid[0].surface.size();
+        let reaction = &forces.reactions[forces.reactions.len() - 1];
+        let next = reaction[2] * body.rigid[0].surface.size();
         assert!(next > twist, "{next} {twist}");
         twist = next;
         let [x, y, _] = on_the_body(&forces);

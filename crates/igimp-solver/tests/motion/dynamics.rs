@@ -194,7 +194,7 @@ fn a_bar_keeps_its_energy_over_a_thousand_steps() {
     // No work is left over for its book either: its last term closes the sum, and has nothing to close here.
     let left = reports
         .iter()
-        .map(|own| own.energy.unwrap().integration.abs());
+        .map(|report| report.energy.unwrap().integration.abs());
     assert!(left.sum::<f64>() < 1e-8 * held(&reports[0]));
     let drift = held(&reports[999]) / held(&reports[0]) - 1.0;
     assert!(drift.abs() < 1e-8, "{drift}");
@@ -257,8 +257,8 @@ fn a_mode_of_a_bar_follows_the_generalised_alpha_method() {
     };
     for k in 50..62 {
         let (of_bar, expected) = (recurrence(&stresses[k..]), recurrence(&oscillator[k..]));
-        for (own, expected) in of_bar.iter().zip(expected) {
-            assert!((own - expected).abs() < 1e-10, "{of_bar:?} {expected}");
+        for (found, expected) in of_bar.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-10, "{of_bar:?} {expected}");
         }
     }
 }
@@ -305,7 +305,7 @@ fn a_block_falls_freely() {
                     "{scheme:?} {x:?}"
                 );
             }
-            assert!(reports.iter().all(|own| own.iterations <= 2));
+            assert!(reports.iter().all(|report| report.iterations <= 2));
             body.rest();
             let mut still = body.particles.velocity.as_flattened().iter();
             assert!(still.all(|v| *v == 0.0));
@@ -415,8 +415,9 @@ fn disc(h: f64) -> (Body<2>, StepConditions<2>) {
 }
 
 fn angular_momentum(body: &Body<2>) -> f64 {
-    let own = std::iter::zip(&body.particles.x, &body.particles.velocity);
-    own.zip(&body.particles.mass)
+    let pairs = std::iter::zip(&body.particles.x, &body.particles.velocity);
+    pairs
+        .zip(&body.particles.mass)
         .map(|((x, v), m)| m * ((x[0] - 2.0) * v[1] - (x[1] - 2.0) * v[0]))
         .sum()
 }
@@ -543,7 +544,7 @@ fn a_motion_without_a_closest_one_goes_on_by_means() {
         assert_eq!(report.moves_by_means, is_by_means, "density {density}");
         // The tip is carried by weights of −0.05 and 1.05.
         let mut velocities = body.particles.velocity.iter();
-        let lie_between = velocities.all(|own| (0.278..=0.322).contains(&own[0]));
+        let lie_between = velocities.all(|v| (0.278..=0.322).contains(&v[0]));
         assert!(lie_between || !is_by_means, "{velocities:?}");
     }
 }

@@ -86,7 +86,7 @@ fn pulse(way: f64) -> impl Fn(f64) -> f64 {
 /// The largest difference of the displacements of two bodies, and the largest displacement \[length\].
 fn difference(a: &Body<2>, b: &Body<2>) -> (f64, f64) {
     let (a, b) = (&a.particles.displacement, &b.particles.displacement);
-    let largest = |m: f64, own: f64| m.max(own.abs());
+    let largest = |m: f64, x: f64| m.max(x.abs());
     let size = a.as_flattened().iter().copied().fold(0.0, largest);
     let pairs = std::iter::zip(a.as_flattened(), b.as_flattened());
     (pairs.map(|(a, b)| a - b).fold(0.0, largest), size)
@@ -162,20 +162,20 @@ fn level_ground_with_free_fields_is_a_laminar_box() {
 /// GOAL: a slope whose sides are of different height moves as the same slope far from any side does, the closer the farther its sides
 /// are; against still ground it is further off at any distance.
 /// CASE: a step from 8 to 5 cells of height, 5, 10 and 20 cells from either side, shaken by its base, damped by 5 %.
-/// ORACLE: the same 40 cells from either side. What is left near the sides are waves along the layer, that are slow near its own
+/// ORACLE: the same 40 cells from either side. The error near the sides is waves along the layer, that are slow near its own
 /// frequency and do not meet the dashpots head on.
 #[test]
 fn a_slope_between_free_fields_moves_as_one_far_from_its_sides() {
     let wide = crest(40, true);
-    let largest = |m: f64, own: f64| m.max(own.abs());
+    let largest = |m: f64, x: f64| m.max(x.abs());
     let size = wide.as_flattened().iter().copied().fold(0.0, largest);
-    let error_of = |own: &[[f64; 2]]| {
-        let pairs = std::iter::zip(own.as_flattened(), wide.as_flattened());
+    let error_of = |way: &[[f64; 2]]| {
+        let pairs = std::iter::zip(way.as_flattened(), wide.as_flattened());
         pairs.map(|(a, b)| a - b).fold(0.0, largest) / size
     };
     let mut before = f64::INFINITY;
     for margin in [5, 10, 20] {
-        let [free, still] = [true, false].map(|own| error_of(&crest(margin, own)));
+        let [free, still] = [true, false].map(|is_free| error_of(&crest(margin, is_free)));
         println!("{margin} cells: free fields {free:.4}, dashpots {still:.4}");
         assert!(free < 0.5 * still, "{margin}: {free} {still}");
         assert!(free < before, "{margin}: {free} {before}");
@@ -195,8 +195,8 @@ fn crest(margin: usize, has_free_fields: bool) -> Vec<[f64; 2]> {
         }
     };
     let (body, conditions) = ground(2 * margin + 4, height);
-    let own = shear_speed() / 32.0;
-    let damping = Rayleigh::at([0.05; 2], [own, 5.0 * own]);
+    let frequency = shear_speed() / 32.0;
+    let damping = Rayleigh::at([0.05; 2], [frequency, 5.0 * frequency]);
     let conditions = conditions.with_damping(Some(damping)).unwrap();
     let at = [foot - 0.25, 7.75];
     let near = |x: &[f64; 2]| (x[0] - at[0]).abs() + (x[1] - at[1]).abs() < 0.1;

@@ -90,10 +90,10 @@ fn grains_flow_down_an_incline_as_bagnold_says() {
             let particles = &motion.body.particles;
             let mut off = [0.0_f64; 2];
             for (x, v) in std::iter::zip(&particles.x, &particles.velocity) {
-                let own = (v[0] - bagnold(slope, x[1])) / surface;
-                off[0] = off[0].max(own.abs());
+                let error = (v[0] - bagnold(slope, x[1])) / surface;
+                off[0] = off[0].max(error.abs());
                 if x[1] > DEPTH * (1.0 - 0.5 / cells as f64) {
-                    off[1] = own;
+                    off[1] = error;
                 }
             }
             println!("{cells} cells, slope {slope}: {surface:.4} m/s, off by {off:?}");

@@ -170,7 +170,7 @@ fn at_bottom<const D: usize>(spring: f64) -> AbsorbingWall<D> {
 /// GOAL: a wall of dashpots lets a pulse out: less than a thousandth of it comes back from a matched base where a wave length
 /// has fifty cells, and what comes back falls with the square of the cell.
 /// CASE: pulses of three widths, half of each goes down, half comes down from the free surface.
-/// ORACLE: a half-space reflects nothing; the root of the energy that is left is what came back. What went is in the book.
+/// ORACLE: a half-space reflects nothing; the root of the energy that is left is what came back. The wave that went is in the book.
 #[test]
 fn a_pulse_leaves_through_a_matched_base() {
     let mut found = Vec::new();
@@ -274,8 +274,8 @@ fn amplification<const D: usize>(
         motion.step(|t| -1e-3 * omega * omega * (omega * t).sin());
         if k >= times[0] {
             let ground = (omega * motion.elapsed()).sin();
-            let own = motion.body.particles.displacement[top][0] / 1e-3 + ground;
-            (least, most) = (least.min(own), most.max(own));
+            let total = motion.body.particles.displacement[top][0] / 1e-3 + ground;
+            (least, most) = (least.min(total), most.max(total));
         }
     }
     0.5 * (most - least)
@@ -426,11 +426,11 @@ fn a_damped_layer_amplifies_less() {
             // 1/cos − 1, times ω²/(ω² (1 − 2 i ξ)), and the base again.
             let relative = [real / squared - 1.0, -imaginary / squared];
             let turn = 1.0 + 4.0 * ratio * ratio;
-            let own = [
+            let turned = [
                 (relative[0] - 2.0 * ratio * relative[1]) / turn,
                 (relative[1] + 2.0 * ratio * relative[0]) / turn,
             ];
-            f64::hypot(own[0] + 1.0, own[1])
+            f64::hypot(turned[0] + 1.0, turned[1])
         };
         assert!(
             (found / expected - 1.0).abs() < 0.02,

@@ -37,16 +37,16 @@ fn over(duration: f64, is_first: bool) -> TimeStep {
 
 /// Ground 2 deep in cells of this size, of 2 particles per cell and direction, on a base that holds them.
 fn ground<const D: usize>(extent: [f64; D], cell: f64) -> (Grid<D>, Particles<D>, Constraints<D>) {
-    let cells = extent.map(|own| (own / cell).round() as usize);
+    let cells = extent.map(|size| (size / cell).round() as usize);
     let grid = Grid::new(cells.map(|count| Axis::uniform(0.0, cell, count).unwrap()));
     let mut along = cells.map(|count| 2 * count);
     along[D - 1] = (4.0 / cell).round() as usize;
     let seeds: Vec<_> = (0..along.iter().product())
         .map(|mut index: usize| ParticleSeed {
             x: std::array::from_fn(|axis| {
-                let own = index % along[axis];
+                let place = index % along[axis];
                 index /= along[axis];
-                cell * (0.25 + 0.5 * own as f64)
+                cell * (0.25 + 0.5 * place as f64)
             }),
             half_length: [0.25 * cell; D],
             volume: (0.5 * cell).powi(D as i32),
@@ -117,8 +117,8 @@ fn slid<const D: usize>(
     body.rest();
     let (mut past, mut duration) = (0.0, LONGEST);
     while past < time {
-        let own = Some(over(duration, past == 0.0));
-        let conditions = conditions.clone().with_time(own).unwrap();
+        let span = Some(over(duration, past == 0.0));
+        let conditions = conditions.clone().with_time(span).unwrap();
         let from_to = (0.0, 1.0);
         match step(
             &mut body,
@@ -162,8 +162,8 @@ fn acceleration(way: f64, time: f64) -> f64 {
     2.0 * way / (time * time)
 }
 
-fn within(share: f64, own: f64, expected: f64) {
-    assert!((own / expected - 1.0).abs() < share, "{own} {expected}");
+fn within(share: f64, found: f64, expected: f64) {
+    assert!((found / expected - 1.0).abs() < share, "{found} {expected}");
 }
 
 /// GOAL: a block slides by what friction leaves of its weight.
@@ -313,7 +313,7 @@ fn a_driven_body_goes_evenly() {
         let driven = RigidMotion::displaced([0.0, -speed * duration]);
         let loads = StepLoads::gravity([0.0; 2]);
         let conditions = StepConditions::new(grid, constraints, loads, vec![elastic()])
-            .and_then(|own| own.with_motions(vec![driven]))
+            .and_then(|conditions| conditions.with_motions(vec![driven]))
             .unwrap();
         let (method, settings) = (Method::igimp(), NewtonSettings::default());
         let mut workspace = workspace();
@@ -324,10 +324,17 @@ fn a_driven_body_goes_evenly() {
                 must_resolve: true,
                 ..over(duration, k == 0)
             };
-            let own = conditions.clone().with_time(Some(time)).unwrap();
+            let conditions = conditions.clone().with_time(Some(time)).unwrap();
             let ends = (0.0, 1.0);
-            let (report, _) =
-                step(&mut body, &method, &own, ends, &settings, &mut workspace).unwrap();
+            let (report, _) = step(
+                &mut body,
+                &method,
+                &conditions,
+                ends,
+                &settings,
+                &mut workspace,
+            )
+            .unwrap();
             let energy = report.energy.unwrap();
             work += energy.supports;
             imbalance += energy.imbalance().abs();

@@ -82,8 +82,8 @@ fn march<const D: usize>(
         StepLoads::gravity([0.0; D]),
         vec![elastic()],
     )
-    .and_then(|own| own.with_motions(vec![motion]))
-    .and_then(|own| own.with_ground(ground))
+    .and_then(|conditions| conditions.with_motions(vec![motion]))
+    .and_then(|conditions| conditions.with_ground(ground))
     .unwrap();
     let (method, mut workspace) = (Method::default(), workspace());
     for k in 0..steps {
@@ -91,9 +91,16 @@ fn march<const D: usize>(
             is_first: k == 0,
             ..time
         };
-        let own = conditions.clone().with_time(Some(time)).unwrap();
-        let (report, _) =
-            step(&mut soil, &method, &own, (0.0, 1.0), &TIGHT, &mut workspace).unwrap();
+        let conditions = conditions.clone().with_time(Some(time)).unwrap();
+        let (report, _) = step(
+            &mut soil,
+            &method,
+            &conditions,
+            (0.0, 1.0),
+            &TIGHT,
+            &mut workspace,
+        )
+        .unwrap();
         assert!(report.energy.unwrap().imbalance().abs() < 1e-9);
         seen(&soil.rigid[0], &report);
     }
@@ -186,8 +193,8 @@ fn a_thrown_body_turns_about_its_centre_of_mass() {
                 start[0] + 0.5 * time,
                 start[1] + time - 0.5 * GRAVITY * time * time,
             ];
-            for (own, exact) in place.iter().zip(exact) {
-                assert!((own - exact).abs() < 1e-9, "{place:?} {exact}");
+            for (x, exact) in place.iter().zip(exact) {
+                assert!((x - exact).abs() < 1e-9, "{place:?} {exact}");
             }
             assert!((body.pose.angle[0] - 0.4 - 1.2 * time).abs() < 1e-9);
             let energy = report.energy.unwrap();
@@ -231,11 +238,11 @@ fn a_thrown_body_in_space() {
                 start[1],
                 start[2] + time - 0.5 * GRAVITY * time * time,
             ];
-            for (own, exact) in place.iter().zip(exact) {
-                assert!((own - exact).abs() < 1e-9, "{place:?} {exact}");
+            for (x, exact) in place.iter().zip(exact) {
+                assert!((x - exact).abs() < 1e-9, "{place:?} {exact}");
             }
-            for (own, spin) in body.motion.spin.iter().zip([0.6, -0.8, 1.0]) {
-                assert!((own - spin).abs() < 1e-9);
+            for (rate, spin) in body.motion.spin.iter().zip([0.6, -0.8, 1.0]) {
+                assert!((rate - spin).abs() < 1e-9);
             }
         },
     );
@@ -304,11 +311,11 @@ fn tumbled(
 /// The angular momentum of a body in space.
 fn angular_momentum(body: &RigidBody<3>) -> [f64; 3] {
     let turn = &body.pose.turn;
-    let own: [f64; 3] = std::array::from_fn(|a| {
+    let momentum: [f64; 3] = std::array::from_fn(|a| {
         let spin: f64 = (0..3).map(|b| turn[b][a] * body.motion.spin[b]).sum();
         body.motion.moments[a][a] * spin
     });
-    body.pose.direction(&own)
+    body.pose.direction(&momentum)
 }
 
 /// The length of the difference of two vectors.
@@ -357,7 +364,7 @@ fn a_free_top_precesses() {
     let (moments, spin) = ([1.0, 1.0, 0.4], [1.5, 0.0, 5.0]);
     let momentum: [f64; 3] = std::array::from_fn(|a| moments[a] * spin[a]);
     let size = apart(momentum, [0.0; 3]);
-    let unit = momentum.map(|own| own / size);
+    let unit = momentum.map(|x| x / size);
     // By Rodrigues, after 2 s.
     let turned = |v: [f64; 3]| {
         let (sin, cos) = (2.0 * size / moments[0]).sin_cos();

@@ -102,7 +102,7 @@ fn a_surface_of_the_ground_shows_its_creases() {
 
 /// A shaft that begins above the ground, a tunnel that goes on beyond it, and a step cut from a corner.
 #[test]
-fn what_is_cut_out_has_its_own_edges() {
+fn a_cut_has_its_own_edges() {
     let difference = |minus: Solid| {
         Solid::Difference(Difference {
             of: Box::new(cuboid([10.0, 10.0, 10.0])),

@@ -4,7 +4,7 @@
 /// Pivots that are factorised at once in a front that the threads share.
 pub(crate) const STRIDE: usize = 128;
 
-/// Symmetric pivot blocks with at least so many rows do without most of what is above their diagonal. In the
+/// Symmetric pivot blocks with at least so many rows do without most entries above their diagonal. In the
 /// plane there are hardly any.
 const WIDE: usize = 1536;
 

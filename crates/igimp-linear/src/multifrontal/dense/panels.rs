@@ -63,22 +63,22 @@ impl<T: Scalar> WithSimd for RowsOfPanel<'_, T> {
             x,
             y,
         } = self;
-        let own = first..first + y.len();
+        let rows = first..first + y.len();
         let mut groups = x.chunks_exact(WIDTH);
         let mut columns = panel.chunks_exact(WIDTH * height);
         for (x, columns) in groups.by_ref().zip(columns.by_ref()) {
             let (a, columns) = columns.split_at(height);
             let (b, columns) = columns.split_at(height);
             let (c, d) = columns.split_at(height);
-            let (a, b) = (&a[own.clone()], &b[own.clone()]);
-            let (c, d) = (&c[own.clone()], &d[own.clone()]);
+            let (a, b) = (&a[rows.clone()], &b[rows.clone()]);
+            let (c, d) = (&c[rows.clone()], &d[rows.clone()]);
             for ((((y, a), b), c), d) in y.iter_mut().zip(a).zip(b).zip(c).zip(d) {
                 *y -= (*a * x[0] + *b * x[1]) + (*c * x[2] + *d * x[3]);
             }
         }
         let rest = columns.remainder().chunks_exact(height);
         for (x, column) in groups.remainder().iter().zip(rest) {
-            for (y, a) in y.iter_mut().zip(&column[own.clone()]) {
+            for (y, a) in y.iter_mut().zip(&column[rows.clone()]) {
                 *y -= *a * *x;
             }
         }
@@ -140,7 +140,7 @@ pub(crate) fn solve_lower<T: Scalar>(layout: Layout, block: &[T], unit: bool, y:
     });
 }
 
-/// What [`solve_lower`] does.
+/// The work of [`solve_lower`].
 struct Lower<'a, T> {
     layout: Layout,
     block: &'a [T],
@@ -166,9 +166,9 @@ impl<T: Scalar> WithSimd for Lower<'_, T> {
         let rows = y.len();
         let mut rest = block;
         for (first, columns) in layout.strides() {
-            let (own, later) = rest.split_at(columns * (rows - first));
+            let (stride, later) = rest.split_at(columns * (rows - first));
             rest = later;
-            for (k, column) in own.chunks_exact(rows - first).enumerate() {
+            for (k, column) in stride.chunks_exact(rows - first).enumerate() {
                 let (known, below) = y[first..].split_at_mut(k + 1);
                 if !unit {
                     known[k] /= column[k];
@@ -186,7 +186,7 @@ pub(crate) fn solve_lower_transposed<T: Scalar>(layout: Layout, block: &[T], y: 
     Arch::new().dispatch(LowerTransposed { layout, block, y });
 }
 
-/// What [`solve_lower_transposed`] does.
+/// The work of [`solve_lower_transposed`].
 struct LowerTransposed<'a, T> {
     layout: Layout,
     block: &'a [T],
@@ -206,9 +206,9 @@ impl<T: Scalar> WithSimd for LowerTransposed<'_, T> {
         let rows = y.len();
         let mut rest = block;
         for (first, columns) in layout.strides().rev() {
-            let (earlier, own) = rest.split_at(rest.len() - columns * (rows - first));
+            let (earlier, stride) = rest.split_at(rest.len() - columns * (rows - first));
             rest = earlier;
-            for (k, column) in own.chunks_exact(rows - first).enumerate().rev() {
+            for (k, column) in stride.chunks_exact(rows - first).enumerate().rev() {
                 let (unknown, known) = y[first..].split_at_mut(k + 1);
                 unknown[k] = (unknown[k] - dot(&column[k + 1..], known)) / column[k];
             }
@@ -221,7 +221,7 @@ pub(crate) fn solve_upper<T: Scalar>(block: &[T], y: &mut [T]) {
     Arch::new().dispatch(Upper { block, y });
 }
 
-/// What [`solve_upper`] does.
+/// The work of [`solve_upper`].
 struct Upper<'a, T> {
     block: &'a [T],
     y: &'a mut [T],

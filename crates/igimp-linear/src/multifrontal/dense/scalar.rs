@@ -6,7 +6,7 @@ use faer::traits::RealField;
 pub(crate) trait Scalar: RealField + Copy + Default + 'static {
     /// Pivots below this part of the largest entry of the scaled matrix carry no correct digit.
     const LOST: Self;
-    /// What replaces a lost pivot: the square root of the machine epsilon, large enough to bound the
+    /// The substitute of a lost pivot: the square root of the machine epsilon, large enough to bound the
     /// growth and small enough for refinement to undo the error.
     const REPLACEMENT: Self;
     /// A pivot below this part of the diagonal entry that it is left from has lost all its digits to

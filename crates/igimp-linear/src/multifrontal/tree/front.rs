@@ -1,4 +1,4 @@
-//! Fronts: what is eliminated together, and sizes that add up over fronts.
+//! Fronts: pivots eliminated together, and sizes that add up over fronts.
 
 use std::ops::Range;
 
@@ -24,7 +24,7 @@ pub(crate) struct Front {
     pub(crate) children: Range<usize>,
     /// Unknowns of the border that the parent does not eliminate: what falls on them waits for the parent.
     pub(crate) passed_on: usize,
-    /// Which of the two stacks holds what waits: a front and its parent use different ones, so that each
+    /// Which of the two stacks holds its contribution: a front and its parent use different ones, so that each
     /// stays last in, first out.
     pub(crate) stack: usize,
     /// Where in that stack it lies, for each shape of contributions.

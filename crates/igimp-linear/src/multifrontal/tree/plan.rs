@@ -220,8 +220,8 @@ impl Plan {
                 let end = self.fronts[parent].end();
                 let rows = self.rows(&self.fronts[front]).iter();
                 let passed_on = rows.map(|&rank| self.positions_of(rank));
-                let passed_on = passed_on.filter(|own| own.start >= end);
-                self.fronts[front].passed_on = passed_on.map(|own| own.len()).sum();
+                let passed_on = passed_on.filter(|range| range.start >= end);
+                self.fronts[front].passed_on = passed_on.map(|range| range.len()).sum();
             }
         }
     }

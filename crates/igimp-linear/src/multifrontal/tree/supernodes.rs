@@ -142,7 +142,7 @@ impl<'a> Supernodes<'a> {
     }
 
     /// The supernodes in a postorder that keeps the stack of contributions low: among siblings,
-    /// first those that need the most room beyond what they leave behind (J. W. H. Liu, *The
+    /// first those that need the most room beyond the part that they leave behind (J. W. H. Liu, *The
     /// multifrontal method for sparse matrix solution*, SIAM Review 34, 1992, section 6).
     pub(crate) fn sequence(&mut self) -> Vec<u32> {
         let mut roots = Vec::new();

@@ -1,7 +1,7 @@
 //! The elimination tree cut into tasks: subtrees, and above them the large fronts one by one.
 //!
 //! Where the tree is cut depends on the plan only and never on the number of threads, and every
-//! front adds up what its children contribute in their order: the bits of the result do not depend
+//! front adds up the contributions of its children in their order: the bits of the result do not depend
 //! on how many threads work on the tasks.
 
 use std::ops::Range;
@@ -23,8 +23,8 @@ pub(crate) struct Task {
     /// The share of the common arrays of this task and all tasks below it.
     pub(crate) total: Extent,
     /// The share of this task.
-    pub(crate) own: Extent,
-    /// Room for what waits within the task, by shape and stack.
+    pub(crate) extent: Extent,
+    /// Room for contributions that wait within the task, by shape and stack.
     pub(crate) stacks: [[usize; 2]; 2],
     /// Unknowns of the border of the last front that its parent passes on.
     passed_on: usize,
@@ -62,7 +62,7 @@ impl Task {
         let mut end = 0;
         self.below.iter().map(move |task| {
             end += task.total.outer;
-            (task.fronts.end - 1, end - task.own.outer..end)
+            (task.fronts.end - 1, end - task.extent.outer..end)
         })
     }
 }
@@ -124,12 +124,12 @@ impl Cutter<'_> {
         } else {
             (front.subtree, Vec::new())
         };
-        let mut own = Extent::default();
+        let mut extent = Extent::default();
         for front in &self.fronts[first..=root] {
-            own.add(&front.extent());
+            extent.add(&front.extent());
         }
-        own.outer = self.fronts[root].border;
-        let mut total = own;
+        extent.outer = self.fronts[root].border;
+        let mut total = extent;
         for task in &below {
             total.add(&task.total);
         }
@@ -144,27 +144,27 @@ impl Cutter<'_> {
             fronts: first..root + 1,
             below,
             total,
-            own,
+            extent,
             stacks: self.place_contributions(&(first..root)),
         }
     }
 
-    /// Places what waits of all fronts of a task but the last, whose contribution leaves it; returns the
+    /// Places the waiting contributions of all fronts of a task but the last, whose contribution leaves it; returns the
     /// largest fill of both stacks, by shape.
     fn place_contributions(&mut self, fronts: &Range<usize>) -> [[usize; 2]; 2] {
         [Shape::Square, Shape::Triangle].map(|shape| {
             let (mut fill, mut largest) = ([0, 0], [0, 0]);
             for this in fronts.clone() {
                 let front = &self.fronts[this];
-                let own = front.stack;
-                let start = fill[own];
-                fill[own] += shape.entries(front.passed_on);
-                largest[own] = largest[own].max(fill[own]);
+                let stack = front.stack;
+                let start = fill[stack];
+                fill[stack] += shape.entries(front.passed_on);
+                largest[stack] = largest[stack].max(fill[stack]);
                 if let Some(&eldest) = self.children[front.children.clone()].first() {
                     let eldest = &self.fronts[eldest as usize];
-                    fill[1 - own] = eldest.contribution[shape as usize].start;
+                    fill[1 - stack] = eldest.contribution[shape as usize].start;
                 }
-                self.fronts[this].contribution[shape as usize] = start..fill[own];
+                self.fronts[this].contribution[shape as usize] = start..fill[stack];
             }
             largest
         })
