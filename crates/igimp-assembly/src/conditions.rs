@@ -212,12 +212,12 @@ impl<const D: usize> StepConditions<D> {
             return Err(AssemblyError::NonFinite { what, index });
         }
         let sound = |control: &ReinforcementControl| control.is_sound();
-        if let Some(index) = self.reinforcement.iter().position(|own| !sound(own)) {
+        if let Some(index) = (self.reinforcement.iter()).position(|control| !sound(control)) {
             let what = "jack or reduction of a reinforcement";
             return Err(AssemblyError::NonFinite { what, index });
         }
         if let Some(held) = &self.held {
-            let bad = |force: &[f64; D]| !force.iter().all(|own| (own * held.share).is_finite());
+            let bad = |force: &[f64; D]| !force.iter().all(|f| (f * held.share).is_finite());
             let nodes = self.grid.node_count();
             let other = (held.forces.len() != nodes).then_some(nodes);
             if let Some(index) = other.or_else(|| held.forces.iter().position(bad)) {
@@ -232,15 +232,15 @@ impl<const D: usize> StepConditions<D> {
         let of_motion = [
             (
                 "wall",
-                self.walls.as_ref().is_some_and(|own| !own.are_sound()),
+                self.walls.as_ref().is_some_and(|walls| !walls.are_sound()),
             ),
             (
                 "acceleration of the ground",
-                self.ground.is_some_and(|own| !own.is_finite()),
+                self.ground.is_some_and(|ground| !ground.is_finite()),
             ),
             (
                 "damping of soil",
-                self.damping.is_some_and(|own| !own.is_sound()),
+                self.damping.is_some_and(|damping| !damping.is_sound()),
             ),
         ];
         if let Some((what, _)) = of_motion.into_iter().find(|(_, is_wrong)| *is_wrong) {

@@ -99,19 +99,19 @@ impl<const D: usize> System<'_, D> {
         // Of the work of a force, the weight of that at the end.
         let theta = inertia.step().scheme.weights().sum;
         let still = vec![[0.0; D]; u.len()];
-        let work_of = |own: &dyn NodalForces<D>, at: &[[f64; D]]| {
+        let work_of = |forces: &dyn NodalForces<D>, at: &[[f64; D]]| {
             let mut force = vec![[0.0; D]; at.len()];
-            own.add(at, &mut force, None);
+            forces.add(at, &mut force, None);
             product(&force, u)
         };
         let [ghost, drag, contact, reinforcement, .., turning] = (self.beside.forces())
-            .map(|own| theta * work_of(own, u) + (1.0 - theta) * work_of(own, &still));
+            .map(|forces| theta * work_of(forces, u) + (1.0 - theta) * work_of(forces, &still));
         let ground = self.work_of_ground(inertia, u);
         let mut energy = StepEnergy {
-            kinetic: sum(|own| own.kinetic),
-            elastic: sum(|own| own.elastic),
-            plastic: sum(|own| own.plastic),
-            water: sum(|own| own.water),
+            kinetic: sum(|part| part.kinetic),
+            elastic: sum(|part| part.elastic),
+            plastic: sum(|part| part.plastic),
+            water: sum(|part| part.water),
             contact,
             reinforcement,
             damping: ghost + drag + ground.damping,
@@ -121,7 +121,7 @@ impl<const D: usize> System<'_, D> {
             unbalanced: theta * self.work_out_of_balance(trial, u),
             ..StepEnergy::default()
         };
-        energy.elastic_gain = energy.elastic - sum(|own| own.elastic_before);
+        energy.elastic_gain = energy.elastic - sum(|part| part.elastic_before);
         // Of particles, and of the grid that takes their motion over for the step.
         let Motion { before, after, .. } = &motion;
         let gained = inertia.gained(&motion, u);
@@ -141,7 +141,7 @@ impl<const D: usize> System<'_, D> {
             v[..self.conditions().grid.node_count()].fill([0.0; D]);
             of_grid(&v)
         };
-        let kinetic_before = sum(|own| own.kinetic_before) + of_bodies(before);
+        let kinetic_before = sum(|part| part.kinetic_before) + of_bodies(before);
         energy.kinetic += of_bodies(after) + turned(after, after);
         energy.kinetic_gain = energy.kinetic - kinetic_before;
         energy.map = kinetic_before
@@ -190,7 +190,7 @@ impl<const D: usize> System<'_, D> {
 
     fn energy_of_particle(
         &self,
-        own: &ParticleTrial<D>,
+        end: &ParticleTrial<D>,
         particle: usize,
         u: &[[f64; D]],
         motion: &Motion<D>,
@@ -207,7 +207,7 @@ impl<const D: usize> System<'_, D> {
         let principal = std::array::from_fn::<f64, 3, _>(|k| {
             (0..3)
                 .map(|a| {
-                    own.frame[k][a] * (0..3).map(|b| own.tau[a][b] * own.frame[k][b]).sum::<f64>()
+                    end.frame[k][a] * (0..3).map(|b| end.tau[a][b] * end.frame[k][b]).sum::<f64>()
                 })
                 .sum()
         });
@@ -233,8 +233,8 @@ impl<const D: usize> System<'_, D> {
             kinetic_before: kinetic(&particles.velocity[particle]),
             kinetic: kinetic(&motion.of_particle(&particles.velocity[particle], supports)),
             elastic_before: 0.5 * volume * (before + stored(response.excess)),
-            elastic: 0.5 * volume * (dot(&own.eps_e) + stored(own.excess)),
-            plastic: volume * dot(&own.delta_eps_p),
+            elastic: 0.5 * volume * (dot(&end.eps_e) + stored(end.excess)),
+            plastic: volume * dot(&end.delta_eps_p),
             water: match response.given {
                 0.0 => 0.0,
                 given => volume * given * dilation(),

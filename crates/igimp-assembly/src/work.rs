@@ -125,9 +125,9 @@ impl<const D: usize> System<'_, D> {
         let asked = (self.particles).ask_law(particle, laws, |law| law.dissipation(&rate))?;
         let volume = self.reference_volume(particle);
         let trace = |tensor: &Tensor| tensor[0][0] + tensor[1][1] + tensor[2][2];
-        Ok(asked.map_or_else(PlasticFlow::default, |own| PlasticFlow {
-            work: volume * own.power,
-            missed: volume * (trace(tau) / 3.0 * (trace(&strain) - own.dilation)).abs(),
+        Ok(asked.map_or_else(PlasticFlow::default, |flow| PlasticFlow {
+            work: volume * flow.power,
+            missed: volume * (trace(tau) / 3.0 * (trace(&strain) - flow.dilation)).abs(),
         }))
     }
 
@@ -147,19 +147,19 @@ impl<const D: usize> System<'_, D> {
         particle: usize,
         u: &[[f64; D]],
     ) -> Result<[f64; 2], MaterialError> {
-        let own = &trial.particles[slot];
+        let end = &trial.particles[slot];
         let strain = self.strain_of_step(particle, u);
         let before = logarithmic_strain(&self.particles.b_e[particle])?;
         let mut elastic = [[0.0; 3]; 3];
         for a in 0..3 {
             for b in 0..3 {
                 let after: f64 = (0..3)
-                    .map(|k| own.eps_e[k] * own.frame[k][a] * own.frame[k][b])
+                    .map(|k| end.eps_e[k] * end.frame[k][a] * end.frame[k][b])
                     .sum();
                 elastic[a][b] = after - before[a][b];
             }
         }
         let volume = self.reference_volume(particle);
-        Ok([&strain, &elastic].map(|strain| volume * contracted(&own.tau, strain)))
+        Ok([&strain, &elastic].map(|strain| volume * contracted(&end.tau, strain)))
     }
 }

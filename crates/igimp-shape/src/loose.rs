@@ -151,9 +151,9 @@ impl<'a, const D: usize> Matching<'a, D> {
             }
             // The node at that corner takes a strain of this cell, and leaves that of the cell before.
             let node = self.node_at(before, corner);
-            let own = self.cells_at(node).find(|(own, _)| *own == cell);
-            if let Some((_, own)) = own {
-                self.given[cell][own] += 1;
+            let found = self.cells_at(node).find(|(other, _)| *other == cell);
+            if let Some((_, at)) = found {
+                self.given[cell][at] += 1;
             }
             self.given[before][corner] -= 1;
             cell = before;
@@ -192,7 +192,7 @@ mod tests {
                 .filter(|&node| !touched[node].is_empty())
                 .map(|node| free[node])
                 .sum();
-            let cells = cells_of(set).iter().filter(|own| **own).count();
+            let cells = cells_of(set).iter().filter(|there| **there).count();
             wanted as i64 - i64::from(strains) * cells as i64
         };
         let sets = 0..1_usize << grid.node_count();

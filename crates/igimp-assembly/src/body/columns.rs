@@ -264,7 +264,7 @@ impl Entry for Ratios {
     const IDLE: Self = Self::ONE;
 
     fn to_values(entries: Vec<Self>) -> ColumnValues {
-        let rows = (entries.into_iter()).map(|own| [own.strength, own.friction, own.stiffness]);
+        let rows = (entries.into_iter()).map(|r| [r.strength, r.friction, r.stiffness]);
         ColumnValues::F64(rows.flatten().collect())
     }
 

@@ -274,7 +274,7 @@ impl<const D: usize> Particles<D> {
         if self.fields.number.get(number) == Some(&number) {
             return Some(number);
         }
-        self.fields.number.iter().position(|&own| own == number)
+        self.fields.number.iter().position(|&n| n == number)
     }
 
     /// The arrays, handed over.
@@ -325,8 +325,8 @@ impl<const D: usize> Particles<D> {
     /// none \[-\].
     pub fn whole_def_grad(&self, particle: usize) -> Tensor {
         let mut whole = identity();
-        for (row, own) in std::iter::zip(&mut whole, &self.fields.def_grad[particle]) {
-            row[..D].copy_from_slice(own);
+        for (row, values) in std::iter::zip(&mut whole, &self.fields.def_grad[particle]) {
+            row[..D].copy_from_slice(values);
         }
         whole[2][2] += self.fields.hoop_strain[particle];
         whole

@@ -108,21 +108,21 @@ impl<const D: usize> LoadPoint<D> {
         grid: &Grid<D>,
         point: usize,
     ) -> Result<Vec<Support<D>>, AssemblyError> {
-        let mut own = Vec::new();
+        let mut stencil = Vec::new();
         supports(
             grid,
             &Linear,
             &self.x,
             &[0.0; D],
             &mut Scratch::default(),
-            &mut own,
+            &mut stencil,
         )
         .map_err(|source| AssemblyError::LoadPoint {
             point,
             position: padded(&self.x),
             source,
         })?;
-        Ok(own)
+        Ok(stencil)
     }
 }
 

@@ -78,13 +78,13 @@ impl<const D: usize> Consolidating<D> {
         }
         let bad = |soil: &PoreFlow<D>| match soil {
             PoreFlow::Drained | PoreFlow::Sealed => false,
-            PoreFlow::Flows(own) => {
-                let flows = (0..D).all(|axis| own.mobility[axis][axis] > 0.0);
-                let is_finite = own.mobility.as_flattened().iter().all(|k| k.is_finite());
-                let follows = own.follows.is_none_or(|law| {
+            PoreFlow::Flows(soil) => {
+                let flows = (0..D).all(|axis| soil.mobility[axis][axis] > 0.0);
+                let is_finite = soil.mobility.as_flattened().iter().all(|k| k.is_finite());
+                let follows = soil.follows.is_none_or(|law| {
                     law.initial > LEAST_VOID_RATIO && law.index.is_none_or(|index| index > 0.0)
                 });
-                !(flows && is_finite && follows && own.stiffness.modulus > 0.0)
+                !(flows && is_finite && follows && soil.stiffness.modulus > 0.0)
             }
         };
         match self.soils.iter().position(bad) {
@@ -107,7 +107,7 @@ impl<const D: usize> Consolidating<D> {
     #[inline]
     pub(crate) fn permeable(&self, law: usize) -> Option<&Permeable<D>> {
         match self.soils.get(law) {
-            Some(PoreFlow::Flows(own)) => Some(own),
+            Some(PoreFlow::Flows(soil)) => Some(soil),
             _ => None,
         }
     }

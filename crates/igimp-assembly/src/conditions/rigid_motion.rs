@@ -51,6 +51,6 @@ impl<const D: usize> RigidMotion<D> {
         let mut drives = self.displacement.iter().chain(&self.rotation);
         drives.all(|drive| match drive {
             Drive::Moved(value) | Drive::Loaded(value) => value.is_finite(),
-        }) && self.weight.iter().all(|own| own.is_finite())
+        }) && self.weight.iter().all(|f| f.is_finite())
     }
 }

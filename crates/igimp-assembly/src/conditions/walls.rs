@@ -73,7 +73,7 @@ impl<const D: usize> FreeMotion<D> {
     fn is_finite(&self) -> bool {
         let all = [&self.displacement, &self.velocity, &self.force];
         all.iter()
-            .all(|own| own.as_flattened().iter().all(|own| own.is_finite()))
+            .all(|values| values.as_flattened().iter().all(|value| value.is_finite()))
     }
 }
 
@@ -117,8 +117,8 @@ impl<const D: usize> Walls<D> {
             known(wall.normal)
                 && finite(&wall.spring)
                 && wall.spring.iter().all(|&spring| spring >= 0.0)
-        }) && (self.tied).is_none_or(|own| known(own.axis) && own.stiffness > 0.0)
+        }) && (self.tied).is_none_or(|tied| known(tied.axis) && tied.stiffness > 0.0)
             && self.beside.iter().all(FreeMotion::is_finite)
-            && (self.nodes.iter()).all(|own| finite(&own.force) && finite(&own.displacement))
+            && (self.nodes.iter()).all(|node| finite(&node.force) && finite(&node.displacement))
     }
 }

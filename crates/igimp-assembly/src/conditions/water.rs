@@ -83,9 +83,9 @@ impl<const D: usize> Particles<D> {
 
     /// How far soil that joined a particle as it was seeded, reaches beyond its domain \[length\] (theory, eq. 45i).
     pub fn beyond_domain(&self, particle: usize, section: Section) -> [f64; D] {
-        let (site, own) = (self.pore_site(particle, section), &self.centroid[particle]);
+        let (site, centroid) = (self.pore_site(particle, section), &self.centroid[particle]);
         let twice = if site.filled > 1.0 { 2.0 } else { 0.0 };
-        std::array::from_fn(|axis| twice * own[axis] * site.half_length[axis])
+        std::array::from_fn(|axis| twice * centroid[axis] * site.half_length[axis])
     }
 }
 
@@ -173,8 +173,8 @@ impl<const D: usize> Water<D> {
     /// K_w/n of a particle whose soil is as stiff as the constants of its law say \[force/length²\].
     #[inline]
     pub(crate) fn stiffness_of(&self, particles: &Particles<D>, particle: usize) -> f64 {
-        let own = self.stiffness.get(particles.law[particle]);
-        own.map_or(0.0, |own| own.at_constants(particles, particle))
+        let stiffness = self.stiffness.get(particles.law[particle]);
+        stiffness.map_or(0.0, |stiffness| stiffness.at_constants(particles, particle))
     }
 
     /// Refuses numbers that are not finite.
@@ -183,7 +183,7 @@ impl<const D: usize> Water<D> {
             let what = "factor on pore pressure";
             return Err(AssemblyError::NonFinite { what, index: 0 });
         }
-        let bad = |own: &PoreStiffness| !(own.modulus.is_finite() && own.modulus >= 0.0);
+        let bad = |pore: &PoreStiffness| !(pore.modulus.is_finite() && pore.modulus >= 0.0);
         match self.stiffness.iter().position(bad) {
             Some(index) => {
                 let what = "bulk modulus of pore water";

@@ -75,7 +75,7 @@ impl<const D: usize> Asked<D> {
         (particles, section): (&Particles<D>, Section),
         earlier: Option<&Self>,
     ) -> Self {
-        if let Some(earlier) = earlier.filter(|own| Arc::ptr_eq(&own.field, field)) {
+        if let Some(earlier) = earlier.filter(|asked| Arc::ptr_eq(&asked.field, field)) {
             return earlier.clone();
         }
         let at = |particle| field.at(particles.pore_site(particle, section));
@@ -123,8 +123,8 @@ impl Pores {
                 .into_par_iter()
                 .with_min_len(CHUNK)
                 .map(|particle| {
-                    let own = water.stiffness.get(particles.law[particle]);
-                    own.map_or(Ok(0.0), |own| own.of(particles, particle, &conditions.laws))
+                    let pore = water.stiffness.get(particles.law[particle]);
+                    pore.map_or(Ok(0.0), |p| p.of(particles, particle, &conditions.laws))
                 })
                 .collect::<Result<_, _>>()?
         };
@@ -143,16 +143,16 @@ impl Pores {
         };
         for &particle in stencils.order() {
             let particle = particle as usize;
-            let own = &states[particle];
+            let state = &states[particle];
             let volume0 = particles.volume0[particle];
             let stretch = particles.volume_ratio(particle);
-            let density = own.added_density + (stretch - 1.0) * own.water_density;
+            let density = state.added_density + (stretch - 1.0) * state.water_density;
             pores.mass[particle] = volume0 * density;
             let force: [f64; D] = std::array::from_fn(|axis| {
                 let weight = density * gravity[axis];
-                volume0 * (weight - stretch * water.factor * own.gradient[axis])
+                volume0 * (weight - stretch * water.factor * state.gradient[axis])
             });
-            let difference = water.factor * (own.pressure - own.reference);
+            let difference = water.factor * (state.pressure - state.reference);
             if !(force.iter().all(|force| force.is_finite()) && difference.is_finite()) {
                 let what = "given pore pressure at particle";
                 return Err(AssemblyError::NonFinite {
@@ -165,7 +165,7 @@ impl Pores {
                     f_ext[support.node][axis] += support.value * force[axis];
                 }
             }
-            pores.pressure[particle] = water.factor * own.pressure;
+            pores.pressure[particle] = water.factor * state.pressure;
             pores.stress[particle] = match method.kinematics {
                 Kinematics::FiniteStrain => -stretch * difference,
                 Kinematics::SmallStrain => -difference,

@@ -35,20 +35,20 @@ impl<const D: usize> System<'_, D> {
             let Some(batches) = law.batches() else {
                 continue;
             };
-            let is_own = |&particle: &usize| particles.law[particle] == number;
-            let (own, asked): (Vec<usize>, Vec<Principal>) = (0..particles.len())
-                .filter(is_own)
+            let of_law = |&particle: &usize| particles.law[particle] == number;
+            let (list, asked): (Vec<usize>, Vec<Principal>) = (0..particles.len())
+                .filter(of_law)
                 .filter_map(|particle| Some((particle, strains[particle]?)))
                 .unzip();
-            let Some(&first) = own.first() else { continue };
-            let histories: Vec<History> = own.iter().map(|&own| particles.history(own)).collect();
+            let Some(&first) = list.first() else { continue };
+            let histories: Vec<History> = list.iter().map(|&p| particles.history(p)).collect();
             let found = batches
                 .return_maps(&asked, &histories, &context)
                 .map_err(|source| AssemblyError::Material {
                     particle: first,
                     source,
                 })?;
-            for (particle, answer) in std::iter::zip(own, found) {
+            for (particle, answer) in std::iter::zip(list, found) {
                 answers[particle] = Some(answer);
             }
         }

@@ -120,7 +120,7 @@ pub(crate) fn strained<const D: usize>(
 ) -> Result<Straining<D>, AssemblyError> {
     let particle = state.particle;
     let gradients = Gradients::of((supports, hoops), u);
-    let mut delta_def_grad = gradients.own;
+    let mut delta_def_grad = gradients.grad;
     let mut delta_bar = gradients.bar;
     let around = gradients.hoop.map(|hoop| Hoop::UNSTRETCHED.plus(1.0, hoop));
     for a in 0..D {
@@ -220,7 +220,7 @@ pub(crate) fn answered<const D: usize>(
 /// Gradients of nodal step displacements at a particle \[-\].
 pub(crate) struct Gradients<const D: usize> {
     /// Its own.
-    pub(crate) own: [[f64; D]; D],
+    pub(crate) grad: [[f64; D]; D],
     /// The cell-averaged one.
     pub(crate) bar: [[f64; D]; D],
     /// Strain around the axis u_r/r, both of them; none unless the section is axisymmetric.
@@ -231,19 +231,19 @@ impl<const D: usize> Gradients<D> {
     /// Those of displacements `u` \[length\].
     #[inline]
     pub(crate) fn of((supports, hoops): (&[Support<D>], &[Hoop]), u: &[[f64; D]]) -> Self {
-        let mut own = [[0.0; D]; D];
+        let mut grad = [[0.0; D]; D];
         let mut bar = [[0.0; D]; D];
         for support in supports {
             let displacement = &u[support.node];
             for a in 0..D {
                 for b in 0..D {
-                    own[a][b] += displacement[a] * support.grad[b];
+                    grad[a][b] += displacement[a] * support.grad[b];
                     bar[a][b] += displacement[a] * support.grad_bar[b];
                 }
             }
         }
         let hoop = (!hoops.is_empty()).then(|| Hoop::strain(supports, hoops, u));
-        Self { own, bar, hoop }
+        Self { grad, bar, hoop }
     }
 
     /// The cell-averaged dilatation, in small strain.
@@ -256,12 +256,12 @@ impl<const D: usize> Gradients<D> {
     /// Adds the small strain of the step, with the cell-averaged dilatation (theory, eqs. 9 and 130c) \[-\].
     #[inline]
     pub(crate) fn add_small_strain(&self, strain: &mut Tensor) {
-        let Self { own, bar, hoop } = self;
+        let Self { grad, bar, hoop } = self;
         let mut difference = 0.0;
         for a in 0..D {
-            difference += bar[a][a] - own[a][a];
+            difference += bar[a][a] - grad[a][a];
             for b in 0..D {
-                strain[a][b] += 0.5 * (own[a][b] + own[b][a]);
+                strain[a][b] += 0.5 * (grad[a][b] + grad[b][a]);
             }
         }
         if let Some(hoop) = hoop {

@@ -29,9 +29,9 @@ pub(crate) fn node_shares<const D: usize>(
 ) -> Vec<NodeShare> {
     let mut shares = vec![NodeShare::default(); grid.node_count()];
     for parity in 0..2 {
-        let own = strips.of_parity(parity);
-        let slices = split(&mut shares, own.clone().map(|(nodes, _)| nodes.clone()));
-        let tasks: Vec<_> = own.zip(slices).collect();
+        let half = strips.of_parity(parity);
+        let slices = split(&mut shares, half.clone().map(|(nodes, _)| nodes.clone()));
+        let tasks: Vec<_> = half.zip(slices).collect();
         tasks.into_par_iter().for_each(|((nodes, slots), slice)| {
             for &particle in &strips.order()[slots.clone()] {
                 let particle = particle as usize;

@@ -50,21 +50,21 @@ pub(crate) fn extrapolations<const D: usize>(
         let mut nearest: Option<(f64, f64, Vec<Carrier>)> = None;
         for cell in cells_around(grid, cut, REACH) {
             let carriers = carried_beyond(grid, cell, cut);
-            let is_firm = carriers.iter().all(|own| {
-                let then = left[own.node] + own.weight * shares[cut].volume;
-                !cuts[own.node]
-                    && stays_on_walls(conditions, cut, own.node)
-                    && then > KEPT * least_volume(grid, method, own.node)
+            let is_firm = carriers.iter().all(|carrier| {
+                let then = left[carrier.node] + carrier.weight * shares[cut].volume;
+                !cuts[carrier.node]
+                    && stays_on_walls(conditions, cut, carrier.node)
+                    && then > KEPT * least_volume(grid, method, carrier.node)
                     && (0..D).all(|axis| {
-                        held(axis).is_none() || held(axis) == constraints.of(own.node, axis)
+                        held(axis).is_none() || held(axis) == constraints.of(carrier.node, axis)
                     })
             });
             if !is_firm {
                 continue;
             }
             // The sum of the magnitudes of weights grows with the distance.
-            let distance: f64 = carriers.iter().map(|own| own.weight.abs()).sum();
-            let soil: f64 = carriers.iter().map(|own| shares[own.node].volume).sum();
+            let distance: f64 = carriers.iter().map(|carrier| carrier.weight.abs()).sum();
+            let soil: f64 = carriers.iter().map(|by| shares[by.node].volume).sum();
             let is_nearer = (nearest.as_ref()).is_none_or(|&(other, most, _)| {
                 distance < other || (distance <= other && soil > most)
             });
@@ -73,8 +73,8 @@ pub(crate) fn extrapolations<const D: usize>(
             }
         }
         if let Some((_, _, carriers)) = nearest {
-            for own in &carriers {
-                left[own.node] += own.weight * shares[cut].volume;
+            for carrier in &carriers {
+                left[carrier.node] += carrier.weight * shares[cut].volume;
             }
             ties.insert(cut, carriers);
         }
@@ -114,8 +114,7 @@ pub(crate) fn masters_of_cuts<const D: usize>(
     };
     let mut masters = BTreeMap::new();
     for particle in supports.touching(cuts) {
-        let own = supports.of(particle);
-        let nodes = own.iter().map(|support| support.node);
+        let nodes = supports.of(particle).iter().map(|support| support.node);
         for cut in nodes.clone().filter(|&node| cuts[node] && !fixed(node)) {
             for candidate in nodes.clone() {
                 let alike =

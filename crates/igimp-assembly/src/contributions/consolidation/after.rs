@@ -82,7 +82,7 @@ impl<const D: usize> Consolidation<D> {
                 let pressed = self.pressed(seeping, u);
                 let supports = self.supports_of(seeping).iter();
                 let grows: f64 = supports
-                    .map(|own| own.mean * grown[own.place as usize])
+                    .map(|support| support.mean * grown[support.place as usize])
                     .sum();
                 ExcessAfter {
                     particle: seeping.particle as usize,
@@ -97,13 +97,13 @@ impl<const D: usize> Consolidation<D> {
     /// The growth of the water of each pressure by what flows at nodal values `u` \[length^D\].
     fn grown(&self, u: &[[f64; D]]) -> Vec<f64> {
         let shares = self.shares.iter();
-        let mut grown: Vec<f64> = shares.map(|own| self.of_rate * own.expected).collect();
+        let mut grown: Vec<f64> = shares.map(|share| self.of_rate * share.expected).collect();
         for seeping in &self.seeping {
             let flows = flow(&seeping.flows, &self.pressed(seeping, u).grad);
-            for own in self.supports_of(seeping) {
-                let along = own.grad.iter().zip(&flows);
+            for support in self.supports_of(seeping) {
+                let along = support.grad.iter().zip(&flows);
                 let water: f64 = along.map(|(grad, flow)| grad * flow).sum();
-                grown[own.place as usize] -= water;
+                grown[support.place as usize] -= water;
             }
         }
         for leak in &self.leaks {
@@ -119,13 +119,13 @@ impl<const D: usize> Consolidation<D> {
     /// or over a part of the largest effective stress `stress` \[-\]; none where no water flows (theory, eq. 104).
     pub(crate) fn time_error(&self, u: &[[f64; D]], stress: f64) -> Option<f64> {
         let (mut volume, mut squared, mut largest) = (0.0, 0.0, STRESS_SHARE * stress);
-        for (place, (own, grown)) in self.shares.iter().zip(self.grown(u)).enumerate() {
-            let change = own.by_volume(grown - own.expected);
-            volume += own.volume;
-            squared += own.volume * (0.5 * own.by_volume(own.stiffness) * change).powi(2);
+        for (place, (share, grown)) in self.shares.iter().zip(self.grown(u)).enumerate() {
+            let change = share.by_volume(grown - share.expected);
+            volume += share.volume;
+            squared += share.volume * (0.5 * share.by_volume(share.stiffness) * change).powi(2);
             largest = largest.max((self.scale * self.value(place as u32, u)).abs());
         }
-        let starts = self.seeping.iter().map(|own| own.start.abs());
+        let starts = self.seeping.iter().map(|seeping| seeping.start.abs());
         largest = starts.fold(largest, f64::max);
         (volume > 0.0 && largest > 0.0).then(|| (squared / volume).sqrt() / largest)
     }
@@ -135,7 +135,7 @@ impl<const D: usize> Consolidation<D> {
         if self.seeping.is_empty() {
             return None;
         }
-        let expected: f64 = self.shares.iter().map(|own| own.expected).sum();
+        let expected: f64 = self.shares.iter().map(|share| share.expected).sum();
         let mut moved = WaterMoved {
             outflow: -self.of_rate * expected,
             ..WaterMoved::default()

@@ -166,8 +166,8 @@ impl<const D: usize> Consolidation<D> {
     /// The mean excess pore pressure of a particle at nodal values `u`; none where water does not flow \[force/length²\].
     #[inline]
     pub(crate) fn pressure(&self, particle: usize, u: &[[f64; D]]) -> Option<f64> {
-        let own = self.supports_of(self.seeping_at(particle)?).iter();
-        let sum: f64 = own.map(|own| own.mean * self.value(own.place, u)).sum();
+        let supports = self.supports_of(self.seeping_at(particle)?).iter();
+        let sum: f64 = supports.map(|s| s.mean * self.value(s.place, u)).sum();
         Some(self.scale * sum)
     }
 
@@ -183,11 +183,11 @@ impl<const D: usize> Consolidation<D> {
             bulge: 0.0,
             grad: [0.0; D],
         };
-        for own in self.supports_of(seeping) {
-            let pressure = self.scale * self.value(own.place, u);
-            pressed.mean += own.mean * pressure;
-            pressed.bulge += own.bulge * pressure;
-            for (sum, grad) in pressed.grad.iter_mut().zip(own.grad) {
+        for support in self.supports_of(seeping) {
+            let pressure = self.scale * self.value(support.place, u);
+            pressed.mean += support.mean * pressure;
+            pressed.bulge += support.bulge * pressure;
+            for (sum, grad) in pressed.grad.iter_mut().zip(support.grad) {
                 *sum += grad * pressure;
             }
         }
@@ -304,12 +304,12 @@ impl<const D: usize> WaterOfParticle<'_, D> {
         let flows = flow(&seeping.flows, &pressed.grad);
         let mean = seeping.stores * pressed.mean - seeping.held + self.grows;
         let bulge = seeping.projects * pressed.bulge - seeping.held_within;
-        for own in self.supports {
-            let mut water = own.mean * mean + own.bulge * bulge;
+        for support in self.supports {
+            let mut water = support.mean * mean + support.bulge * bulge;
             for a in 0..D {
-                water += own.grad[a] * flows[a];
+                water += support.grad[a] * flows[a];
             }
-            forces[own.place as usize - first][0] -= self.scale * water;
+            forces[support.place as usize - first][0] -= self.scale * water;
         }
     }
 
@@ -343,8 +343,8 @@ impl<const D: usize> WaterOfParticle<'_, D> {
             let along: f64 = (0..D)
                 .map(|axis| slope[axis] * moved(support.node, axis))
                 .sum();
-            for own in self.supports {
-                add(own.place as usize, self.coupling(own) * along);
+            for pressure in self.supports {
+                add(pressure.place as usize, self.coupling(pressure) * along);
             }
         }
     }

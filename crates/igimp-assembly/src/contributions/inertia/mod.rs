@@ -94,9 +94,9 @@ impl<const D: usize> Inertia<D> {
             }
         };
         let carries = step.asks_for_acceleration() && !step.is_first;
-        let change = ground.map_or([0.0; D], |own| own.change());
+        let change = ground.map_or([0.0; D], |ground| ground.change());
         let carried = || {
-            let shifted = |own: &[f64; D]| std::array::from_fn(|axis| own[axis] - change[axis]);
+            let shifted = |a: &[f64; D]| std::array::from_fn(|axis| a[axis] - change[axis]);
             let all: Vec<_> = particles.acceleration.iter().map(shifted).collect();
             on_grid(&all)
         };
@@ -111,9 +111,9 @@ impl<const D: usize> Inertia<D> {
             by_means |= also;
         }
         for body in bodies {
-            let own = body.nodal(&body.motion.velocity, &body.motion.spin);
-            velocity.extend(own);
-            mean_velocity.extend(own);
+            let nodal = body.nodal(&body.motion.velocity, &body.motion.spin);
+            velocity.extend(nodal);
+            mean_velocity.extend(nodal);
             let node = acceleration.len();
             let is_free = |axis: usize| unknowns.index(node, axis).is_some();
             let [mut of_way, of_turn] =
@@ -182,8 +182,8 @@ impl<const D: usize> Inertia<D> {
         if self.damping != 0.0 {
             let (of_soil, soil) = (&mut force[..nodes], &velocity[..nodes]);
             self.mass.multiply(soil, of_soil);
-            for own in of_soil.as_flattened_mut() {
-                *own *= self.damping;
+            for value in of_soil.as_flattened_mut() {
+                *value *= self.damping;
             }
         }
         force
@@ -300,9 +300,9 @@ impl<const D: usize> Inertia<D> {
             return self.about_reference(force, Some(u));
         }
         let mut between = motion.acceleration.clone();
-        for (own, before) in between.iter_mut().zip(&self.acceleration) {
-            *own = std::array::from_fn(|a| {
-                ((1.0 - of_mass) * own[a] + of_mass * before[a]) / (1.0 - of_force)
+        for (value, before) in between.iter_mut().zip(&self.acceleration) {
+            *value = std::array::from_fn(|a| {
+                ((1.0 - of_mass) * value[a] + of_mass * before[a]) / (1.0 - of_force)
             });
         }
         self.accelerate_given(u, motion, &mut between);

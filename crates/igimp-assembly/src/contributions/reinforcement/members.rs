@@ -179,20 +179,20 @@ fn carried_by<const D: usize>(
     unknowns: &Unknowns<D>,
 ) -> Option<Shares> {
     let grid = &conditions.grid;
-    let mut own = Vec::new();
+    let mut stencil = Vec::new();
     supports(
         grid,
         &Linear,
         x,
         &[0.0; D],
         &mut Scratch::default(),
-        &mut own,
+        &mut stencil,
     )
     .ok()?;
-    let mut own = stencils.carried(&own);
+    let mut stencil = stencils.carried(&stencil);
     let is_dropped = |node: usize| !unknowns.is_active(node);
-    own.retain(|support| support.value > LEAST_SHARE || !is_dropped(support.node));
-    shares_of_carried(grid, unknowns, is_dropped, x, &own)
+    stencil.retain(|support| support.value > LEAST_SHARE || !is_dropped(support.node));
+    shares_of_carried(grid, unknowns, is_dropped, x, &stencil)
 }
 
 /// The mean of one station less that of another, by node.

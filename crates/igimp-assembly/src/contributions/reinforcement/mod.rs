@@ -92,16 +92,16 @@ impl<const D: usize> Station<D> {
 impl<const D: usize> Reinforcement<D> {
     /// The largest tension along it \[force\].
     pub fn largest_force(&self) -> f64 {
-        let forces = self.segments.iter().map(|own| own.state.force);
+        let forces = self.segments.iter().map(|segment| segment.state.force);
         forces.fold(0.0, f64::max)
     }
 
     /// Refuses numbers that are not finite, named with the member's number.
     fn is_finite(&self, index: usize) -> Result<(), AssemblyError> {
-        let points = self.stations.iter().flat_map(|own| &own.points);
-        let numbers = self.segments.iter().flat_map(|own| {
-            let state = [own.state.strain, own.state.slack, own.state.force];
-            [own.length, own.tensile, own.limit(1.0)]
+        let points = self.stations.iter().flat_map(|station| &station.points);
+        let numbers = self.segments.iter().flat_map(|bar| {
+            let state = [bar.state.strain, bar.state.slack, bar.state.force];
+            [bar.length, bar.tensile, bar.limit(1.0)]
                 .into_iter()
                 .chain(state)
         });

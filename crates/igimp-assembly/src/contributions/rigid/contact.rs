@@ -92,7 +92,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         let motion = conditions.motions.get(index);
         let is_pushed = conditions.is_laid || motion.is_some_and(RigidMotion::is_pushed);
         let is_loaded = conditions.time.is_none() && is_pushed;
-        let carries = body.contact.knots.iter().any(|own| own.pressure > 0.0);
+        let carries = body.contact.knots.iter().any(|knot| knot.pressure > 0.0);
         let rolls = rolling_radius(body, conditions).is_some();
         let of_step = (conditions, method.section);
         let knots = Gathering::new(body, node, particles, stencils, of_step, unknowns, &images);
@@ -233,8 +233,8 @@ impl<'a, const D: usize> Contact<'a, D> {
             let knots = body.contact.knots.len();
             body.contact = ContactState::none(knots);
             let before = &self.bodies[index].contact.knots;
-            for (own, before) in body.contact.knots.iter_mut().zip(before) {
-                own.is_broken = before.is_broken;
+            for (knot, before) in body.contact.knots.iter_mut().zip(before) {
+                knot.is_broken = before.is_broken;
             }
         }
         for (row, penalty) in std::iter::zip(&self.rows, &self.penalties) {

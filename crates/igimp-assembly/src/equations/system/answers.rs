@@ -162,8 +162,8 @@ impl<const D: usize> System<'_, D> {
     /// The error in time of a step with nodal values `u` in which water flows, as a share of its excess pore pressures \[-\]; none
     /// where none flows.
     pub fn flow_error(&self, trial: &Trial<D>, u: &[[f64; D]]) -> Option<f64> {
-        let mean = |own: &ParticleTrial<D>| (own.tau[0][0] + own.tau[1][1] + own.tau[2][2]) / 3.0;
-        let stress = trial.particles.iter().map(|own| mean(own).abs());
+        let mean = |p: &ParticleTrial<D>| (p.tau[0][0] + p.tau[1][1] + p.tau[2][2]) / 3.0;
+        let stress = trial.particles.iter().map(|p| mean(p).abs());
         self.beside
             .consolidation
             .time_error(u, stress.fold(0.0, f64::max))

@@ -41,7 +41,7 @@ impl<const D: usize> Loads<D> {
         let gravity = &conditions.loads.gravity;
         add_variation_of_weight(stencils, &conditions.laws, gravity, &mut f_ext);
         let water = conditions.water.given.as_ref().map(|field| {
-            let earlier = earlier.and_then(|own| own.water.as_ref());
+            let earlier = earlier.and_then(|loads| loads.water.as_ref());
             Asked::of(field, (particles, method.section), earlier)
         });
         let of_water = (method, water.as_ref());

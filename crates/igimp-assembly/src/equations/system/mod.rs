@@ -284,8 +284,8 @@ impl<'a, const D: usize> System<'a, D> {
         }
         for (&node, carriers) in self.stencils.ties() {
             u[node] = std::array::from_fn(|axis| {
-                let moved = carriers.iter().map(|own| own.weight * u[own.node][axis]);
-                moved.reduce(|sum, own| sum + own).unwrap_or(0.0)
+                let moved = carriers.iter().map(|by| by.weight * u[by.node][axis]);
+                moved.reduce(|sum, part| sum + part).unwrap_or(0.0)
             });
         }
     }
