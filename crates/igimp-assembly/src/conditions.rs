@@ -1,4 +1,4 @@
-//! What holds during one step, besides the particles.
+//! Conditions of one step, besides the particles.
 
 pub(crate) mod constraints;
 pub(crate) mod ground_motion;
@@ -27,7 +27,7 @@ use time_step::TimeStep;
 use unbalanced::UnbalancedForces;
 use walls::Walls;
 
-/// What holds during one step, besides the particles.
+/// Conditions of one step, besides the particles.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct StepConditions<const D: usize> {
@@ -41,20 +41,20 @@ pub struct StepConditions<const D: usize> {
     pub laws: Vec<SharedLaw>,
     /// How rigid bodies move, in their order; one that is not listed is held.
     pub motions: Vec<RigidMotion<D>>,
-    /// What acts on reinforcement, in its order; what is not listed stretches with the ground, with its
+    /// Controls of reinforcement, in its order; members not listed stretch with the ground, with its
     /// whole bond.
     pub reinforcement: Vec<ReinforcementControl>,
     /// Water in the pores at the end of the step.
     pub water: Water<D>,
     /// How water flows out of soil, in a step that takes time.
     pub flow: Option<Consolidating<D>>,
-    /// What still holds the body where a change has put it out of balance.
+    /// Forces that hold the body where a change has put it out of balance.
     pub held: Option<UnbalancedForces<D>>,
     /// The time that the step takes; none in statics.
     pub time: Option<TimeStep>,
     /// Walls behind which the ground goes on, in a step that takes time.
     pub walls: Option<Walls<D>>,
-    /// Motion of the ground in whose frame motion is told, in a step that takes time.
+    /// Motion of the ground in whose frame motion is given, in a step that takes time.
     pub ground: Option<GroundMotion<D>>,
     /// Viscous damping of soil, in a step that takes time.
     pub damping: Option<Rayleigh>,
@@ -111,7 +111,7 @@ impl<const D: usize> StepConditions<D> {
         self
     }
 
-    /// The same with what acts on reinforcement, in its order.
+    /// The same with controls of reinforcement, in its order.
     ///
     /// # Errors
     /// [`AssemblyError::NonFinite`] for a jack or a reduction that is none.

@@ -14,7 +14,7 @@ use crate::error::AssemblyError;
 use crate::method::Kinematics;
 use igimp_shape::matrices::determinant;
 
-/// The energy of a step \[force·length\]. Work of loads and of supports is what comes in; the other terms are where it goes.
+/// The energy of a step \[force·length\]. Work of loads and of supports comes in; the other terms are where it goes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepEnergy {
     /// Kinetic energy of particles and rigid bodies at the end of the step.
@@ -27,7 +27,7 @@ pub struct StepEnergy {
     pub elastic_gain: f64,
     /// Plastic work, of the stress at the end of the step.
     pub plastic: f64,
-    /// Work on contact with rigid bodies: friction, and what the penalty stores.
+    /// Work on contact with rigid bodies: friction, and energy of the penalty.
     pub contact: f64,
     /// Work on reinforcement.
     pub reinforcement: f64,
@@ -52,7 +52,7 @@ pub struct StepEnergy {
 }
 
 impl StepEnergy {
-    /// What comes in less all that it goes into: round-off.
+    /// Input less all that it goes into: round-off.
     pub fn imbalance(&self) -> f64 {
         let gone = self.kinetic_gain
             + self.elastic_gain
@@ -84,7 +84,7 @@ impl<const D: usize> System<'_, D> {
     /// The energy of a step by nodal displacements `u` \[length\] that leads to `trial`; none in statics.
     ///
     /// # Errors
-    /// [`AssemblyError::Material`] of a particle whose elastic strain cannot be told.
+    /// [`AssemblyError::Material`] of a particle whose elastic strain cannot be found.
     pub fn energy(
         &self,
         trial: &Trial<D>,

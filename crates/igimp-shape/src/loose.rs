@@ -1,4 +1,4 @@
-//! Cells whose mean strains do not hold their nodes: what is left without them is a mechanism (theory, eq. 8i).
+//! Cells whose mean strains do not hold their nodes: motion without those strains is a mechanism (theory, eq. 8i).
 
 use std::collections::VecDeque;
 
@@ -91,7 +91,7 @@ impl<'a, const D: usize> Matching<'a, D> {
         self.grid.node_index(node)
     }
 
-    /// Gives a node one strain, by the shortest chain of nodes that can do with another one; marks what was reached where there is
+    /// Gives a node one strain, by the shortest chain of nodes that can do with another one; marks the nodes reached where there is
     /// none.
     fn serve(&mut self, node: usize) -> bool {
         let at_hand = self.cells_at(node).find(|(cell, _)| self.left[*cell] > 0);

@@ -1,4 +1,4 @@
-//! What acts on a body in a step: gravity on every particle, forces on points that the soil carries
+//! Loads of a body in a step: gravity on every particle, forces on points that the soil carries
 //! along, and drag against motion (theory, eqs. 2 and 38).
 
 use igimp_shape::{Grid, Linear, Scratch, Support, supports};
@@ -126,7 +126,7 @@ impl<const D: usize> LoadPoint<D> {
     }
 }
 
-/// What acts on the body at the end of a step.
+/// Loads of the body at the end of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepLoads<const D: usize> {
     /// Acceleration of gravity \[length/time²\].
@@ -160,7 +160,7 @@ impl<const D: usize> StepLoads<D> {
     }
 }
 
-/// Refuses values that are not finite, named with what they are.
+/// Refuses values that are not finite, with their name.
 fn finite(what: &'static str, index: usize, values: &[f64]) -> Result<(), AssemblyError> {
     if values.iter().all(|value| value.is_finite()) {
         Ok(())

@@ -3,7 +3,7 @@
 use crate::conditions::water::PoreStiffness;
 use crate::error::AssemblyError;
 
-/// What the water in a soil does during a step.
+/// Flow of the water in a soil during a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PoreFlow<const D: usize> {
     /// It comes and goes at once: there is no excess pore pressure.
@@ -58,7 +58,7 @@ pub struct Consolidating<const D: usize> {
     pub before: f64,
     /// Whether the step is refused where pressures change by more than it resolves.
     pub must_resolve: bool,
-    /// What water does, by law.
+    /// Flow of water, by law.
     pub soils: Vec<PoreFlow<D>>,
     /// Sides of the grid where water leaves, by axis and whether it is the upper end. All others are sealed.
     pub open_sides: Vec<(usize, bool)>,
@@ -93,7 +93,7 @@ impl<const D: usize> Consolidating<D> {
         }
     }
 
-    /// What flow and the rate of the step before weigh over the change of water in this step (theory, eq. 101): 1 and 0 by backward
+    /// Weights of flow and of the rate of the step before over the change of water in this step (theory, eq. 101): 1 and 0 by backward
     /// Euler \[-\].
     pub(crate) fn weights(&self) -> [f64; 2] {
         if self.before == 0.0 {

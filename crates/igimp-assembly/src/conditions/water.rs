@@ -11,7 +11,7 @@ use crate::laws::SharedLaw;
 use crate::method::Section;
 use igimp_material::{ConstitutiveModel, principal_values};
 
-/// What given water is at a particle, at full gravity.
+/// State of given water at a particle, at full gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoreState<const D: usize> {
     /// Mean pore pressure u over the domain; zero where the law is one of total stress \[force/length²\].
@@ -47,7 +47,7 @@ pub struct PoreSite<'a, const D: usize> {
     pub number: usize,
     /// Index of its law.
     pub law: usize,
-    /// Density as seeded, without what the water adds \[mass/length³\].
+    /// Density as seeded, without that of the water \[mass/length³\].
     pub density: f64,
     /// Centre of its domain \[length\].
     pub x: &'a [f64; D],
@@ -91,7 +91,7 @@ impl<const D: usize> Particles<D> {
 
 /// Given water. Pure: the same particle at the same place finds the same.
 pub trait PoreWater<const D: usize>: Debug + Send + Sync {
-    /// What water is in the domain of a particle.
+    /// The water in the domain of a particle.
     fn at(&self, site: PoreSite<'_, D>) -> PoreState<D>;
 }
 

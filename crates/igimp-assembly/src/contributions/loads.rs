@@ -89,7 +89,7 @@ pub(crate) fn weight<const D: usize>(
         .collect()
 }
 
-/// Adds to the nodal external force f_ext what the variation of stress within cells carries of the weight and shared
+/// Adds to the nodal external force f_ext the weight that the variation of stress within cells carries and shared
 /// gradients do not see, by node \[force\] (theory, eq. 8f).
 pub(crate) fn add_variation_of_weight<const D: usize>(
     stencils: &Stencils<D>,
@@ -130,7 +130,7 @@ fn gain_at_failure(law: &dyn ConstitutiveModel, weight: f64) -> f64 {
     without_cohesion * (2.0 * strength.friction_angle).cos().max(0.0)
 }
 
-/// Adds the force of loaded points to the nodal external force f_ext, by node \[force\]. What falls to
+/// Adds the force of loaded points to the nodal external force f_ext, by node \[force\]. The share of
 /// dropped nodes is handed on: no force is lost.
 pub(crate) fn add_force_of_points<const D: usize>(
     f_ext: &mut [[f64; D]],
@@ -188,7 +188,7 @@ pub(crate) fn nodal_drag<const D: usize>(
     Couplings(couplings.filter(|c| c.stiffness > 0.0).collect())
 }
 
-/// Adds forces that hold the body to the nodal external force. What a node holds that touches no soil any more is let go.
+/// Adds forces that hold the body to the nodal external force. The force of a node that touches no soil any more is let go.
 pub(crate) fn add_unbalanced_forces<const D: usize>(
     held: &UnbalancedForces<D>,
     stencils: &Stencils<D>,

@@ -147,7 +147,7 @@ impl NodalMass {
 
     /// Values by node whose product with the mass matrix is `sums` where a component is unknown, zero where it is not: of particle
     /// velocities weighted by mass, those of the grid that come closest to them. Conjugate gradients, scaled by the diagonal, that
-    /// begin with a `guess`: what no particle sees stays as guessed.
+    /// begin with a `guess`: nodes that no particle sees keep it.
     ///
     /// # Errors
     /// [`AssemblyError::MotionNotFound`].
@@ -224,7 +224,7 @@ impl NodalMass {
     }
 }
 
-/// Sets to zero what is not unknown.
+/// Sets to zero the components that are not unknown.
 pub(crate) fn mask<const D: usize>(values: &mut [[f64; D]], unknowns: &Unknowns<D>) {
     for (node, values) in values.iter_mut().enumerate() {
         for (axis, value) in values.iter_mut().enumerate() {

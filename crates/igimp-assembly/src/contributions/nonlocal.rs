@@ -36,7 +36,7 @@ pub(crate) struct NonlocalStrain<const D: usize> {
     modulus: f64,
 }
 
-/// What plastic and nonlocal strain are to each other at a particle, in spatial axes.
+/// Rates of plastic and nonlocal strain at a particle, in spatial axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpatialRates<const D: usize> {
     /// Plastic strain of the step Δκ, and its derivative by nonlocal strain \[-\].
@@ -211,7 +211,7 @@ impl<const D: usize> NonlocalStrain<D> {
     }
 }
 
-/// What a particle does to the nonlocal strain around it at some nodal values: the forces of its nodes, and the derivative.
+/// Nonlocal strain of a particle at some nodal values: the forces of its nodes, and the derivative.
 pub(crate) struct StrainOfParticle<'c, const D: usize> {
     numbers: &'c [u32],
     rates: &'c SpatialRates<D>,
@@ -248,7 +248,7 @@ impl<const D: usize> StrainOfParticle<'_, D> {
         }
     }
 
-    /// The shares of a node's nonlocal strain: what its force has of the slopes of displacement, and forces of the other way round.
+    /// The shares of a node's nonlocal strain: that of the slopes of displacement in its force, and forces of the other way round.
     #[inline]
     pub(crate) fn shares(&self, support: &Support<D>) -> [f64; 2] {
         [-self.weight * support.value, self.of_stress * support.value]

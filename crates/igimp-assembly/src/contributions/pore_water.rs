@@ -4,7 +4,7 @@
 //! Pore pressure u is positive in compression, as everywhere in soil mechanics; laws see effective stress
 //! σ′ = σ + u I alone.
 //!
-//! What is given acts in two ways. A *reference* field, continuous and on the surface of the soil equal to the pressure
+//! Given water acts in two ways. A *reference* field, continuous and on the surface of the soil equal to the pressure
 //! of the free water there, acts by its gradient on every particle: buoyancy and seepage, with the pressure of ponds on the
 //! ground and without any surface. By how much the pressure in the pores differs from it acts as a stress.
 
@@ -19,7 +19,7 @@ use crate::error::AssemblyError;
 use crate::method::{Kinematics, Method, Section};
 use crate::step::stencils::Stencils;
 
-/// What pore water adds to the stress of a particle.
+/// Stress of pore water at a particle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PoreResponse {
     /// Excess pore pressure at the start of the step, in the stress that the law speaks of \[force/length²\].
@@ -61,7 +61,7 @@ impl PoreResponse {
     }
 }
 
-/// What a given field is at the particles of a step: it is asked once.
+/// A given field at the particles of a step: it is asked once.
 #[derive(Clone, Debug)]
 pub(crate) struct Asked<const D: usize> {
     field: Arc<dyn PoreWater<D>>,
@@ -182,7 +182,7 @@ impl Pores {
         self.mass.get(particle).copied().unwrap_or(0.0)
     }
 
-    /// What water adds to the stress of a particle.
+    /// The stress of water at a particle.
     #[inline]
     pub(crate) fn response<const D: usize>(
         &self,

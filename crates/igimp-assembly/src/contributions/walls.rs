@@ -1,7 +1,7 @@
 //! Forces of walls behind which the ground goes on (theory, eqs. 69 to 71 and 77a): dashpots and springs at their nodes against the
 //! ground or a free field, and springs that make the nodes of two walls move together.
 //!
-//! The soil that touches a wall is what its particles leave at the nodes: with a first layer of cells of width h across the
+//! The soil that touches a wall is that of its particles at the nodes: with a first layer of cells of width h across the
 //! wall that is full, 2 Σ_p V_p S_ip / h is the area of a node on it.
 
 use std::collections::BTreeMap;
@@ -34,7 +34,7 @@ struct NodeAtWall<const D: usize> {
     dashpot: [f64; D],
     /// \[force/length\].
     spring: [f64; D],
-    /// What of dashpots \[force·time/length\] and springs \[force/length\] moves against the free field, and not against the ground:
+    /// Parts of dashpots \[force·time/length\] and springs \[force/length\] that move against the free field, and not against the ground:
     /// that of its own wall.
     followed: [[f64; D]; 2],
     /// At the start of the step \[length\].
@@ -43,7 +43,7 @@ struct NodeAtWall<const D: usize> {
     velocity: [f64; D],
     /// At the start of the step \[length/time²\].
     acceleration: [f64; D],
-    /// What the free field does beside it.
+    /// Motion of the free field beside it.
     beside: FreeMotion<D>,
 }
 
@@ -58,7 +58,7 @@ pub struct TieForce<const D: usize> {
 }
 
 impl<const D: usize> NodeAtWall<D> {
-    /// Adds what a wall does at the node, with the area that a unit of volume there has on it \[1/length\].
+    /// Adds the dashpots and springs of a wall, with the area that a unit of volume there has on it \[1/length\].
     fn join(&mut self, wall: &AbsorbingWall<D>, per_volume: f64, share: &Shares) {
         for a in 0..D {
             let wave = usize::from(a != wall.normal);
@@ -84,7 +84,7 @@ struct Tie<const D: usize> {
     gap: [f64; D],
 }
 
-/// What soil leaves at a node: impedance and modulus, each for compression and shear.
+/// Shares of soil at a node: impedance and modulus, each for compression and shear.
 #[derive(Clone, Copy, Debug, Default)]
 struct Shares {
     /// Σ m S c \[mass·length/time\].
@@ -309,7 +309,7 @@ fn ties<const D: usize>(
         .collect()
 }
 
-/// What soil leaves at the nodes of the walls of a grid.
+/// Shares of soil at the nodes of the walls of a grid.
 fn shares<const D: usize>(
     particles: &Particles<D>,
     stencils: &Stencils<D>,

@@ -1,5 +1,5 @@
 //! Laws that are asked for many particles at once: their trial strains are gathered before a pass, and the
-//! pass finds the answers there. What is computed is the same.
+//! pass finds the answers there. The results are the same.
 
 use igimp_material::{History, PointContext, Principal, ReturnMap};
 use rayon::prelude::*;

@@ -31,10 +31,10 @@ pub(crate) struct BlockTable<const D: usize> {
     wide: BTreeMap<u32, Vec<(u32, u32)>>,
 }
 
-/// What scattering needs to know of a node.
+/// Data of a node for scattering.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NodePlace {
-    /// A number such that differences of it tell two nodes' distance apart.
+    /// A number such that differences of it stand for the distance of two nodes.
     pub(crate) code: u32,
     /// Its block in the pattern, or [`NONE`].
     pub(crate) block: u32,

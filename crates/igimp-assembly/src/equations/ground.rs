@@ -1,4 +1,4 @@
-//! What acts in a step that takes time beside inertia: the motion of the ground, what walls carry, and damping of soil
+//! Forces beside inertia in a step that takes time: the motion of the ground, walls, and damping of soil
 //! (theory, eqs. 69 to 75).
 
 use igimp_material::TangentKind;
@@ -23,7 +23,7 @@ pub(crate) struct WorkOfGround {
 }
 
 impl<const D: usize> System<'_, D> {
-    /// Adds to the external force what the motion of the ground and the forces that walls carry give, and lets soil be damped by
+    /// Adds the motion of the ground and the forces that walls carry to the external force, and lets soil be damped by
     /// its mass.
     pub(crate) fn act_by_ground(&mut self, inertia: &mut Inertia<D>) {
         let conditions = &self.conditions;

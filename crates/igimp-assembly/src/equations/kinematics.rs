@@ -51,7 +51,7 @@ pub struct ParticleTrial<const D: usize> {
 }
 
 impl<const D: usize> ParticleTrial<D> {
-    /// A particle at rest without stress: what is there before the first evaluation.
+    /// A particle at rest without stress: its state before the first evaluation.
     pub(crate) fn at_rest() -> Self {
         Self {
             delta_def_grad: identity(),
@@ -71,7 +71,7 @@ impl<const D: usize> ParticleTrial<D> {
     }
 }
 
-/// What the linearisation of a particle needs beside its stress.
+/// Data for the linearisation of a particle beside its stress.
 #[derive(Clone, Debug)]
 pub(crate) struct Linearisation<const D: usize> {
     /// ΔF⁻¹; the identity in small strain, where gradients are not pushed forward.
@@ -80,7 +80,7 @@ pub(crate) struct Linearisation<const D: usize> {
     pub(crate) push_bar: [[f64; D]; D],
     /// Stress and tangent in spatial axes, those of the water in the pores included.
     pub(crate) lifted: Lifted<D>,
-    /// What its plastic and its nonlocal strain are to each other, where strength sees that.
+    /// Rates of its plastic and its nonlocal strain, where strength sees that.
     pub(crate) nonlocal: Option<SpatialRates<D>>,
 }
 
@@ -92,7 +92,7 @@ pub(crate) struct ParticleState<'a> {
     pub(crate) pores: PoreResponse,
 }
 
-/// How a particle is strained at nodal step displacements: what its law is asked at, and what its linearisation needs.
+/// How a particle is strained at nodal step displacements: the strain for its law, and data for its linearisation.
 pub(crate) struct Straining<const D: usize> {
     delta_def_grad: [[f64; D]; D],
     /// As [`Linearisation::push`] and [`Linearisation::push_bar`].
@@ -300,7 +300,7 @@ fn pushed_forward<const D: usize>(
     out
 }
 
-/// What a law answers is checked here, whatever law it is, so that the particle can be named.
+/// Answers of laws are checked here, for any law, so that the particle can be named.
 #[inline]
 fn finite<const D: usize>(lifted: &Lifted<D>) -> Result<(), MaterialError> {
     let quantity = if !lifted.tau.iter().flatten().all(|tau| tau.is_finite()) {

@@ -99,7 +99,7 @@ impl<const D: usize> Moduli<D> {
     }
 }
 
-/// What the tangent of stress of a particle of a body of revolution has to do with the direction around the axis, t (theory,
+/// Moduli of a particle of a body of revolution in the direction around the axis, t (theory,
 /// eq. 130e).
 struct HoopModuli<const D: usize> {
     /// V A_ttcd by c, d \[energy\].
@@ -115,7 +115,7 @@ struct HoopModuli<const D: usize> {
 }
 
 impl<const D: usize> HoopModuli<D> {
-    /// Those of a particle of volume `volume`: what sums over all directions have beyond those over the plane.
+    /// Those of a particle of volume `volume`: sums over all directions less those over the plane.
     fn of(point: &Linearisation<D>, volume: f64, kinematics: Kinematics) -> Self {
         let (tangent, tau) = (point.lifted.tangent(), &point.lifted.tau);
         let (mut row, mut column) = ([[0.0; D]; D], [[0.0; D]; D]);
@@ -257,7 +257,7 @@ impl<const D: usize> Linearised<D> {
         }
     }
 
-    /// Adds to the factors of the rows what stretching around the axis does, and sets those of its columns.
+    /// Adds to the factors of the rows the terms of stretching around the axis, and sets those of its columns.
     #[inline(never)]
     fn add_hoops(&mut self, moduli: &Moduli<D>, hoop: &HoopModuli<D>) {
         for factors in &mut self.around {
@@ -406,7 +406,7 @@ impl<const D: usize> Linearised<D> {
         std::array::from_fn(|c| &columns[c * LANES * lanes..][..LANES * lanes])
     }
 
-    /// Adds to the radial column of a support what stretching around the axis does.
+    /// Adds stretching around the axis to the radial column of a support.
     #[inline(never)]
     fn add_radial_column(&mut self, j: usize) {
         let (hoop, [around, around_bar]) = (self.hoops[j], &self.around);

@@ -35,7 +35,7 @@ type Lane = [f64; LANES];
 pub(crate) struct Patch<const D: usize> {
     /// The nodes of all particles, ascending.
     nodes: Vec<usize>,
-    /// The nodes that particles may have who share the patch, ascending.
+    /// The nodes that particles of the patch may have, ascending.
     allowed: Vec<usize>,
     /// The unknown rows of the nodes.
     rows: Rows,

@@ -1,5 +1,5 @@
 //! The soil in every cell of the grid: how much there is, and where its centroid lies. From it come
-//! gradients that the particles of a cell share, which cells hold slivers only, and what of the weight shared
+//! gradients that the particles of a cell share, which cells hold slivers only, and the weight that shared
 //! gradients do not see (theory, eqs. 8a to 8i).
 
 use igimp_material::ConstitutiveModel;
@@ -26,7 +26,7 @@ const SLIVER: f64 = 0.02;
 /// geometry \[-\].
 const OWN_GIVEN: f64 = 0.02;
 
-/// The same on a moving one: what the mean does not see is held in every step \[-\].
+/// The same on a moving one: strain that the mean does not see is held in every step \[-\].
 const OWN_MOVING: f64 = 0.1;
 
 /// The same where plastic flow keeps volume although the law has friction, on both \[-\]: with less Newton's method loses its way
@@ -72,7 +72,7 @@ struct Kept<'a, const D: usize> {
     centroid: [f64; D],
     /// Radius of the middle of the part \[length\]; 0 unless the section is axisymmetric.
     radius: f64,
-    /// Its share of what is kept \[-\].
+    /// Its share of the parts kept \[-\].
     weight: f64,
 }
 
@@ -297,7 +297,7 @@ impl<const D: usize> CellSoil<D> {
         }
     }
 
-    /// Sets `hoops` to what the supports of a particle of a law stretch it around the axis (theory, eqs. 130a and 130b).
+    /// Sets `hoops` to the stretch of a particle of a law around the axis by its supports (theory, eqs. 130a and 130b).
     fn add_hoops(
         &self,
         grid: &Grid<D>,
@@ -340,7 +340,7 @@ impl<const D: usize> CellSoil<D> {
         }
     }
 
-    /// The parts of a particle that are not in slivers, or all if most of it is there; each with its share of what is
+    /// The parts of a particle that are not in slivers, or all if most of it is there; each with its share of those
     /// kept (theory, eq. 8d).
     fn kept(&self, grid: &Grid<D>, particle: usize) -> impl Iterator<Item = Kept<'_, D>> {
         let kept = |part: &CellPart<D>| !self.is_sliver[grid.cell_index(part.cell)];
@@ -421,7 +421,7 @@ fn loaded_cells<const D: usize>(grid: &Grid<D>, points: &[LoadPoint<D>]) -> Vec<
     is_loaded
 }
 
-/// What of the weight of the soil of a law shared gradients do not see (theory, eq. 8f).
+/// The weight of the soil of a law that shared gradients do not see (theory, eq. 8f).
 #[derive(Clone, Debug)]
 pub(crate) struct Moments<const D: usize> {
     /// By node, component a of the gradient, component b of the arm \[mass\].
@@ -473,8 +473,8 @@ impl<const D: usize> Parts<D> {
 }
 
 /// The share β of its own distortion that a particle of a law keeps (theory, eq. 8c), the same for a
-/// law and for what a reduction of its strength leaves of it. Elastic soil keeps all of it: bending has to be
-/// resisted. In soil that yields the rest is shared, and what is kept holds modes that the mean does not see;
+/// law and for the law with reduced strength. Elastic soil keeps all of it: bending has to be
+/// resisted. In soil that yields the rest is shared, and the kept part holds modes that the mean does not see;
 /// they add up from step to step where the body moves. The less flow dilates the less has to be shared, and
 /// sharing less keeps Newton's method on its way where equilibrium is not unique.
 fn share_of_law(law: &dyn ConstitutiveModel, geometry: Geometry) -> f64 {

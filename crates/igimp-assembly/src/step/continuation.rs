@@ -10,7 +10,7 @@ use crate::step::ties::{Carrier, Ties};
 /// a spray would be that of its neighbours many times over.
 pub(crate) const REACH: usize = 1;
 
-/// What is none of a weight \[-\].
+/// A weight that counts as none \[-\].
 const ROUND_OFF: f64 = 1e-12;
 
 /// The cells around a node, and those that are up to `reach` cells away from them.

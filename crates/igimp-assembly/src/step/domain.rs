@@ -56,7 +56,7 @@ pub(crate) fn capped_half_length<const D: usize>(
     half_length
 }
 
-/// What is said of a particle whose centre or domain has no place on the grid.
+/// The error of a particle whose centre or domain has no place on the grid.
 pub(crate) fn off_grid<const D: usize>(
     particle: usize,
     x: &[f64; D],

@@ -1,4 +1,4 @@
-//! What every node represents of the body: volume and mass.
+//! Every node's share of the body: volume and mass.
 
 use igimp_shape::Grid;
 use rayon::prelude::*;
@@ -8,7 +8,7 @@ use crate::method::Section;
 use crate::step::strips::{Strips, split};
 use crate::step::supports::Supports;
 
-/// What a node represents of the body.
+/// A node's share of the body.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct NodeShare {
     /// Σ S V, over the thickness of the section \[length^D\].

@@ -13,10 +13,10 @@ use crate::step::node_shares::NodeShare;
 use crate::step::supports::Supports;
 use crate::step::ties::{Carrier, Ties};
 
-/// What extrapolation leaves to a node that it rests on, of the volume below which a node is a small cut \[-\].
+/// The share that extrapolation leaves to a node that it rests on, of the volume below which a node is a small cut \[-\].
 const KEPT: f64 = 0.5;
 
-/// Which nodes are small cuts, their volume being less than a fraction of their cells' or of what full soil leaves there. Touched, not of positive volume: a point on a
+/// Which nodes are small cuts, their volume being less than a fraction of their cells' or of that of full soil there. Touched, not of positive volume: a point on a
 /// face sees the cell beyond by its gradient only.
 pub(crate) fn small_cuts<const D: usize>(
     grid: &Grid<D>,
@@ -32,8 +32,8 @@ pub(crate) fn small_cuts<const D: usize>(
 }
 
 /// Ties small cuts to the nearest cell whose nodes all carry enough soil, by its linear functions beyond its faces: of equally near
-/// ones to that with most soil. What a cut is held by holds all nodes that it is tied to, and weights below zero leave these half of
-/// what makes a cut at least. Cuts without such a cell find none.
+/// ones to that with most soil. A support of a cut holds all nodes that it is tied to, and weights below zero leave these half of
+/// the least volume. Cuts without such a cell find none.
 pub(crate) fn extrapolations<const D: usize>(
     conditions: &StepConditions<D>,
     shares: &[NodeShare],
@@ -82,7 +82,7 @@ pub(crate) fn extrapolations<const D: usize>(
     ties
 }
 
-/// Whether a node lies on all walls with dashpots that another lies on: a wall holds its nodes as supports do, and what moved off
+/// Whether a node lies on all walls with dashpots that another lies on: a wall holds its nodes as supports do, and a node moved off
 /// it would leave it without dashpots.
 fn stays_on_walls<const D: usize>(
     conditions: &StepConditions<D>,
@@ -138,8 +138,8 @@ pub(crate) fn least_volume<const D: usize>(grid: &Grid<D>, cuts: &SmallCuts, nod
     cuts.below * volume_at(grid, cuts.of, node)
 }
 
-/// The mean volume of a cell around a node: the product of half the lengths to its neighbours, doubled at walls. Or what full
-/// soil leaves there: at walls it is not doubled \[length^D\].
+/// The mean volume of a cell around a node: the product of half the lengths to its neighbours, doubled at walls. Or that of full
+/// soil there: at walls it is not doubled \[length^D\].
 pub(crate) fn volume_at<const D: usize>(grid: &Grid<D>, of: CutVolume, node: usize) -> f64 {
     let place = grid.node_place(node);
     (0..D)

@@ -1,5 +1,5 @@
 //! The supports of every particle, frozen for one step, with small cuts tied,
-//! and what follows from them for the nodes.
+//! and their sums at the nodes.
 
 use igimp_shape::{Grid, Support};
 
@@ -52,7 +52,7 @@ impl<const D: usize> Stencils<D> {
         Self::build_under(particles, method, conditions, &[])
     }
 
-    /// The same where points load faces of the body, by factors that are not zero: soil of their cells balances what they
+    /// The same where points load faces of the body, by factors that are not zero: soil of their cells balances the load that they
     /// press (theory, eq. 8h).
     ///
     /// # Errors

@@ -9,7 +9,7 @@ use igimp_shape::Support;
 pub struct Carrier {
     /// The node.
     pub node: usize,
-    /// What its displacement counts; the weights of a tie sum to one \[-\].
+    /// The weight of its displacement; the weights of a tie sum to one \[-\].
     pub weight: f64,
 }
 

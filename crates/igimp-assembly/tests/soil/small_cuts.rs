@@ -341,7 +341,7 @@ fn dropped_nodes_resist_a_settlement_and_tied_ones_do_not() {
     }
 }
 
-/// What tying costs: a uniform gradient G of the unknowns' displacements is felt in full by
+/// The error of ties: a uniform gradient G of the unknowns' displacements is felt in full by
 /// particles that touch no tied node, and off by no more than |G| times the share of the domain
 /// beyond the face by the others, because Σ X_i ⊗ ∇S_i = I lacks what the tied nodes stand apart
 /// from their masters.
@@ -537,7 +537,7 @@ fn loads_beside_dropped_nodes_keep_resultant_and_moment() {
     }
 }
 
-/// The ghost stiffness between all nodes, one component, as what it adds to the internal force.
+/// The ghost stiffness between all nodes, one component, as its part of the internal force.
 fn ghost_stiffness(body: &Particles<2>, gamma: f64) -> (Grid<2>, DMatrix<f64>) {
     let grid = unit_grid([6, 6]);
     let conditions = free(&grid, &elastic());

@@ -358,7 +358,7 @@ fn balance<const D: usize>(surface: &Surface<D>, cells: usize, depth: f64) {
     }
 }
 
-/// Contact takes from the body what it gives to the soil, moments included.
+/// Contact takes from the body the force that it gives to the soil, moments included.
 #[test]
 fn action_is_reaction() {
     let half_width = 0.5 * (grid::<2>(6).bounds().1[0] - 2.5);
@@ -456,7 +456,7 @@ fn poses_turn_rigidly() {
     assert!((plane.angle[0] - FRAC_PI_4).abs() < 1e-15);
 }
 
-/// What a step with displacements `u` leaves of contact between soil at rest and a body that is held, by knot.
+/// State after a step with displacements `u` of contact between soil at rest and a body that is held, by knot.
 fn left_of(
     (grid, soil): (&Grid<2>, &Particles<2>),
     body: &RigidBody<2>,

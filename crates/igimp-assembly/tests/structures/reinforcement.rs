@@ -51,7 +51,7 @@ fn member<const D: usize>(from: [f64; D], to: [f64; D], count: usize) -> Reinfor
     }
 }
 
-/// A body on a grid, what holds of it, and a member through it.
+/// A body on a grid, its conditions, and a member through it.
 struct Scene<const D: usize> {
     grid: Grid<D>,
     conditions: StepConditions<D>,

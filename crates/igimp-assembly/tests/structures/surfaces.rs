@@ -426,7 +426,7 @@ fn many_triangles() {
     }
 }
 
-/// What is no closed surface is refused, with the place.
+/// A surface that is not closed is refused, with the place.
 #[test]
 fn open_and_twisted_surfaces_are_refused() {
     let corners = [

@@ -77,7 +77,7 @@ fn numbering<const D: usize>(axes: [Axis; D]) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// The cell of a point is what a search through all cells finds, and there is none outside.
+/// The cell of a point is the one that a search through all cells finds, and there is none outside.
 fn location<const D: usize>(
     axes: [Axis; D],
     share: [f64; D],

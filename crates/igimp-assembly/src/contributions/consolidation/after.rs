@@ -1,4 +1,4 @@
-//! What a step leaves in the pores: excess pressures, the water that moved, and the error of the step in time.
+//! State of the pores after a step: excess pressures, the water that moved, and the error of the step in time.
 
 use crate::contributions::consolidation::{Consolidation, flow};
 use crate::step::stencils::Stencils;
@@ -20,22 +20,22 @@ pub(super) struct Share {
 /// The water that a step moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WaterMoved {
-    /// What left at open faces and drains \[length^D\].
+    /// Outflow at open faces and drains \[length^D\].
     pub outflow: f64,
     /// Growth of the volume of soil that water flows through \[length^D\].
     pub swelling: f64,
-    /// What compression of the water made room for \[length^D\].
+    /// Water stored by its compression \[length^D\].
     pub stored: f64,
 }
 
 impl WaterMoved {
-    /// What does not close \[length^D\].
+    /// The error of the balance \[length^D\].
     pub fn missing(&self) -> f64 {
         self.outflow + self.swelling + self.stored
     }
 }
 
-/// What an accepted step leaves in the pores.
+/// State of the pores after an accepted step.
 #[derive(Clone, Debug, Default)]
 pub struct PoresAfter {
     /// Given pore pressure by particle, empty where there is none \[force/length²\].
@@ -94,7 +94,7 @@ impl<const D: usize> Consolidation<D> {
             .collect()
     }
 
-    /// The growth of the water of each pressure by what flows at nodal values `u` \[length^D\].
+    /// The growth of the water of each pressure by flow at nodal values `u` \[length^D\].
     fn grown(&self, u: &[[f64; D]]) -> Vec<f64> {
         let shares = self.shares.iter();
         let mut grown: Vec<f64> = shares.map(|share| self.of_rate * share.expected).collect();
@@ -152,7 +152,7 @@ impl<const D: usize> Consolidation<D> {
         Some(moved)
     }
 
-    /// What a step with nodal values `u` leaves in the pores, where `given` is the given pore pressure by particle.
+    /// State of the pores after a step with nodal values `u`, where `given` is the given pore pressure by particle.
     pub(crate) fn accepted(
         &self,
         stencils: &Stencils<D>,

@@ -35,7 +35,7 @@ pub(crate) struct Opening {
     pub(crate) conductance: f64,
 }
 
-/// What soil is in a cell.
+/// The soil in a cell.
 #[derive(Clone, Copy, Debug)]
 struct CellOfSoil<const D: usize> {
     volume: f64,
@@ -234,7 +234,7 @@ fn face<const D: usize>(
 }
 
 /// The share of a domain that drains take, at most 1 \[-\]. A side of a drain takes a domain along with it that lies in it by half, or
-/// that has half of the drain: what a drain merely touches would drain the nodes of its cell.
+/// that has half of the drain: soil that a drain merely touches would drain its cell's nodes.
 fn drained_share<const D: usize>(
     flow: &Consolidating<D>,
     x: &[f64; D],

@@ -1,4 +1,4 @@
-//! What does not change during a step: the particles that water flows through, their pressures, and the openings where it leaves.
+//! Constants of a step: the particles that water flows through, their pressures, and the openings where it leaves.
 
 use igimp_shape::{Grid, Support, cell_parts};
 use rayon::prelude::*;
@@ -37,7 +37,7 @@ struct Gathering<'a, const D: usize> {
     numbers: Vec<u32>,
 }
 
-/// A particle that water flows through, and what its soil is.
+/// A particle that water flows through, and its soil.
 struct Gathered<const D: usize> {
     seeping: Seeping<D>,
     /// Oedometric modulus \[force/length²\].
@@ -191,7 +191,7 @@ impl<const D: usize> Gathering<'_, D> {
         })
     }
 
-    /// Lists the pressures of a particle. What falls to a node that was dropped falls to the one with the largest value: no water is
+    /// Lists the pressures of a particle. The share of a dropped node falls to the one with the largest value: no water is
     /// lost with it.
     fn pressures(
         &self,

@@ -1,4 +1,4 @@
-//! Rigid bodies in motion: how their centres of mass go, and what that takes of the nodes that stand for bodies (theory, eqs. 67 to 67c).
+//! Rigid bodies in motion: their centres of mass, and forces at the nodes that stand for bodies (theory, eqs. 67 to 67c).
 
 use std::borrow::Cow;
 
@@ -36,7 +36,7 @@ impl<const D: usize> Inertia<D> {
         first..first + self.is_given.len()
     }
 
-    /// Sets the motion of what is given of rigid bodies over a step by nodal step displacements `u` \[length\]: it moves evenly, and a
+    /// Sets the given motion of rigid bodies over a step by nodal step displacements `u` \[length\]: it moves evenly, and a
     /// centre of mass beside it as the body turns.
     pub(super) fn move_bodies(&self, u: &[[f64; D]], motion: &mut Motion<D>) {
         for node in self.of_rigid() {
@@ -60,7 +60,7 @@ impl<const D: usize> Inertia<D> {
         }
     }
 
-    /// Sets accelerations of what is given of rigid bodies between start and end of a step, over the weight of forces at its end: the blow
+    /// Sets accelerations of given motion of rigid bodies between start and end of a step, over the weight of forces at its end: the blow
     /// that takes it to its speed is that of the step.
     pub(super) fn accelerate_given(
         &self,
@@ -96,7 +96,7 @@ impl<const D: usize> Inertia<D> {
         }
     }
 
-    /// The components that are given of what a node stands for.
+    /// The given components of the body that a node stands for.
     pub(super) fn given_of(&self, node: usize) -> impl Iterator<Item = usize> + use<D> {
         let is_given = self.is_given[node - self.mass.diagonal.len()];
         (0..D).filter(move |&axis| is_given[axis])
@@ -110,7 +110,7 @@ impl<const D: usize> Inertia<D> {
         [after, blow]
     }
 
-    /// The time integration of what is given.
+    /// The time integration of given motion.
     fn evenly(&self) -> TimeStep {
         TimeStep {
             scheme: TimeScheme::BackwardEuler,

@@ -1,5 +1,5 @@
-//! The members of a step: which nodes carry them, the forces that they make, and what an accepted step
-//! leaves of them.
+//! The members of a step: which nodes carry them, the forces that they make, and their state after
+//! an accepted step.
 
 use std::collections::BTreeMap;
 
@@ -97,7 +97,7 @@ impl<'a, const D: usize> Members<'a, D> {
         })
     }
 
-    /// Exchanges what acts on the members, in their order.
+    /// Exchanges the controls of the members, in their order.
     pub(crate) fn control(&mut self, controls: &[ReinforcementControl]) {
         let mut rows = self.rows.iter_mut();
         for (index, member) in self.all.iter().enumerate() {

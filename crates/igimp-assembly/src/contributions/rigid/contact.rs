@@ -1,4 +1,4 @@
-//! Contact between soil and rigid bodies over one step: what touches, and the forces that it makes
+//! Contact between soil and rigid bodies over one step: the knots that touch, and their forces
 //! (theory, eqs. 45 to 48).
 
 use std::collections::BTreeMap;
@@ -48,7 +48,7 @@ pub struct AcceptedContact<const D: usize> {
 }
 
 impl<'a, const D: usize> Contact<'a, D> {
-    /// Finds what touches at the start of a step.
+    /// Finds the knots that touch at the start of a step.
     pub(crate) fn find(
         bodies: &'a [RigidBody<D>],
         particles: &Particles<D>,
@@ -185,7 +185,7 @@ impl<'a, const D: usize> Contact<'a, D> {
             .fold(0.0, f64::max)
     }
 
-    /// By body, what contact changes in a step by nodal displacements `u` \[length\] that would go on by `free` \[length\] without it, and goes on
+    /// By body, the work of contact in a step by nodal displacements `u` \[length\] that would go on by `free` \[length\] without it, and goes on
     /// by `next` \[length\].
     pub(crate) fn changes(
         &self,
@@ -213,7 +213,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         changes
     }
 
-    /// What contact leaves behind when nodal step displacements `u` are accepted: the bodies at their
+    /// State of contact when nodal step displacements `u` are accepted: the bodies at their
     /// new places. On a given geometry they stay.
     pub(crate) fn accepted(
         &self,
@@ -307,7 +307,7 @@ fn turns<const D: usize>(body: &RigidBody<D>, method: &Method) -> bool {
     method.geometry == Geometry::Moving && body.surface.radius().is_none()
 }
 
-/// Sets the gap that a knot begins a step with. Soil that comes near is as far off as what of it stands in front (theory, eq. 45f), and
+/// Sets the gap that a knot begins a step with. Soil that comes near is as far off as its part in front (theory, eq. 45f), and
 /// touches if it overlaps; from then on the gap follows its motion, unless the body `rolls` and the knot is open. Where soil `touches` it does at once.
 fn begin<const D: usize>(before: &mut ContactNode, sums: &Sums<D>, touches: bool, rolls: bool) {
     let gap = sums.mean_gap();

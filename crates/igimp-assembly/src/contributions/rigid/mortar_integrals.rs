@@ -1,4 +1,4 @@
-//! What soil does around the knots of a rigid body: sums over the faces that particles turn to it (theory,
+//! Soil around the knots of a rigid body: sums over the faces that particles turn to it (theory,
 //! eq. 45).
 
 use std::collections::BTreeMap;
@@ -33,7 +33,7 @@ pub(crate) struct Gathering<'a, const D: usize> {
     knots: BTreeMap<usize, Sums<D>>,
 }
 
-/// A face with what the soil behind it is like.
+/// A face with properties of the soil behind it.
 struct Soil<'f, const D: usize> {
     face: &'f Face<D>,
     young: f64,

@@ -1,10 +1,10 @@
-//! What is summed at the knots of a rigid body (theory, eqs. 45 and 48a).
+//! Sums at the knots of a rigid body (theory, eqs. 45 and 48a).
 
 use std::collections::BTreeMap;
 
 use igimp_rigid::Arms;
 
-/// What is summed at a knot.
+/// Sums at a knot.
 #[derive(Default)]
 pub(crate) struct Sums<const D: usize> {
     pub(crate) area: f64,

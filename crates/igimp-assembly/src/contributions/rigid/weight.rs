@@ -1,11 +1,11 @@
-//! The moment of what acts at the centre of mass of a rigid body: its weight, and −m a of ground that moves (theory, eq. 67c).
+//! The moment of forces at the centre of mass of a rigid body: its weight, and −m a of ground that moves (theory, eq. 67c).
 
 use crate::conditions::StepConditions;
 use crate::contributions::nodal_forces::{AddBlock, NodalForces};
 use crate::method::{Geometry, Method};
 use igimp_rigid::{Arm, NODES_PER_BODY, RigidBody};
 
-/// Adds what acts at the centres of mass to the external force on the nodes of bodies \[force\]: their weight, by arms as the step begins.
+/// Adds forces at the centres of mass to the external force on the nodes of bodies \[force\]: their weight, by arms as the step begins.
 pub(crate) fn add_weights<const D: usize>(
     bodies: &[RigidBody<D>],
     conditions: &StepConditions<D>,

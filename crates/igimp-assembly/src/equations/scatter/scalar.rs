@@ -25,9 +25,9 @@ struct Coupling<const D: usize> {
 pub(crate) struct ScalarColumns<const D: usize> {
     /// By support.
     couplings: Vec<Coupling<D>>,
-    /// By support: what its pressure is to the particle; no share where it has none.
+    /// By support: its share of pressure; no share where it has none.
     pressures: Vec<PressureSupport<D>>,
-    /// What the scalar of a pair of supports does to that of the other, by column and row.
+    /// Couplings of the scalars of pairs of supports, by column and row.
     moves: Vec<f64>,
     /// The columns of one support, those of displacement first.
     columns: Vec<f64>,

@@ -1,4 +1,4 @@
-//! Motion that is prescribed: of nodes by supports, of rigid bodies by what drives them.
+//! Motion that is prescribed: of nodes by supports, of rigid bodies by their drives.
 
 use igimp_material::TangentKind;
 
@@ -99,7 +99,7 @@ impl<const D: usize> System<'_, D> {
         Ok(force)
     }
 
-    /// Adds what the prescribed step displacements do to the scalars of a particle, by unknown \[force\].
+    /// Adds the effect of prescribed step displacements on the scalars of a particle, by unknown \[force\].
     fn add_scalars_of_motion(
         &self,
         particle: usize,
