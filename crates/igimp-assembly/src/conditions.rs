@@ -41,7 +41,7 @@ pub struct StepConditions<const D: usize> {
     pub laws: Vec<SharedLaw>,
     /// How rigid bodies move, in their order; one that is not listed is held.
     pub motions: Vec<RigidMotion<D>>,
-    /// Controls of reinforcement, in its order; members not listed stretch with the ground, with its
+    /// Controls of reinforcement, in its order; members not listed stretch with the ground, with their
     /// whole bond.
     pub reinforcement: Vec<ReinforcementControl>,
     /// Water in the pores at the end of the step.

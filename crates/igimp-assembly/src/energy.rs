@@ -134,7 +134,7 @@ impl<const D: usize> System<'_, D> {
             - (energy.elastic_gain + energy.plastic + energy.water)
             - (contact + reinforcement + energy.damping + energy.boundaries);
         let of_grid = |v: &[[f64; D]]| 0.5 * product(&inertia.times(v), v);
-        // What the turn of bodies makes of their energy.
+        // Energy that bodies gain by their turn.
         let turned = |a: &[[f64; D]], b: &[[f64; D]]| 0.5 * inertia.turned_product([a, b], u);
         let of_bodies = |v: &[[f64; D]]| {
             let mut v = v.to_vec();

@@ -283,7 +283,7 @@ fn interval_parts(axis: &Axis, lower: f64, upper: f64) -> impl Iterator<Item = A
 /// Means over `lower..upper`, an interval on the axis longer than twice its resolution.
 #[inline]
 fn push_interval(axis: &Axis, lower: f64, upper: f64, out: &mut Vec<NodeWeight>) {
-    // Searching a round-off inside the interval leaves out cells that are only touched. What was
+    // Searching a round-off inside the interval leaves out cells that are only touched. The part
     // beyond their faces is cut off, so the fractions below still add up to one.
     let first = axis.nearest_cell(lower + axis.resolution());
     let last = axis.nearest_cell(upper - axis.resolution());

@@ -36,7 +36,7 @@ pub(crate) struct NonlocalStrain<const D: usize> {
     modulus: f64,
 }
 
-/// Rates of plastic and nonlocal strain at a particle, in spatial axes.
+/// Plastic strain and its rates at a particle, in spatial axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpatialRates<const D: usize> {
     /// Plastic strain of the step Δκ, and its derivative by nonlocal strain \[-\].

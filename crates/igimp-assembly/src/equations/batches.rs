@@ -21,7 +21,7 @@ impl<const D: usize> System<'_, D> {
             .map(|particle| {
                 let law = &laws[particles.law[particle]];
                 let is_asked = law.batches().is_some() && particles.ratios[particle].are_one();
-                // What is wrong with the step is said in the pass.
+                // Faults of the step are found in the pass.
                 let strained = is_asked.then(|| {
                     let (supports, hoops) = self.stencils.with_hoops(particle);
                     self.strain_particle((particle, supports, hoops), u).ok()

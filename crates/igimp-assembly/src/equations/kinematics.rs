@@ -80,7 +80,7 @@ pub(crate) struct Linearisation<const D: usize> {
     pub(crate) push_bar: [[f64; D]; D],
     /// Stress and tangent in spatial axes, those of the water in the pores included.
     pub(crate) lifted: Lifted<D>,
-    /// Rates of its plastic and its nonlocal strain, where strength sees that.
+    /// Its plastic strain and the rates of that, where strength sees that.
     pub(crate) nonlocal: Option<SpatialRates<D>>,
 }
 

@@ -24,17 +24,17 @@ const SLIVER: f64 = 0.02;
 
 /// Share β of its own distortion that a particle keeps where plastic flow is associated, on a given
 /// geometry \[-\].
-const OWN_GIVEN: f64 = 0.02;
+const SHARE_GIVEN: f64 = 0.02;
 
 /// The same on a moving one: strain that the mean does not see is held in every step \[-\].
-const OWN_MOVING: f64 = 0.1;
+const SHARE_MOVING: f64 = 0.1;
 
 /// The same where plastic flow keeps volume although the law has friction, on both \[-\]: with less Newton's method loses its way
 /// where equilibrium is not unique, with more factors of safety rise (docs/src/comparisons.md: slopes with ψ = 0 at 0.3 and 1).
-const OWN_ISOCHORIC: f64 = 0.3;
+const SHARE_ISOCHORIC: f64 = 0.3;
 
 /// The least share in cells whose face is loaded, on both \[-\]: a load that ends within a cell pushes modes that the mean does not see.
-const OWN_LOADED: f64 = 0.3;
+const SHARE_LOADED: f64 = 0.3;
 
 /// The soil of every cell, and the parts of every particle.
 pub(crate) struct CellSoil<const D: usize> {
@@ -214,7 +214,7 @@ impl<const D: usize> CellSoil<D> {
             let strains = (D * (D + 1) / 2) as u8 + u8::from(!self.hoop_at.is_empty());
             let least = |(is_loose, is_loaded)| match (is_loose, is_loaded) {
                 (true, _) => 1.0,
-                (false, true) => OWN_LOADED,
+                (false, true) => SHARE_LOADED,
                 (false, false) => 0.0,
             };
             let is_loose = loose_cells(grid, &holds_soil, free, strains);
@@ -482,11 +482,11 @@ fn share_of_law(law: &dyn ConstitutiveModel, geometry: Geometry) -> f64 {
         return 1.0;
     }
     let associated = match geometry {
-        Geometry::Given => OWN_GIVEN,
-        Geometry::Moving => OWN_MOVING,
+        Geometry::Given => SHARE_GIVEN,
+        Geometry::Moving => SHARE_MOVING,
     };
     let dilates = law.dilatancy().sqrt();
-    ((1.0 - dilates) / OWN_ISOCHORIC + dilates / associated).recip()
+    ((1.0 - dilates) / SHARE_ISOCHORIC + dilates / associated).recip()
 }
 
 #[cfg(test)]

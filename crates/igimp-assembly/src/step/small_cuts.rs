@@ -16,8 +16,8 @@ use crate::step::ties::{Carrier, Ties};
 /// The share that extrapolation leaves to a node that it rests on, of the volume below which a node is a small cut \[-\].
 const KEPT: f64 = 0.5;
 
-/// Which nodes are small cuts, their volume being less than a fraction of their cells' or of that of full soil there. Touched, not of positive volume: a point on a
-/// face sees the cell beyond by its gradient only.
+/// Which nodes are small cuts: their volume is less than a fraction of their cells' or of that of full soil there.
+/// Touched, not of positive volume: a point on a face sees the cell beyond by its gradient only.
 pub(crate) fn small_cuts<const D: usize>(
     grid: &Grid<D>,
     shares: &[NodeShare],
@@ -32,7 +32,7 @@ pub(crate) fn small_cuts<const D: usize>(
 }
 
 /// Ties small cuts to the nearest cell whose nodes all carry enough soil, by its linear functions beyond its faces: of equally near
-/// ones to that with most soil. A support of a cut holds all nodes that it is tied to, and weights below zero leave these half of
+/// ones to that with most soil. A constraint of a cut holds all nodes that it is tied to, and weights below zero leave these half of
 /// the least volume. Cuts without such a cell find none.
 pub(crate) fn extrapolations<const D: usize>(
     conditions: &StepConditions<D>,

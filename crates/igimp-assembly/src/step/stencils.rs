@@ -52,8 +52,8 @@ impl<const D: usize> Stencils<D> {
         Self::build_under(particles, method, conditions, &[])
     }
 
-    /// The same where points load faces of the body, by factors that are not zero: soil of their cells balances the load that they
-    /// press (theory, eq. 8h).
+    /// The same where points load faces of the body, by factors that are not zero: soil of their cells balances their
+    /// load (theory, eq. 8h).
     ///
     /// # Errors
     /// As [`Self::build`].

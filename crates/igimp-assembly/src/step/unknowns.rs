@@ -160,7 +160,7 @@ impl<const D: usize> Unknowns<D> {
         (rank != NONE).then(|| (self.first[node] + rank) as usize)
     }
 
-    /// The node and the axis of an unknown, if there is that unknown; of a scalar the node that stands for it.
+    /// The node and the axis of an unknown, if it exists; of a scalar the node that stands for it.
     pub fn place(&self, unknown: usize) -> Option<(usize, usize)> {
         let among = (self.scalars).binary_search_by_key(&unknown, |&(scalar, _)| scalar as usize);
         if let Ok(place) = among {

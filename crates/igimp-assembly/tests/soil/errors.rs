@@ -1,4 +1,4 @@
-//! GOAL: what makes no sense is refused with a message that names the field or the particle.
+//! GOAL: input without sense is refused with a message that names the field or the particle.
 
 use crate::common::{Random, conditions, grid, laws, particles};
 use igimp_assembly::{
@@ -266,7 +266,7 @@ fn an_edge_load_keeps_resultant_and_moment() {
     assert!((moment - lever).abs() < 1e-10);
 }
 
-/// GOAL: a determinant is told with four digits. ORACLE: by hand.
+/// GOAL: a determinant is printed with four digits. ORACLE: by hand.
 #[test]
 fn determinants_have_four_digits() {
     let error = AssemblyError::Inverted {

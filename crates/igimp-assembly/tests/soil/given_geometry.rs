@@ -1,5 +1,5 @@
 //! GOAL: on a given geometry strain adds up without turning or moving anything, and a sliver of soil
-//! beyond a face resists nothing; what is shared where strain is shared.
+//! beyond a face resists nothing; shared gradients are means.
 //! BODY: a block of three by three cells, moved a little over a line of the grid, so that its particles
 //! reach into the cells beyond.
 //! ORACLE: strain that adds up linearly, identities of a consistent gradient, and modes that a mean over

@@ -1,4 +1,4 @@
-//! GOAL: what holds whatever the body looks like: balance of force and moment, conservation of
+//! GOAL: laws that hold for any body: balance of force and moment, conservation of
 //! volume and mass, and the bookkeeping of supports.
 //! BODY: random graded grids in two and three dimensions with up to a dozen particles anywhere on
 //! them, domains cut by walls and overlapping, laws mixed, in their second step.

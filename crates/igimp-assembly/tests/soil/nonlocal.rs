@@ -1,5 +1,5 @@
-//! GOAL: equations with nonlocal strain among the unknowns: their tangent, what prescribed motion does to it, its bits on threads, and
-//! what they are refused with.
+//! GOAL: equations with nonlocal strain among the unknowns: their tangent, the effect of prescribed motion, its bits on threads, and
+//! their refusals.
 //! ORACLE: central differences of the force; one thread; typed errors.
 
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! GOAL: what a particle sees of the grid is exact, for domains of any size and place, walls and
+//! GOAL: the supports of a particle are exact, for domains of any size and place, walls and
 //! tied small cuts included, with both bases, with and without B-bar.
 //! BODY: random graded grids in two and three dimensions, particles anywhere on them: in corners,
 //! on nodes and walls, with domains down to nothing and across many cells.
@@ -200,7 +200,7 @@ fn shares_add_up<const D: usize>(sample: &Sample<D>) -> Result<(), TestCaseError
     Ok(())
 }
 
-/// Ties only join nodes: what a particle gives to a node is what it gave to those that the node now
+/// Ties only join nodes: the share of a node is the sum of those of the nodes that it now
 /// stands for, so that supports never grow in number.
 fn ties_only_join<const D: usize>(sample: &Sample<D>) -> Result<(), TestCaseError> {
     let (particles, plain) = stencils(sample, false);

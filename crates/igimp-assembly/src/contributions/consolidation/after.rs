@@ -1,4 +1,4 @@
-//! State of the pores after a step: excess pressures, the water that moved, and the error of the step in time.
+//! Results of a step in the pores: excess pressures, the water that moved, and the error of the step in time.
 
 use crate::contributions::consolidation::{Consolidation, flow};
 use crate::step::stencils::Stencils;

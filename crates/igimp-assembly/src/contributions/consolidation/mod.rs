@@ -1,7 +1,7 @@
 //! Consolidation: water that flows out of soil while a step takes time, with excess pore pressure among the unknowns (theory,
 //! eqs. 97 to 104).
 //!
-//! Soil sees the mean of the pressure over cells, as its dilatation is that of cells (B-bar). The rest is
+//! Soil sees the mean of the pressure over cells, as its dilatation is that of cells (B-bar). Pressure that a cell mean does not see is
 //! held by the projection of Dohrmann and Bochev (2004), in the form of White and Borja (2008): with 1/(2G) there is nothing
 //! to choose. Terms of a particle go into the matrix with its tangent; those of an opening are nodal forces like others.
 
@@ -24,7 +24,7 @@ use igimp_shape::matrices::{determinant, identity, inverse, transpose_apply};
 /// Marks a node of the grid without a pressure, and a particle that water does not flow through.
 const NONE: u32 = u32::MAX;
 
-/// Support of a particle by a pressure.
+/// Values of a pressure at a particle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PressureSupport<const D: usize> {
     /// Number of the pressure.

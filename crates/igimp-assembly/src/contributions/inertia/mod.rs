@@ -288,7 +288,7 @@ impl<const D: usize> Inertia<D> {
         1.0 - self.step.scheme.weights().of_force
     }
 
-    /// The force of acceleration by node, and the share of the forces at the start in equilibrium between: over the weight
+    /// The force of acceleration by node, with the share of forces at the start in equilibrium between start and end: over the weight
     /// of those at the end \[force\].
     fn force(&self, motion: &Motion<D>, u: &[[f64; D]]) -> Vec<[f64; D]> {
         let Weights {

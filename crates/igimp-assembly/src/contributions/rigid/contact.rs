@@ -185,8 +185,8 @@ impl<'a, const D: usize> Contact<'a, D> {
             .fold(0.0, f64::max)
     }
 
-    /// By body, the work of contact in a step by nodal displacements `u` \[length\] that would go on by `free` \[length\] without it, and goes on
-    /// by `next` \[length\].
+    /// By body, changes of contact in a step by nodal displacements `u` \[length\]. Bodies would go on by `free` \[length\] without it,
+    /// and go on by `next` \[length\].
     pub(crate) fn changes(
         &self,
         u: &[[f64; D]],
@@ -276,7 +276,7 @@ impl<'a, const D: usize> Contact<'a, D> {
             let (x, step) = (&particles.x[particle], stencils.displacement(particle, u));
             std::array::from_fn(|axis| x[axis] + step[axis])
         };
-        // What creeps against a drag goes a share of a cell in a step, and is pressed off what it meets in the next.
+        // Soil that creeps against a drag goes a share of a cell in a step, and is pressed off bodies in the next.
         let acts = |body: usize, at: &[f64; D]| {
             !takes_time && (method.flows() || self.acts_near(body, at))
         };

@@ -25,7 +25,7 @@ struct Coupling<const D: usize> {
 pub(crate) struct ScalarColumns<const D: usize> {
     /// By support.
     couplings: Vec<Coupling<D>>,
-    /// By support: its share of pressure; no share where it has none.
+    /// By support: values of its pressure; no share where it has none.
     pressures: Vec<PressureSupport<D>>,
     /// Couplings of the scalars of pairs of supports, by column and row.
     moves: Vec<f64>,

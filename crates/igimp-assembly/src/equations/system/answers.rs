@@ -17,7 +17,7 @@ impl<const D: usize> System<'_, D> {
     /// The reaction f_int − f_ext by node, zero at unknowns \[force\]; where motion is in equilibrium between start and end of a step,
     /// the one there (theory, eq. 61).
     pub fn reactions(&self, trial: &Trial<D>) -> Vec<[f64; D]> {
-        // Forces of such a step are over the weight of those at its end.
+        // Forces of the step are over the weight of those at its end.
         let weight = (self.inertia.as_ref()).map_or(1.0, Inertia::weight_of_end);
         let mut reactions = vec![[0.0; D]; trial.f_int.len()];
         for (node, reaction) in reactions.iter_mut().enumerate() {
@@ -150,7 +150,7 @@ impl<const D: usize> System<'_, D> {
         self.beside.contact.closing(u)
     }
 
-    /// By rigid body, the work of contact in a step by nodal displacements `u` \[length\]. Motion that is given counts as none; none in statics.
+    /// By rigid body, changes of contact in a step by nodal displacements `u` \[length\]. Given motion counts as none; none in statics.
     pub fn changes_of_contact(&self, u: &[[f64; D]]) -> Vec<ContactChange> {
         let (Some(inertia), Some(free)) = (&self.inertia, self.predicted_motion()) else {
             return Vec::new();

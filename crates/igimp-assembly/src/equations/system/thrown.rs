@@ -19,7 +19,7 @@ impl Reach {
 }
 
 impl<const D: usize> System<'_, D> {
-    /// Refuses nodal step displacements `u` that carry a body beyond a reach, in statics on a moving geometry, by the free part of its motion.
+    /// Refuses nodal step displacements `u` that carry a body beyond a reach, in statics on a moving geometry, by its free motion.
     /// Round bodies turn as they like.
     ///
     /// # Errors
