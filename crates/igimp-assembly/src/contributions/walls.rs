@@ -155,7 +155,7 @@ impl<const D: usize> WallForces<D> {
     }
 
     /// The forces at the start of a step that begins with these velocities, without those of springs and ties as the end of the
-    /// step has them before anything moves if `what_differs`, added to `f` \[force\].
+    /// step has them before anything moves if `is_difference`, added to `f` \[force\].
     pub(crate) fn add_at_start(
         &self,
         velocity: &[[f64; D]],
