@@ -1,4 +1,4 @@
-//! What holds during one step, besides the particles.
+//! Conditions of one step, besides the particles.
 
 pub(crate) mod constraints;
 pub(crate) mod ground_motion;
@@ -27,7 +27,7 @@ use time_step::TimeStep;
 use unbalanced::UnbalancedForces;
 use walls::Walls;
 
-/// What holds during one step, besides the particles.
+/// Conditions of one step, besides the particles.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct StepConditions<const D: usize> {
@@ -41,20 +41,20 @@ pub struct StepConditions<const D: usize> {
     pub laws: Vec<SharedLaw>,
     /// How rigid bodies move, in their order; one that is not listed is held.
     pub motions: Vec<RigidMotion<D>>,
-    /// What acts on reinforcement, in its order; what is not listed stretches with the ground, with its
+    /// Controls of reinforcement, in its order; members not listed stretch with the ground, with their
     /// whole bond.
     pub reinforcement: Vec<ReinforcementControl>,
     /// Water in the pores at the end of the step.
     pub water: Water<D>,
     /// How water flows out of soil, in a step that takes time.
     pub flow: Option<Consolidating<D>>,
-    /// What still holds the body where a change has put it out of balance.
+    /// Forces that hold the body where a change has put it out of balance.
     pub held: Option<UnbalancedForces<D>>,
     /// The time that the step takes; none in statics.
     pub time: Option<TimeStep>,
     /// Walls behind which the ground goes on, in a step that takes time.
     pub walls: Option<Walls<D>>,
-    /// Motion of the ground in whose frame motion is told, in a step that takes time.
+    /// Motion of the ground in whose frame motion is given, in a step that takes time.
     pub ground: Option<GroundMotion<D>>,
     /// Viscous damping of soil, in a step that takes time.
     pub damping: Option<Rayleigh>,
@@ -111,7 +111,7 @@ impl<const D: usize> StepConditions<D> {
         self
     }
 
-    /// The same with what acts on reinforcement, in its order.
+    /// The same with controls of reinforcement, in its order.
     ///
     /// # Errors
     /// [`AssemblyError::NonFinite`] for a jack or a reduction that is none.
@@ -212,12 +212,12 @@ impl<const D: usize> StepConditions<D> {
             return Err(AssemblyError::NonFinite { what, index });
         }
         let sound = |control: &ReinforcementControl| control.is_sound();
-        if let Some(index) = self.reinforcement.iter().position(|own| !sound(own)) {
+        if let Some(index) = (self.reinforcement.iter()).position(|control| !sound(control)) {
             let what = "jack or reduction of a reinforcement";
             return Err(AssemblyError::NonFinite { what, index });
         }
         if let Some(held) = &self.held {
-            let bad = |force: &[f64; D]| !force.iter().all(|own| (own * held.share).is_finite());
+            let bad = |force: &[f64; D]| !force.iter().all(|f| (f * held.share).is_finite());
             let nodes = self.grid.node_count();
             let other = (held.forces.len() != nodes).then_some(nodes);
             if let Some(index) = other.or_else(|| held.forces.iter().position(bad)) {
@@ -232,15 +232,15 @@ impl<const D: usize> StepConditions<D> {
         let of_motion = [
             (
                 "wall",
-                self.walls.as_ref().is_some_and(|own| !own.are_sound()),
+                self.walls.as_ref().is_some_and(|walls| !walls.are_sound()),
             ),
             (
                 "acceleration of the ground",
-                self.ground.is_some_and(|own| !own.is_finite()),
+                self.ground.is_some_and(|ground| !ground.is_finite()),
             ),
             (
                 "damping of soil",
-                self.damping.is_some_and(|own| !own.is_sound()),
+                self.damping.is_some_and(|damping| !damping.is_sound()),
             ),
         ];
         if let Some((what, _)) = of_motion.into_iter().find(|(_, is_wrong)| *is_wrong) {

@@ -14,7 +14,7 @@ use crate::error::AssemblyError;
 use crate::method::Kinematics;
 use igimp_shape::matrices::determinant;
 
-/// The energy of a step \[force·length\]. Work of loads and of supports is what comes in; the other terms are where it goes.
+/// The energy of a step \[force·length\]. Work of loads and of supports comes in; the other terms are where it goes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepEnergy {
     /// Kinetic energy of particles and rigid bodies at the end of the step.
@@ -27,7 +27,7 @@ pub struct StepEnergy {
     pub elastic_gain: f64,
     /// Plastic work, of the stress at the end of the step.
     pub plastic: f64,
-    /// Work on contact with rigid bodies: friction, and what the penalty stores.
+    /// Work on contact with rigid bodies: friction, and energy of the penalty.
     pub contact: f64,
     /// Work on reinforcement.
     pub reinforcement: f64,
@@ -52,7 +52,7 @@ pub struct StepEnergy {
 }
 
 impl StepEnergy {
-    /// What comes in less all that it goes into: round-off.
+    /// Input less all that it goes into: round-off.
     pub fn imbalance(&self) -> f64 {
         let gone = self.kinetic_gain
             + self.elastic_gain
@@ -84,7 +84,7 @@ impl<const D: usize> System<'_, D> {
     /// The energy of a step by nodal displacements `u` \[length\] that leads to `trial`; none in statics.
     ///
     /// # Errors
-    /// [`AssemblyError::Material`] of a particle whose elastic strain cannot be told.
+    /// [`AssemblyError::Material`] of a particle whose elastic strain cannot be found.
     pub fn energy(
         &self,
         trial: &Trial<D>,
@@ -99,19 +99,19 @@ impl<const D: usize> System<'_, D> {
         // Of the work of a force, the weight of that at the end.
         let theta = inertia.step().scheme.weights().sum;
         let still = vec![[0.0; D]; u.len()];
-        let work_of = |own: &dyn NodalForces<D>, at: &[[f64; D]]| {
+        let work_of = |forces: &dyn NodalForces<D>, at: &[[f64; D]]| {
             let mut force = vec![[0.0; D]; at.len()];
-            own.add(at, &mut force, None);
+            forces.add(at, &mut force, None);
             product(&force, u)
         };
         let [ghost, drag, contact, reinforcement, .., turning] = (self.beside.forces())
-            .map(|own| theta * work_of(own, u) + (1.0 - theta) * work_of(own, &still));
+            .map(|forces| theta * work_of(forces, u) + (1.0 - theta) * work_of(forces, &still));
         let ground = self.work_of_ground(inertia, u);
         let mut energy = StepEnergy {
-            kinetic: sum(|own| own.kinetic),
-            elastic: sum(|own| own.elastic),
-            plastic: sum(|own| own.plastic),
-            water: sum(|own| own.water),
+            kinetic: sum(|part| part.kinetic),
+            elastic: sum(|part| part.elastic),
+            plastic: sum(|part| part.plastic),
+            water: sum(|part| part.water),
             contact,
             reinforcement,
             damping: ghost + drag + ground.damping,
@@ -121,7 +121,7 @@ impl<const D: usize> System<'_, D> {
             unbalanced: theta * self.work_out_of_balance(trial, u),
             ..StepEnergy::default()
         };
-        energy.elastic_gain = energy.elastic - sum(|own| own.elastic_before);
+        energy.elastic_gain = energy.elastic - sum(|part| part.elastic_before);
         // Of particles, and of the grid that takes their motion over for the step.
         let Motion { before, after, .. } = &motion;
         let gained = inertia.gained(&motion, u);
@@ -134,14 +134,14 @@ impl<const D: usize> System<'_, D> {
             - (energy.elastic_gain + energy.plastic + energy.water)
             - (contact + reinforcement + energy.damping + energy.boundaries);
         let of_grid = |v: &[[f64; D]]| 0.5 * product(&inertia.times(v), v);
-        // What the turn of bodies makes of their energy.
+        // Energy that bodies gain by their turn.
         let turned = |a: &[[f64; D]], b: &[[f64; D]]| 0.5 * inertia.turned_product([a, b], u);
         let of_bodies = |v: &[[f64; D]]| {
             let mut v = v.to_vec();
             v[..self.conditions().grid.node_count()].fill([0.0; D]);
             of_grid(&v)
         };
-        let kinetic_before = sum(|own| own.kinetic_before) + of_bodies(before);
+        let kinetic_before = sum(|part| part.kinetic_before) + of_bodies(before);
         energy.kinetic += of_bodies(after) + turned(after, after);
         energy.kinetic_gain = energy.kinetic - kinetic_before;
         energy.map = kinetic_before
@@ -190,7 +190,7 @@ impl<const D: usize> System<'_, D> {
 
     fn energy_of_particle(
         &self,
-        own: &ParticleTrial<D>,
+        end: &ParticleTrial<D>,
         particle: usize,
         u: &[[f64; D]],
         motion: &Motion<D>,
@@ -207,7 +207,7 @@ impl<const D: usize> System<'_, D> {
         let principal = std::array::from_fn::<f64, 3, _>(|k| {
             (0..3)
                 .map(|a| {
-                    own.frame[k][a] * (0..3).map(|b| own.tau[a][b] * own.frame[k][b]).sum::<f64>()
+                    end.frame[k][a] * (0..3).map(|b| end.tau[a][b] * end.frame[k][b]).sum::<f64>()
                 })
                 .sum()
         });
@@ -233,8 +233,8 @@ impl<const D: usize> System<'_, D> {
             kinetic_before: kinetic(&particles.velocity[particle]),
             kinetic: kinetic(&motion.of_particle(&particles.velocity[particle], supports)),
             elastic_before: 0.5 * volume * (before + stored(response.excess)),
-            elastic: 0.5 * volume * (dot(&own.eps_e) + stored(own.excess)),
-            plastic: volume * dot(&own.delta_eps_p),
+            elastic: 0.5 * volume * (dot(&end.eps_e) + stored(end.excess)),
+            plastic: volume * dot(&end.delta_eps_p),
             water: match response.given {
                 0.0 => 0.0,
                 given => volume * given * dilation(),

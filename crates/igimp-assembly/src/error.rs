@@ -1,4 +1,4 @@
-//! What can go wrong between particles and the global system, with the particle's name.
+//! Errors between particles and the global system, with the particle's name.
 
 use igimp_material::MaterialError;
 use igimp_shape::ShapeError;
@@ -19,7 +19,7 @@ pub enum AssemblyError {
         field: &'static str,
         /// The value given.
         value: f64,
-        /// What is accepted.
+        /// The values that are accepted.
         requirement: &'static str,
     },
     /// A particle names a law that is not in the list.
@@ -39,21 +39,21 @@ pub enum AssemblyError {
         particle: usize,
         /// Position of the particle's centre \[length\], axes beyond the dimension 0.
         position: [f64; 3],
-        /// What the basis said.
+        /// The error of the basis.
         #[source]
         source: ShapeError,
     },
     /// The grid of a step cannot be made.
     #[error("the grid of the step cannot be made")]
     Grid {
-        /// What the axis said.
+        /// The error of the axis.
         #[source]
         source: ShapeError,
     },
     /// The law of a step cannot be made.
     #[error("the law of the step cannot be made")]
     Law {
-        /// What the law said.
+        /// The error of the law.
         #[source]
         source: MaterialError,
     },
@@ -64,7 +64,7 @@ pub enum AssemblyError {
         point: usize,
         /// Position \[length\], axes beyond the dimension 0.
         position: [f64; 3],
-        /// What the basis said.
+        /// The error of the basis.
         #[source]
         source: ShapeError,
     },
@@ -97,7 +97,7 @@ pub enum AssemblyError {
     Material {
         /// Number of the particle, from 0.
         particle: usize,
-        /// What the law said.
+        /// The error of the law.
         #[source]
         source: MaterialError,
     },
@@ -112,7 +112,7 @@ pub enum AssemblyError {
         /// det ΔF, or det of its cell-averaged part.
         determinant: f64,
     },
-    /// A trial displacement strains a particle beyond what numbers hold.
+    /// A trial displacement strains a particle beyond the range of numbers.
     #[error("particle {particle}: the elastic strain {strain:.3e} is beyond all bounds")]
     Overstrained {
         /// Number of the particle, from 0.
@@ -167,7 +167,7 @@ pub enum AssemblyError {
         "softening over a length goes with plane strain in statics, not with {with}: scale it by the width of its bands"
     )]
     NonlocalStrain {
-        /// What it does not go with.
+        /// The setting that it does not go with.
         with: &'static str,
     },
     /// The velocities that the grid takes over from the particles were not found.
@@ -175,7 +175,7 @@ pub enum AssemblyError {
         "the motion of the particles could not be given to the grid: a share of {left:.1e} of their momentum is left"
     )]
     MotionNotFound {
-        /// What is left of the momentum, over all of it \[-\].
+        /// The rest of the momentum, over all of it \[-\].
         left: f64,
     },
     /// A number that must be finite is not.

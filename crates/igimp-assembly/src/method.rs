@@ -6,7 +6,7 @@ use std::sync::Arc;
 use igimp_material::AxesLookedAt;
 use igimp_shape::{Basis, Gimp, Linear};
 
-/// What is done against locking: which gradients the strain of a particle is made of (theory,
+/// Remedies against locking: which gradients the strain of a particle is made of (theory,
 /// "locking").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Locking {
@@ -31,7 +31,7 @@ pub enum Geometry {
     Given,
 }
 
-/// What a body in the plane is a section of; in space it says nothing.
+/// The body that a plane body is a section of; in space it says nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Section {
     /// A body without end, of which a slice of unit thickness is computed (the default).
@@ -90,9 +90,9 @@ pub enum DomainUpdate {
     Moments,
 }
 
-/// What is done about nodes that a body only touches at a corner (theory, "small cuts").
+/// Treatment of nodes that a body only touches at a corner (theory, "small cuts").
 ///
-/// A node is a small cut when Σ S V is below a fraction of its cell's volume, or of what full soil leaves there. Left alone, such
+/// A node is a small cut when Σ S V is below a fraction of its cell's volume, or of that of full soil there. Left alone, these
 /// nodes make the system singular to working precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmallCuts {
@@ -101,7 +101,7 @@ pub struct SmallCuts {
     pub below: f64,
     /// The volume that it is a fraction of.
     pub of: CutVolume,
-    /// What happens to a small cut.
+    /// The remedy for a small cut.
     pub remedy: Remedy,
     /// Ghost penalty γ on faces of boundary cells \[-\]; 0 switches it off.
     pub ghost_penalty: f64,
@@ -113,11 +113,11 @@ pub enum CutVolume {
     /// The mean of the cells around it (the default): on a side of the grid full soil leaves half of that, at a corner in space an
     /// eighth.
     Cell,
-    /// What full soil leaves there. Large fractions ask for it, as those of motion are.
+    /// The volume of full soil there. Large fractions ask for it, as those of motion are.
     FullSoil,
 }
 
-/// What happens to a node that is a small cut.
+/// The remedy for a node that is a small cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Remedy {
     /// It moves with the nearest node that carries enough soil: a rigid translation causes no
@@ -148,9 +148,9 @@ pub struct Method {
     /// Grid basis as a particle sees it: [`Linear`] is the plain material point method (iMPM),
     /// [`Gimp`] the generalised interpolation one (iGIMP).
     pub basis: Arc<dyn Basis>,
-    /// What is done against locking.
+    /// Remedy against locking.
     pub locking: Locking,
-    /// What a body in the plane is a section of.
+    /// The body that a plane body is a section of.
     pub section: Section,
     /// The geometry that steps are computed on.
     pub geometry: Geometry,

@@ -10,7 +10,7 @@ use crate::equations::system::System;
 use crate::equations::trial::Trial;
 use crate::error::AssemblyError;
 
-/// What elastic work that particles only exchange counts as, over that which is left in the sum \[-\]. A choice: where bodies move as
+/// Weight of elastic work that particles only exchange, over that which is left in the sum \[-\]. A choice: where bodies move as
 /// mechanisms they exchange up to a seventh of the gross work, and where few particles begin to yield all of it and more.
 const EXCHANGE: f64 = 0.05;
 
@@ -38,12 +38,12 @@ impl StepWork {
     }
 }
 
-/// What a field of displacements would dissipate if soil flowed with it by the normality rule.
+/// Dissipation of a field of displacements if soil flowed with it by the normality rule.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlasticFlow {
     /// Work of the cohesive strength of all soil that has a limit \[force·length\].
     pub work: f64,
-    /// Work of the mean stress on the volume by which the field misses that of such flow, by magnitude
+    /// Work of the mean stress on the volume by which the field misses that of this flow, by magnitude
     /// \[force·length\].
     pub missed: f64,
 }
@@ -52,7 +52,7 @@ impl<const D: usize> System<'_, D> {
     /// The work of a step that leads to `trial` by nodal displacements `u` \[length\], in small strain.
     ///
     /// # Errors
-    /// [`AssemblyError::Material`] of a particle whose elastic strain cannot be told.
+    /// [`AssemblyError::Material`] of a particle whose elastic strain cannot be found.
     pub fn work(&self, trial: &Trial<D>, u: &[[f64; D]]) -> Result<StepWork, AssemblyError> {
         let order = self.stencils.order();
         let parts: Vec<Result<[f64; 2], AssemblyError>> = (0..order.len())
@@ -83,11 +83,11 @@ impl<const D: usize> System<'_, D> {
         Ok(work)
     }
 
-    /// What nodal displacements `u` \[length\] would dissipate as plastic flow by the normality rule, at the strength
+    /// Dissipation of nodal displacements `u` \[length\] as plastic flow by the normality rule, at the strength
     /// that the laws have now; mean stresses are those of `trial`.
     ///
     /// # Errors
-    /// [`AssemblyError::Material`] of a particle whose law cannot be told.
+    /// [`AssemblyError::Material`] of a particle whose law cannot be found.
     pub fn plastic_flow(
         &self,
         trial: &Trial<D>,
@@ -125,9 +125,9 @@ impl<const D: usize> System<'_, D> {
         let asked = (self.particles).ask_law(particle, laws, |law| law.dissipation(&rate))?;
         let volume = self.reference_volume(particle);
         let trace = |tensor: &Tensor| tensor[0][0] + tensor[1][1] + tensor[2][2];
-        Ok(asked.map_or_else(PlasticFlow::default, |own| PlasticFlow {
-            work: volume * own.power,
-            missed: volume * (trace(tau) / 3.0 * (trace(&strain) - own.dilation)).abs(),
+        Ok(asked.map_or_else(PlasticFlow::default, |flow| PlasticFlow {
+            work: volume * flow.power,
+            missed: volume * (trace(tau) / 3.0 * (trace(&strain) - flow.dilation)).abs(),
         }))
     }
 
@@ -147,19 +147,19 @@ impl<const D: usize> System<'_, D> {
         particle: usize,
         u: &[[f64; D]],
     ) -> Result<[f64; 2], MaterialError> {
-        let own = &trial.particles[slot];
+        let end = &trial.particles[slot];
         let strain = self.strain_of_step(particle, u);
         let before = logarithmic_strain(&self.particles.b_e[particle])?;
         let mut elastic = [[0.0; 3]; 3];
         for a in 0..3 {
             for b in 0..3 {
                 let after: f64 = (0..3)
-                    .map(|k| own.eps_e[k] * own.frame[k][a] * own.frame[k][b])
+                    .map(|k| end.eps_e[k] * end.frame[k][a] * end.frame[k][b])
                     .sum();
                 elastic[a][b] = after - before[a][b];
             }
         }
         let volume = self.reference_volume(particle);
-        Ok([&strain, &elastic].map(|strain| volume * contracted(&own.tau, strain)))
+        Ok([&strain, &elastic].map(|strain| volume * contracted(&end.tau, strain)))
     }
 }

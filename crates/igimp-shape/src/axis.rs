@@ -3,7 +3,7 @@
 use crate::ShapeError;
 
 /// Round-off of a coordinate relative to the largest one on the axis: a few units in the last
-/// place, what a sum such as `x + half_length` loses.
+/// place, the loss of a sum like `x + half_length`.
 const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 
 /// Strictly increasing node coordinates of one direction \[length\].

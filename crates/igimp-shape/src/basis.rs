@@ -5,7 +5,7 @@
 
 use crate::{Axis, AxisPart, ShapeError};
 
-/// What one node of an axis means to one particle, in one direction.
+/// Weights of one node of an axis for one particle, in one direction.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct NodeWeight {
     /// Number of the node along the axis.
@@ -51,8 +51,8 @@ pub trait Basis: Send + Sync + std::fmt::Debug {
         out: &mut Vec<NodeWeight>,
     ) -> Result<(), ShapeError>;
 
-    /// Appends the parts of the particle's domain in the cells that it overlaps, ascending: what
-    /// the weights are made of.
+    /// Appends the parts of the particle's domain in the cells that it overlaps, ascending: the
+    /// parts that weights are made of.
     ///
     /// # Errors
     /// As [`axis_weights`](Self::axis_weights).
@@ -90,7 +90,7 @@ pub struct Linear;
 
 /// GIMP basis: means over the particle's domain $`[x_p - l_p,\, x_p + l_p]`$.
 ///
-/// The domain is cut at the ends of the axis, which are walls, and means are taken over what
+/// The domain is cut at the ends of the axis, which are walls, and means are taken over the part that
 /// remains. Every cell $`c`$ of size $`h`$ that the domain overlaps by the fraction $`w`$ of its
 /// length, with the overlap's middle at local coordinate $`m \in [0, 1]`$, adds to its two nodes
 /// (theory, eq. 5)
@@ -283,7 +283,7 @@ fn interval_parts(axis: &Axis, lower: f64, upper: f64) -> impl Iterator<Item = A
 /// Means over `lower..upper`, an interval on the axis longer than twice its resolution.
 #[inline]
 fn push_interval(axis: &Axis, lower: f64, upper: f64, out: &mut Vec<NodeWeight>) {
-    // Searching a round-off inside the interval leaves out cells that are only touched. What was
+    // Searching a round-off inside the interval leaves out cells that are only touched. The part
     // beyond their faces is cut off, so the fractions below still add up to one.
     let first = axis.nearest_cell(lower + axis.resolution());
     let last = axis.nearest_cell(upper - axis.resolution());

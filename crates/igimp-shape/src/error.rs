@@ -1,4 +1,4 @@
-//! What can go wrong on the grid, as data.
+//! Errors on the grid, as data.
 
 /// Why an [`Axis`](crate::Axis) or a list of supports could not be made.
 ///
@@ -61,7 +61,7 @@ pub enum ShapeError {
 }
 
 impl ShapeError {
-    /// The same error, told about direction `direction` of a grid.
+    /// The same error, for direction `direction` of a grid.
     pub(crate) fn on_axis(mut self, direction: usize) -> Self {
         if let Self::OutsideGrid { axis, .. } | Self::InvalidHalfLength { axis, .. } = &mut self {
             *axis = direction;

@@ -91,9 +91,9 @@ impl<const D: usize> Grid<D> {
     /// The cells that a point lies in, or on whose sides it does: on a line those before and behind it.
     pub fn cells_around(&self, x: &[f64; D]) -> impl Iterator<Item = usize> {
         let sides: [[Option<usize>; 2]; D] = std::array::from_fn(|axis| {
-            let own = &self.axes[axis];
-            let at = own.cell_at(x[axis]);
-            let before = at.filter(|&cell| cell > 0 && x[axis] <= own.nodes()[cell]);
+            let along = &self.axes[axis];
+            let at = along.cell_at(x[axis]);
+            let before = at.filter(|&cell| cell > 0 && x[axis] <= along.nodes()[cell]);
             [at, before.map(|cell| cell - 1)]
         });
         (0..1_usize << D).filter_map(move |corner| {

@@ -12,7 +12,7 @@
 //! | weights of one direction: linear (iMPM) and GIMP | [`Basis`], [`Linear`], [`Gimp`], [`NodeWeight`] |
 //! | small dense matrices as plain arrays | [`matrices`] |
 //! | tensor product of weights | [`supports`], [`Support`], [`Scratch`] |
-//! | what can go wrong | [`ShapeError`] |
+//! | errors | [`ShapeError`] |
 //!
 //! Whatever is per direction lives on an [`Axis`]; everything else is a product over `D`
 //! directions, so plane strain (`D = 2`) and 3D are the same code.

@@ -1,4 +1,4 @@
-//! Cells whose mean strains do not hold their nodes: what is left without them is a mechanism (theory, eq. 8i).
+//! Cells whose mean strains do not hold their nodes: motion without those strains is a mechanism (theory, eq. 8i).
 
 use std::collections::VecDeque;
 
@@ -91,7 +91,7 @@ impl<'a, const D: usize> Matching<'a, D> {
         self.grid.node_index(node)
     }
 
-    /// Gives a node one strain, by the shortest chain of nodes that can do with another one; marks what was reached where there is
+    /// Gives a node one strain, by the shortest chain of nodes that can do with another one; marks the nodes reached where there is
     /// none.
     fn serve(&mut self, node: usize) -> bool {
         let at_hand = self.cells_at(node).find(|(cell, _)| self.left[*cell] > 0);
@@ -151,9 +151,9 @@ impl<'a, const D: usize> Matching<'a, D> {
             }
             // The node at that corner takes a strain of this cell, and leaves that of the cell before.
             let node = self.node_at(before, corner);
-            let own = self.cells_at(node).find(|(own, _)| *own == cell);
-            if let Some((_, own)) = own {
-                self.given[cell][own] += 1;
+            let found = self.cells_at(node).find(|(other, _)| *other == cell);
+            if let Some((_, at)) = found {
+                self.given[cell][at] += 1;
             }
             self.given[before][corner] -= 1;
             cell = before;
@@ -192,7 +192,7 @@ mod tests {
                 .filter(|&node| !touched[node].is_empty())
                 .map(|node| free[node])
                 .sum();
-            let cells = cells_of(set).iter().filter(|own| **own).count();
+            let cells = cells_of(set).iter().filter(|there| **there).count();
             wanted as i64 - i64::from(strains) * cells as i64
         };
         let sets = 0..1_usize << grid.node_count();

@@ -1,4 +1,4 @@
-//! Small dense matrices as plain arrays: what kinematics needs for D = 1, 2, 3.
+//! Small dense matrices as plain arrays: the kinematics for D = 1, 2, 3.
 
 /// The identity.
 pub fn identity<const D: usize>() -> [[f64; D]; D] {

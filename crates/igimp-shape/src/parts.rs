@@ -64,15 +64,15 @@ pub fn cell_parts<const D: usize>(
     let count: usize = along.iter().map(Vec::len).product();
     for number in 0..count {
         let mut rest = number;
-        let own: [AxisPart; D] = array::from_fn(|d| {
+        let parts: [AxisPart; D] = array::from_fn(|d| {
             let part = along[d][rest % along[d].len()];
             rest /= along[d].len();
             part
         });
         out.push(CellPart {
-            cell: own.map(|part| part.cell),
-            share: own.iter().map(|part| part.share).product(),
-            middle: own.map(|part| part.middle),
+            cell: parts.map(|part| part.cell),
+            share: parts.iter().map(|part| part.share).product(),
+            middle: parts.map(|part| part.middle),
         });
     }
     Ok(())

@@ -6,7 +6,7 @@ use std::array;
 
 use crate::{Basis, Grid, NodeWeight, ShapeError};
 
-/// What one node of the grid means to one particle.
+/// Weights of one node of the grid for one particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Support<const D: usize> {
     /// Number of the node in the grid.

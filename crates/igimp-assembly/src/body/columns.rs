@@ -21,7 +21,7 @@ pub enum ColumnValues {
 pub struct Column {
     /// Name, the same in every file.
     pub name: &'static str,
-    /// Shape of what one particle has; empty: a number.
+    /// Shape of one particle's entry; empty: a number.
     pub shape: &'static [usize],
     /// The numbers.
     pub values: ColumnValues,
@@ -32,7 +32,7 @@ pub struct Column {
 pub struct ColumnRequest {
     /// Name.
     pub name: &'static str,
-    /// Shape of what one particle has.
+    /// Shape of one particle's entry.
     pub shape: &'static [usize],
     /// Type of the numbers: a column without any.
     pub kind: ColumnKind,
@@ -51,7 +51,7 @@ pub enum ColumnKind {
     U8,
 }
 
-/// What is accepted of a number.
+/// The values that a number may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Range {
     Finite,
@@ -104,19 +104,19 @@ pub(crate) fn require(
     }
 }
 
-/// What one particle has in a column.
+/// The entry of one particle.
 pub(crate) trait Entry: Copy + PartialEq {
     /// Its shape; empty: a number.
     const SHAPE: &'static [usize];
     /// Type of its numbers.
     const KIND: ColumnKind;
-    /// What a particle has in an optional column that is not stored.
+    /// The entry in an optional column that is not stored.
     const IDLE: Self;
 
     /// The numbers of all particles.
     fn to_values(entries: Vec<Self>) -> ColumnValues;
 
-    /// The entries of numbers of this shape and kind; an error says what one of them is not.
+    /// The entries of numbers of this shape and kind; an error names the property that one lacks.
     fn from_values(values: ColumnValues) -> Result<Vec<Self>, String>;
 
     /// Refuses an entry out of its range.
@@ -128,7 +128,7 @@ pub(crate) trait Entry: Copy + PartialEq {
     ) -> Result<(), AssemblyError>;
 }
 
-/// What is said of numbers of another kind than was asked for.
+/// The message on numbers of another kind than was asked for.
 const OTHER_KIND: &str = "its numbers are of another type";
 
 /// Real numbers, or the words that they are none.
@@ -264,7 +264,7 @@ impl Entry for Ratios {
     const IDLE: Self = Self::ONE;
 
     fn to_values(entries: Vec<Self>) -> ColumnValues {
-        let rows = (entries.into_iter()).map(|own| [own.strength, own.friction, own.stiffness]);
+        let rows = (entries.into_iter()).map(|r| [r.strength, r.friction, r.stiffness]);
         ColumnValues::F64(rows.flatten().collect())
     }
 

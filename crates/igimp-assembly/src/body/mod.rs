@@ -1,4 +1,4 @@
-//! Bodies of particles, and what a step does to them.
+//! Bodies of particles, and their changes in a step.
 
 pub(crate) mod columns;
 pub(crate) mod particles;

@@ -23,7 +23,7 @@ pub(crate) const CHUNK: usize = 1024;
 /// stretched, which count up to one cell.
 const LONGEST_DRAWN: f64 = 6.0;
 
-/// What is known of a particle before the first step.
+/// Data of a particle before the first step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParticleSeed<const D: usize> {
     /// Centre \[length\].
@@ -260,7 +260,7 @@ impl<const D: usize> Particles<D> {
         }
     }
 
-    /// What the law of a particle remembers of the past.
+    /// The history that the law of a particle sees.
     #[inline]
     pub fn history(&self, particle: usize) -> History {
         History {
@@ -274,7 +274,7 @@ impl<const D: usize> Particles<D> {
         if self.fields.number.get(number) == Some(&number) {
             return Some(number);
         }
-        self.fields.number.iter().position(|&own| own == number)
+        self.fields.number.iter().position(|&n| n == number)
     }
 
     /// The arrays, handed over.
@@ -325,14 +325,14 @@ impl<const D: usize> Particles<D> {
     /// none \[-\].
     pub fn whole_def_grad(&self, particle: usize) -> Tensor {
         let mut whole = identity();
-        for (row, own) in std::iter::zip(&mut whole, &self.fields.def_grad[particle]) {
-            row[..D].copy_from_slice(own);
+        for (row, values) in std::iter::zip(&mut whole, &self.fields.def_grad[particle]) {
+            row[..D].copy_from_slice(values);
         }
         whole[2][2] += self.fields.hoop_strain[particle];
         whole
     }
 
-    /// Total Cauchy stress σ of a particle, tension positive: what its law answers, less the pressure of the water in
+    /// Total Cauchy stress σ of a particle, tension positive: that of its law, less the pressure of the water in
     /// its pores \[force/length²\].
     pub fn total_stress(&self, particle: usize) -> Tensor {
         let mut sigma = self.fields.sigma[particle];

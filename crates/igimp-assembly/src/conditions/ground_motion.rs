@@ -1,6 +1,6 @@
-//! What is given of motion beside loads: the acceleration of the ground that a body stands on, and viscous damping of soil.
+//! Motion given beside loads: the acceleration of the ground that a body stands on, and viscous damping of soil.
 
-/// Acceleration of the ground in whose frame displacement and velocity are told (theory, eqs. 72 and 72a) \[length/time²\].
+/// Acceleration of the ground in whose frame displacement and velocity are given (theory, eqs. 72 and 72a) \[length/time²\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundMotion<const D: usize> {
     /// The mean over the step: the change of velocity of the ground over the duration.

@@ -1,4 +1,4 @@
-//! What acts on a body in a step: gravity on every particle, forces on points that the soil carries
+//! Loads of a body in a step: gravity on every particle, forces on points that the soil carries
 //! along, and drag against motion (theory, eqs. 2 and 38).
 
 use igimp_shape::{Grid, Linear, Scratch, Support, supports};
@@ -108,25 +108,25 @@ impl<const D: usize> LoadPoint<D> {
         grid: &Grid<D>,
         point: usize,
     ) -> Result<Vec<Support<D>>, AssemblyError> {
-        let mut own = Vec::new();
+        let mut stencil = Vec::new();
         supports(
             grid,
             &Linear,
             &self.x,
             &[0.0; D],
             &mut Scratch::default(),
-            &mut own,
+            &mut stencil,
         )
         .map_err(|source| AssemblyError::LoadPoint {
             point,
             position: padded(&self.x),
             source,
         })?;
-        Ok(own)
+        Ok(stencil)
     }
 }
 
-/// What acts on the body at the end of a step.
+/// Loads of the body at the end of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepLoads<const D: usize> {
     /// Acceleration of gravity \[length/time²\].
@@ -160,7 +160,7 @@ impl<const D: usize> StepLoads<D> {
     }
 }
 
-/// Refuses values that are not finite, named with what they are.
+/// Refuses values that are not finite, with their name.
 fn finite(what: &'static str, index: usize, values: &[f64]) -> Result<(), AssemblyError> {
     if values.iter().all(|value| value.is_finite()) {
         Ok(())

@@ -3,7 +3,7 @@
 use crate::conditions::water::PoreStiffness;
 use crate::error::AssemblyError;
 
-/// What the water in a soil does during a step.
+/// Flow of the water in a soil during a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PoreFlow<const D: usize> {
     /// It comes and goes at once: there is no excess pore pressure.
@@ -58,7 +58,7 @@ pub struct Consolidating<const D: usize> {
     pub before: f64,
     /// Whether the step is refused where pressures change by more than it resolves.
     pub must_resolve: bool,
-    /// What water does, by law.
+    /// Flow of water, by law.
     pub soils: Vec<PoreFlow<D>>,
     /// Sides of the grid where water leaves, by axis and whether it is the upper end. All others are sealed.
     pub open_sides: Vec<(usize, bool)>,
@@ -78,13 +78,13 @@ impl<const D: usize> Consolidating<D> {
         }
         let bad = |soil: &PoreFlow<D>| match soil {
             PoreFlow::Drained | PoreFlow::Sealed => false,
-            PoreFlow::Flows(own) => {
-                let flows = (0..D).all(|axis| own.mobility[axis][axis] > 0.0);
-                let is_finite = own.mobility.as_flattened().iter().all(|k| k.is_finite());
-                let follows = own.follows.is_none_or(|law| {
+            PoreFlow::Flows(soil) => {
+                let flows = (0..D).all(|axis| soil.mobility[axis][axis] > 0.0);
+                let is_finite = soil.mobility.as_flattened().iter().all(|k| k.is_finite());
+                let follows = soil.follows.is_none_or(|law| {
                     law.initial > LEAST_VOID_RATIO && law.index.is_none_or(|index| index > 0.0)
                 });
-                !(flows && is_finite && follows && own.stiffness.modulus > 0.0)
+                !(flows && is_finite && follows && soil.stiffness.modulus > 0.0)
             }
         };
         match self.soils.iter().position(bad) {
@@ -93,7 +93,7 @@ impl<const D: usize> Consolidating<D> {
         }
     }
 
-    /// What flow and the rate of the step before weigh over the change of water in this step (theory, eq. 101): 1 and 0 by backward
+    /// Weights of flow and of the rate of the step before over the change of water in this step (theory, eq. 101): 1 and 0 by backward
     /// Euler \[-\].
     pub(crate) fn weights(&self) -> [f64; 2] {
         if self.before == 0.0 {
@@ -107,7 +107,7 @@ impl<const D: usize> Consolidating<D> {
     #[inline]
     pub(crate) fn permeable(&self, law: usize) -> Option<&Permeable<D>> {
         match self.soils.get(law) {
-            Some(PoreFlow::Flows(own)) => Some(own),
+            Some(PoreFlow::Flows(soil)) => Some(soil),
             _ => None,
         }
     }

@@ -1,6 +1,6 @@
-//! What acts on reinforcement in a step.
+//! Controls of reinforcement in a step.
 
-/// What acts on a member in a step.
+/// Controls of a member in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReinforcementControl {
     /// The bond is divided by this \[-\].

@@ -1,6 +1,6 @@
 //! How a rigid body moves in a step.
 
-/// What drives one component of the motion of a rigid body over a step.
+/// The drive of one component of a rigid body's motion over a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drive {
     /// Its increment is prescribed: a displacement \[length\] or a rotation \[rad\].
@@ -18,7 +18,7 @@ pub struct RigidMotion<const D: usize> {
     pub displacement: [Drive; D],
     /// Of the rotation: one component in the plane, three in space; those beyond are not looked at.
     pub rotation: [Drive; 3],
-    /// Force at its centre of mass, beside what drives it: its weight \[force\].
+    /// Force at its centre of mass, beside its drives: its weight \[force\].
     pub weight: [f64; D],
 }
 
@@ -51,6 +51,6 @@ impl<const D: usize> RigidMotion<D> {
         let mut drives = self.displacement.iter().chain(&self.rotation);
         drives.all(|drive| match drive {
             Drive::Moved(value) | Drive::Loaded(value) => value.is_finite(),
-        }) && self.weight.iter().all(|own| own.is_finite())
+        }) && self.weight.iter().all(|f| f.is_finite())
     }
 }

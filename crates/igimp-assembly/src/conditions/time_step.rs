@@ -23,7 +23,7 @@ pub enum TimeScheme {
     BackwardEuler,
     /// Newmark's method with β = ¼ and γ = ½: second order, without damping.
     Newmark,
-    /// The generalised-α method of Chung and Hulbert (1993), with the spectral radius 0.8 at high frequencies: second order, and what
+    /// The generalised-α method of Chung and Hulbert (1993), with the spectral radius 0.8 at high frequencies: second order; motion that
     /// a step does not resolve is damped.
     GeneralisedAlpha,
 }
@@ -31,7 +31,7 @@ pub enum TimeScheme {
 /// Spectral radius ρ of the generalised-α method at high frequencies \[-\].
 const SPECTRAL_RADIUS: f64 = 0.8;
 
-/// What a scheme makes of displacement, velocity and acceleration: v₁ − v₀ = Δt \[γ a₁ + (1 − γ) a₀\] and
+/// A scheme's displacement, velocity and acceleration: v₁ − v₀ = Δt \[γ a₁ + (1 − γ) a₀\] and
 /// u = Δt v₀ + Δt² \[β a₁ + (σ − β) a₀\], with equilibrium between start and end.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Weights {

@@ -11,9 +11,9 @@ pub struct Walls<const D: usize> {
     pub absorbing: Vec<AbsorbingWall<D>>,
     /// Two walls that move together, if any do.
     pub tied: Option<TiedWalls>,
-    /// What the nodes of these walls stand at as the step begins; those that are not listed carry nothing and have not moved.
+    /// Forces and displacements of nodes at these walls as the step begins; those that are not listed carry nothing and have not moved.
     pub nodes: Arc<Vec<WallNode<D>>>,
-    /// What the free field does beside nodes of walls with dashpots; beside those that are not listed the ground rests.
+    /// Motion of the free field beside nodes of walls with dashpots; beside those that are not listed the ground rests.
     pub beside: Arc<Vec<FreeMotion<D>>>,
 }
 
@@ -36,7 +36,7 @@ impl TiedWalls {
     }
 }
 
-/// What the free field does beside a node of a wall over a step, at its start and at its end (theory, eq. 77a).
+/// Motion of the free field beside a node of a wall over a step, at its start and at its end (theory, eq. 77a).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeMotion<const D: usize> {
     /// The node of the grid.
@@ -47,7 +47,7 @@ pub struct FreeMotion<const D: usize> {
     pub displacement: [[f64; D]; 2],
     /// Velocity \[length/time\].
     pub velocity: [[f64; D]; 2],
-    /// Force of the free field on what stands beside it, beyond that of the supports \[force\].
+    /// Force of the free field on the ground beside it, beyond that of the supports \[force\].
     pub force: [[f64; D]; 2],
 }
 
@@ -73,7 +73,7 @@ impl<const D: usize> FreeMotion<D> {
     fn is_finite(&self) -> bool {
         let all = [&self.displacement, &self.velocity, &self.force];
         all.iter()
-            .all(|own| own.as_flattened().iter().all(|own| own.is_finite()))
+            .all(|values| values.as_flattened().iter().all(|value| value.is_finite()))
     }
 }
 
@@ -117,8 +117,8 @@ impl<const D: usize> Walls<D> {
             known(wall.normal)
                 && finite(&wall.spring)
                 && wall.spring.iter().all(|&spring| spring >= 0.0)
-        }) && (self.tied).is_none_or(|own| known(own.axis) && own.stiffness > 0.0)
+        }) && (self.tied).is_none_or(|tied| known(tied.axis) && tied.stiffness > 0.0)
             && self.beside.iter().all(FreeMotion::is_finite)
-            && (self.nodes.iter()).all(|own| finite(&own.force) && finite(&own.displacement))
+            && (self.nodes.iter()).all(|node| finite(&node.force) && finite(&node.displacement))
     }
 }

@@ -11,7 +11,7 @@ use crate::laws::SharedLaw;
 use crate::method::Section;
 use igimp_material::{ConstitutiveModel, principal_values};
 
-/// What given water is at a particle, at full gravity.
+/// State of given water at a particle, at full gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoreState<const D: usize> {
     /// Mean pore pressure u over the domain; zero where the law is one of total stress \[force/length²\].
@@ -47,7 +47,7 @@ pub struct PoreSite<'a, const D: usize> {
     pub number: usize,
     /// Index of its law.
     pub law: usize,
-    /// Density as seeded, without what the water adds \[mass/length³\].
+    /// Density as seeded, without that of the water \[mass/length³\].
     pub density: f64,
     /// Centre of its domain \[length\].
     pub x: &'a [f64; D],
@@ -83,15 +83,15 @@ impl<const D: usize> Particles<D> {
 
     /// How far soil that joined a particle as it was seeded, reaches beyond its domain \[length\] (theory, eq. 45i).
     pub fn beyond_domain(&self, particle: usize, section: Section) -> [f64; D] {
-        let (site, own) = (self.pore_site(particle, section), &self.centroid[particle]);
+        let (site, centroid) = (self.pore_site(particle, section), &self.centroid[particle]);
         let twice = if site.filled > 1.0 { 2.0 } else { 0.0 };
-        std::array::from_fn(|axis| twice * own[axis] * site.half_length[axis])
+        std::array::from_fn(|axis| twice * centroid[axis] * site.half_length[axis])
     }
 }
 
 /// Given water. Pure: the same particle at the same place finds the same.
 pub trait PoreWater<const D: usize>: Debug + Send + Sync {
-    /// What water is in the domain of a particle.
+    /// The water in the domain of a particle.
     fn at(&self, site: PoreSite<'_, D>) -> PoreState<D>;
 }
 
@@ -173,8 +173,8 @@ impl<const D: usize> Water<D> {
     /// K_w/n of a particle whose soil is as stiff as the constants of its law say \[force/length²\].
     #[inline]
     pub(crate) fn stiffness_of(&self, particles: &Particles<D>, particle: usize) -> f64 {
-        let own = self.stiffness.get(particles.law[particle]);
-        own.map_or(0.0, |own| own.at_constants(particles, particle))
+        let stiffness = self.stiffness.get(particles.law[particle]);
+        stiffness.map_or(0.0, |stiffness| stiffness.at_constants(particles, particle))
     }
 
     /// Refuses numbers that are not finite.
@@ -183,7 +183,7 @@ impl<const D: usize> Water<D> {
             let what = "factor on pore pressure";
             return Err(AssemblyError::NonFinite { what, index: 0 });
         }
-        let bad = |own: &PoreStiffness| !(own.modulus.is_finite() && own.modulus >= 0.0);
+        let bad = |pore: &PoreStiffness| !(pore.modulus.is_finite() && pore.modulus >= 0.0);
         match self.stiffness.iter().position(bad) {
             Some(index) => {
                 let what = "bulk modulus of pore water";

@@ -28,12 +28,12 @@ pub(crate) struct BesideParticles<'a, const D: usize> {
     pub(crate) walls: WallForces<D>,
     /// Excess pore pressure as an unknown, in a step in which water flows.
     pub(crate) consolidation: Consolidation<D>,
-    /// What acts at the centres of mass of rigid bodies that turn.
+    /// Forces at the centres of mass of rigid bodies that turn.
     pub(crate) weights: TurningWeights<D>,
 }
 
 impl<'a, const D: usize> BesideParticles<'a, D> {
-    /// What soil interacts with in a step.
+    /// Contributions to the forces of a step.
     ///
     /// # Errors
     /// [`AssemblyError::UnsupportedReinforcement`] for reinforcement without soil, and those of water that flows.

@@ -16,9 +16,9 @@ pub(crate) fn shares_of_carried<const D: usize>(
     unknowns: &Unknowns<D>,
     is_dropped: impl Fn(usize) -> bool,
     x: &[f64; D],
-    own: &[Support<D>],
+    supports: &[Support<D>],
 ) -> Option<Vec<(usize, f64)>> {
-    let mut shares: Vec<(usize, f64)> = own
+    let mut shares: Vec<(usize, f64)> = supports
         .iter()
         .map(|support| (support.node, support.value))
         .collect();

@@ -1,6 +1,6 @@
 //! Ghost penalty on the faces of boundary cells: a small stiffness against jumps of the normal
 //! gradient, γ E h ∫ ⟦∂u/∂n⟧ · ⟦∂v/∂n⟧ (theory, eq. 28; Burman 2010), which keeps nodes with little soil tied to
-//! their neighbours. It acts on step displacements, so it leaves no stress behind. What falls to a
+//! their neighbours. It acts on step displacements, so it leaves no stress behind. The share of a
 //! tied node acts on its master.
 
 use igimp_shape::Grid;

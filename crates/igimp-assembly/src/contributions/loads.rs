@@ -24,10 +24,10 @@ impl<const D: usize> LoadPoint<D> {
     #[must_use]
     pub(crate) fn on_soil(&self, grid: &Grid<D>, stencils: &Stencils<D>) -> Self {
         let rests = |x: &[f64; D]| {
-            let own = Self { x: *x, ..*self }.supports(grid, 0);
-            own.is_ok_and(|own| {
-                let mut own = stencils.carried(&own).into_iter();
-                own.all(|own| own.value <= 0.0 || stencils.node_volume(own.node) > 0.0)
+            let supports = Self { x: *x, ..*self }.supports(grid, 0);
+            supports.is_ok_and(|supports| {
+                let mut carried = stencils.carried(&supports).into_iter();
+                carried.all(|s| s.value <= 0.0 || stencils.node_volume(s.node) > 0.0)
             })
         };
         let Some(cell) = grid.cell_at(&self.x).filter(|_| !rests(&self.x)) else {
@@ -35,10 +35,10 @@ impl<const D: usize> LoadPoint<D> {
         };
         // The nearest line of each axis, and how far off it is in cells.
         let lines: [(f64, f64); D] = std::array::from_fn(|axis| {
-            let own = &grid.axes[axis];
-            let place = (self.x[axis] - own.nodes()[cell[axis]]) / own.spacing(cell[axis]);
+            let along = &grid.axes[axis];
+            let place = (self.x[axis] - along.nodes()[cell[axis]]) / along.spacing(cell[axis]);
             let line = cell[axis] + usize::from(place > 0.5);
-            (own.nodes()[line], place.min(1.0 - place))
+            (along.nodes()[line], place.min(1.0 - place))
         });
         let moved = (1..1_usize << D).map(|axes| {
             let goes = |axis: usize| axes >> axis & 1 == 1;
@@ -89,7 +89,7 @@ pub(crate) fn weight<const D: usize>(
         .collect()
 }
 
-/// Adds to the nodal external force f_ext what the variation of stress within cells carries of the weight and shared
+/// Adds to the nodal external force f_ext the weight that the variation of stress within cells carries and shared
 /// gradients do not see, by node \[force\] (theory, eq. 8f).
 pub(crate) fn add_variation_of_weight<const D: usize>(
     stencils: &Stencils<D>,
@@ -130,7 +130,7 @@ fn gain_at_failure(law: &dyn ConstitutiveModel, weight: f64) -> f64 {
     without_cohesion * (2.0 * strength.friction_angle).cos().max(0.0)
 }
 
-/// Adds the force of loaded points to the nodal external force f_ext, by node \[force\]. What falls to
+/// Adds the force of loaded points to the nodal external force f_ext, by node \[force\]. The share of
 /// dropped nodes is handed on: no force is lost.
 pub(crate) fn add_force_of_points<const D: usize>(
     f_ext: &mut [[f64; D]],
@@ -157,13 +157,13 @@ pub(crate) fn add_force_of_points<const D: usize>(
             position: padded(&point.x),
         };
         let point = point.on_soil(grid, stencils);
-        let own = stencils.carried(&point.supports(grid, index)?);
-        for support in &own {
+        let supports = stencils.carried(&point.supports(grid, index)?);
+        for support in &supports {
             if support.value > 0.0 && stencils.node_volume(support.node) == 0.0 {
                 return Err(unsupported());
             }
         }
-        let shares = shares_of_carried(grid, unknowns, is_dropped, &point.x, &own);
+        let shares = shares_of_carried(grid, unknowns, is_dropped, &point.x, &supports);
         for (node, share) in shares.ok_or_else(unsupported)? {
             for axis in 0..D {
                 f_ext[node][axis] += share * factor * point.force[axis];
@@ -180,15 +180,15 @@ pub(crate) fn nodal_drag<const D: usize>(
     drag: f64,
 ) -> Couplings {
     let nodes = 0..grid.node_count();
-    let own = nodes.map(|node| Coupling {
+    let couplings = nodes.map(|node| Coupling {
         row: node,
         column: node,
         stiffness: drag * stencils.node_mass(node),
     });
-    Couplings(own.filter(|own| own.stiffness > 0.0).collect())
+    Couplings(couplings.filter(|c| c.stiffness > 0.0).collect())
 }
 
-/// Adds forces that hold the body to the nodal external force. What a node holds that touches no soil any more is let go.
+/// Adds forces that hold the body to the nodal external force. The force of a node that touches no soil any more is let go.
 pub(crate) fn add_unbalanced_forces<const D: usize>(
     held: &UnbalancedForces<D>,
     stencils: &Stencils<D>,

@@ -1,4 +1,4 @@
-//! What acts at the nodes beside the stress of the soil: ghost penalty, inertia, water, nonlocal strain, reinforcement, rigid bodies.
+//! Nodal forces beside the stress of the soil: ghost penalty, inertia, water, nonlocal strain, reinforcement, rigid bodies.
 
 pub(crate) mod beside;
 pub(crate) mod consolidation;

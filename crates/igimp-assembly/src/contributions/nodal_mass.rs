@@ -50,17 +50,17 @@ impl NodalMass {
                 .into_par_iter()
                 .for_each(|(((nodes, slots), diagonal), rows)| {
                     for &particle in &stencils.order()[slots.clone()] {
-                        let own = stencils.of(particle as usize);
+                        let supports = stencils.of(particle as usize);
                         let m = mass_of(particle as usize);
-                        for (k, row) in own.iter().enumerate() {
+                        for (k, row) in supports.iter().enumerate() {
                             let share = m * row.value;
-                            let own_share = lumped + (1.0 - lumped) * row.value;
-                            diagonal[row.node - nodes.start] += share * own_share;
+                            let fraction = lumped + (1.0 - lumped) * row.value;
+                            diagonal[row.node - nodes.start] += share * fraction;
                             if lumped >= 1.0 {
                                 continue;
                             }
                             let row = &mut rows[row.node - nodes.start];
-                            for other in &own[k + 1..] {
+                            for other in &supports[k + 1..] {
                                 let mass = (1.0 - lumped) * share * other.value;
                                 add_entry(row, other.node as u32, mass);
                             }
@@ -79,8 +79,8 @@ impl NodalMass {
             .map(|node| node as u32)
             .collect();
         let mut place = vec![0; diagonal.len()];
-        for (own, &node) in carrying.iter().enumerate() {
-            place[node as usize] = own as u32;
+        for (slot, &node) in carrying.iter().enumerate() {
+            place[node as usize] = slot as u32;
         }
         let (mut first, mut beyond) = (vec![0], Vec::new());
         for &node in &carrying {
@@ -99,8 +99,8 @@ impl NodalMass {
 
     /// The entries M_ij above the diagonal: nodes of the grid, and mass \[mass\].
     pub(crate) fn beyond_diagonal(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
-        self.rows().flat_map(move |(own, row)| {
-            let node = self.carrying[own] as usize;
+        self.rows().flat_map(move |(slot, row)| {
+            let node = self.carrying[slot] as usize;
             row.iter()
                 .map(move |&(other, mass)| (node, self.carrying[other as usize] as usize, mass))
         })
@@ -109,7 +109,7 @@ impl NodalMass {
     /// The carrying nodes with their entries behind the diagonal.
     fn rows(&self) -> impl Iterator<Item = (usize, &[(u32, f64)])> {
         let bounds = self.first.windows(2).enumerate();
-        bounds.map(|(own, of)| (own, &self.beyond[of[0] as usize..of[1] as usize]))
+        bounds.map(|(slot, of)| (slot, &self.beyond[of[0] as usize..of[1] as usize]))
     }
 
     /// Values by node of the grid as values by carrying node.
@@ -132,8 +132,8 @@ impl NodalMass {
         for ((image, value), &node) in image.iter_mut().zip(values).zip(&self.carrying) {
             *image = value.map(|value| self.diagonal[node as usize] * value);
         }
-        for (own, row) in self.rows() {
-            let (value, mut sum) = (values[own], image[own]);
+        for (slot, row) in self.rows() {
+            let (value, mut sum) = (values[slot], image[slot]);
             for &(other, mass) in row {
                 let other = other as usize;
                 for a in 0..D {
@@ -141,13 +141,13 @@ impl NodalMass {
                     image[other][a] += mass * value[a];
                 }
             }
-            image[own] = sum;
+            image[slot] = sum;
         }
     }
 
     /// Values by node whose product with the mass matrix is `sums` where a component is unknown, zero where it is not: of particle
     /// velocities weighted by mass, those of the grid that come closest to them. Conjugate gradients, scaled by the diagonal, that
-    /// begin with a `guess`: what no particle sees stays as guessed.
+    /// begin with a `guess`: nodes that no particle sees keep it.
     ///
     /// # Errors
     /// [`AssemblyError::MotionNotFound`].
@@ -159,20 +159,20 @@ impl NodalMass {
     ) -> Result<Vec<[f64; D]>, AssemblyError> {
         mask(&mut guess, unknowns);
         let held: Vec<(usize, usize)> = (self.carrying.iter().enumerate())
-            .flat_map(|(own, &node)| (0..D).map(move |axis| (own, node as usize, axis)))
+            .flat_map(|(slot, &node)| (0..D).map(move |axis| (slot, node as usize, axis)))
             .filter(|&(_, node, axis)| unknowns.index(node, axis).is_none())
-            .map(|(own, _, axis)| (own, axis))
+            .map(|(slot, _, axis)| (slot, axis))
             .collect();
         let hold = |values: &mut [[f64; D]]| {
-            for &(own, axis) in &held {
-                values[own][axis] = 0.0;
+            for &(slot, axis) in &held {
+                values[slot][axis] = 0.0;
             }
         };
         let scaled = |values: &[[f64; D]]| -> Vec<[f64; D]> {
             std::iter::zip(values, &self.carrying)
                 .map(|(value, node)| {
-                    let own = self.diagonal[*node as usize];
-                    value.map(|v| if own > 0.0 { v / own } else { 0.0 })
+                    let mass = self.diagonal[*node as usize];
+                    value.map(|v| if mass > 0.0 { v / mass } else { 0.0 })
                 })
                 .collect()
         };
@@ -206,8 +206,8 @@ impl NodalMass {
             add_scaled(&mut left, -length, &image);
             let towards = scaled(&left);
             let next = product(&left, &towards);
-            for own in way.as_flattened_mut() {
-                *own *= next / size;
+            for value in way.as_flattened_mut() {
+                *value *= next / size;
             }
             add_scaled(&mut way, 1.0, &towards);
             size = next;
@@ -224,7 +224,7 @@ impl NodalMass {
     }
 }
 
-/// Sets to zero what is not unknown.
+/// Sets to zero the components that are not unknown.
 pub(crate) fn mask<const D: usize>(values: &mut [[f64; D]], unknowns: &Unknowns<D>) {
     for (node, values) in values.iter_mut().enumerate() {
         for (axis, value) in values.iter_mut().enumerate() {
@@ -243,7 +243,7 @@ pub(crate) fn product<const D: usize>(a: &[[f64; D]], b: &[[f64; D]]) -> f64 {
 
 /// Adds to the entry of a node in a row.
 fn add_entry(row: &mut Vec<(u32, f64)>, node: u32, mass: f64) {
-    match row.iter_mut().find(|(own, _)| *own == node) {
+    match row.iter_mut().find(|(other, _)| *other == node) {
         Some((_, sum)) => *sum += mass,
         None => row.push((node, mass)),
     }

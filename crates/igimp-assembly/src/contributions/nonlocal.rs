@@ -36,7 +36,7 @@ pub(crate) struct NonlocalStrain<const D: usize> {
     modulus: f64,
 }
 
-/// What plastic and nonlocal strain are to each other at a particle, in spatial axes.
+/// Plastic strain and its rates at a particle, in spatial axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpatialRates<const D: usize> {
     /// Plastic strain of the step Δκ, and its derivative by nonlocal strain \[-\].
@@ -76,8 +76,8 @@ impl<const D: usize> InPlace<D> {
     #[inline]
     fn along(&self, g: &[f64; D], g_bar: &[f64; D]) -> [f64; D] {
         std::array::from_fn(|a| {
-            let own: f64 = (0..D).map(|b| self.components[a][b] * g[b]).sum();
-            own + self.mean * (g_bar[a] - g[a])
+            let local: f64 = (0..D).map(|b| self.components[a][b] * g[b]).sum();
+            local + self.mean * (g_bar[a] - g[a])
         })
     }
 }
@@ -136,7 +136,7 @@ impl<const D: usize> NonlocalStrain<D> {
     pub(crate) fn find(conditions: &StepConditions<D>, unknowns: &Unknowns<D>) -> Self {
         let laws = conditions.laws.iter();
         let lengths: Vec<Option<f64>> = laws
-            .map(|law| law.nonlocal().map(|own| own.length))
+            .map(|law| law.nonlocal().map(|nonlocal| nonlocal.length))
             .collect();
         if unknowns.scalar_count() == 0 || conditions.flow.is_some() {
             return Self::default();
@@ -145,7 +145,7 @@ impl<const D: usize> NonlocalStrain<D> {
         for (number, node) in unknowns.scalar_nodes().enumerate() {
             numbers[node] = number as u32;
         }
-        let seen = std::iter::zip(&conditions.laws, &lengths).filter(|(_, own)| own.is_some());
+        let seen = std::iter::zip(&conditions.laws, &lengths).filter(|(_, l)| l.is_some());
         let shear = seen.map(|(law, _)| law.stiffness_bound().shear());
         Self {
             first: unknowns.first_scalar(),
@@ -175,7 +175,7 @@ impl<const D: usize> NonlocalStrain<D> {
     pub(crate) fn rise(&self, law: usize, supports: &[Support<D>], u: &[[f64; D]]) -> Option<f64> {
         (*self.lengths.get(law)?)?;
         let values = supports.iter();
-        let sum: f64 = values.map(|own| own.value * self.value(own.node, u)).sum();
+        let sum: f64 = values.map(|s| s.value * self.value(s.node, u)).sum();
         Some(self.scale * sum)
     }
 
@@ -191,10 +191,10 @@ impl<const D: usize> NonlocalStrain<D> {
     ) -> Option<StrainOfParticle<'c, D>> {
         let length = (*self.lengths.get(law)?)?;
         let (mut rise, mut grad) = (0.0, [0.0; D]);
-        for own in supports {
-            let strain = self.scale * self.value(own.node, u);
-            rise += own.value * strain;
-            for (sum, slope) in grad.iter_mut().zip(own.grad) {
+        for support in supports {
+            let strain = self.scale * self.value(support.node, u);
+            rise += support.value * strain;
+            for (sum, slope) in grad.iter_mut().zip(support.grad) {
                 *sum += slope * strain;
             }
         }
@@ -211,7 +211,7 @@ impl<const D: usize> NonlocalStrain<D> {
     }
 }
 
-/// What a particle does to the nonlocal strain around it at some nodal values: the forces of its nodes, and the derivative.
+/// Nonlocal strain of a particle at some nodal values: the forces of its nodes, and the derivative.
 pub(crate) struct StrainOfParticle<'c, const D: usize> {
     numbers: &'c [u32],
     rates: &'c SpatialRates<D>,
@@ -237,18 +237,18 @@ impl<const D: usize> StrainOfParticle<'_, D> {
         forces: &mut [[f64; D]],
     ) {
         let rise = self.rise - self.rates.plastic;
-        for own in supports {
-            let number = self.numbers[own.node];
+        for support in supports {
+            let number = self.numbers[support.node];
             if number == NONE {
                 continue;
             }
-            let along = dot(&own.grad, &self.grad);
-            let force = own.value * rise + self.squared_length * along;
+            let along = dot(&support.grad, &self.grad);
+            let force = support.value * rise + self.squared_length * along;
             forces[number as usize - first][0] += self.weight * force;
         }
     }
 
-    /// The shares of a node's nonlocal strain: what its force has of the slopes of displacement, and forces of the other way round.
+    /// The shares of a node's nonlocal strain: that of the slopes of displacement in its force, and forces of the other way round.
     #[inline]
     pub(crate) fn shares(&self, support: &Support<D>) -> [f64; 2] {
         [-self.weight * support.value, self.of_stress * support.value]
@@ -262,14 +262,14 @@ impl<const D: usize> StrainOfParticle<'_, D> {
             stress_by_nonlocal,
             ..
         } = self.rates;
-        [plastic_by_strain, stress_by_nonlocal].map(|own| own.along(g, g_bar))
+        [plastic_by_strain, stress_by_nonlocal].map(|rate| rate.along(g, g_bar))
     }
 
     /// The force of node `row` by the nonlocal strain of node `column`.
     #[inline]
     pub(crate) fn moves(&self, row: &Support<D>, column: &Support<D>) -> f64 {
-        let own = (1.0 - self.rates.plastic_by_nonlocal) * row.value * column.value;
-        self.weight * self.scale * (own + self.squared_length * dot(&row.grad, &column.grad))
+        let local = (1.0 - self.rates.plastic_by_nonlocal) * row.value * column.value;
+        self.weight * self.scale * (local + self.squared_length * dot(&row.grad, &column.grad))
     }
 
     /// Adds the forces K_fp u_p of its nodes that `moved`, by node and axis, causes, to forces by number.
@@ -289,10 +289,10 @@ impl<const D: usize> StrainOfParticle<'_, D> {
                     .sum::<f64>()
             })
             .sum();
-        for own in supports {
-            let number = self.numbers[own.node];
+        for support in supports {
+            let number = self.numbers[support.node];
             if number != NONE {
-                add(number as usize, self.shares(own)[0] * plastic);
+                add(number as usize, self.shares(support)[0] * plastic);
             }
         }
     }

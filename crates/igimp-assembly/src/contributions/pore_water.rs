@@ -4,7 +4,7 @@
 //! Pore pressure u is positive in compression, as everywhere in soil mechanics; laws see effective stress
 //! σ′ = σ + u I alone.
 //!
-//! What is given acts in two ways. A *reference* field, continuous and on the surface of the soil equal to the pressure
+//! Given water acts in two ways. A *reference* field, continuous and on the surface of the soil equal to the pressure
 //! of the free water there, acts by its gradient on every particle: buoyancy and seepage, with the pressure of ponds on the
 //! ground and without any surface. By how much the pressure in the pores differs from it acts as a stress.
 
@@ -19,7 +19,7 @@ use crate::error::AssemblyError;
 use crate::method::{Kinematics, Method, Section};
 use crate::step::stencils::Stencils;
 
-/// What pore water adds to the stress of a particle.
+/// Stress of pore water at a particle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PoreResponse {
     /// Excess pore pressure at the start of the step, in the stress that the law speaks of \[force/length²\].
@@ -61,7 +61,7 @@ impl PoreResponse {
     }
 }
 
-/// What a given field is at the particles of a step: it is asked once.
+/// A given field at the particles of a step: it is asked once.
 #[derive(Clone, Debug)]
 pub(crate) struct Asked<const D: usize> {
     field: Arc<dyn PoreWater<D>>,
@@ -75,7 +75,7 @@ impl<const D: usize> Asked<D> {
         (particles, section): (&Particles<D>, Section),
         earlier: Option<&Self>,
     ) -> Self {
-        if let Some(earlier) = earlier.filter(|own| Arc::ptr_eq(&own.field, field)) {
+        if let Some(earlier) = earlier.filter(|asked| Arc::ptr_eq(&asked.field, field)) {
             return earlier.clone();
         }
         let at = |particle| field.at(particles.pore_site(particle, section));
@@ -123,8 +123,8 @@ impl Pores {
                 .into_par_iter()
                 .with_min_len(CHUNK)
                 .map(|particle| {
-                    let own = water.stiffness.get(particles.law[particle]);
-                    own.map_or(Ok(0.0), |own| own.of(particles, particle, &conditions.laws))
+                    let pore = water.stiffness.get(particles.law[particle]);
+                    pore.map_or(Ok(0.0), |p| p.of(particles, particle, &conditions.laws))
                 })
                 .collect::<Result<_, _>>()?
         };
@@ -143,16 +143,16 @@ impl Pores {
         };
         for &particle in stencils.order() {
             let particle = particle as usize;
-            let own = &states[particle];
+            let state = &states[particle];
             let volume0 = particles.volume0[particle];
             let stretch = particles.volume_ratio(particle);
-            let density = own.added_density + (stretch - 1.0) * own.water_density;
+            let density = state.added_density + (stretch - 1.0) * state.water_density;
             pores.mass[particle] = volume0 * density;
             let force: [f64; D] = std::array::from_fn(|axis| {
                 let weight = density * gravity[axis];
-                volume0 * (weight - stretch * water.factor * own.gradient[axis])
+                volume0 * (weight - stretch * water.factor * state.gradient[axis])
             });
-            let difference = water.factor * (own.pressure - own.reference);
+            let difference = water.factor * (state.pressure - state.reference);
             if !(force.iter().all(|force| force.is_finite()) && difference.is_finite()) {
                 let what = "given pore pressure at particle";
                 return Err(AssemblyError::NonFinite {
@@ -165,7 +165,7 @@ impl Pores {
                     f_ext[support.node][axis] += support.value * force[axis];
                 }
             }
-            pores.pressure[particle] = water.factor * own.pressure;
+            pores.pressure[particle] = water.factor * state.pressure;
             pores.stress[particle] = match method.kinematics {
                 Kinematics::FiniteStrain => -stretch * difference,
                 Kinematics::SmallStrain => -difference,
@@ -182,7 +182,7 @@ impl Pores {
         self.mass.get(particle).copied().unwrap_or(0.0)
     }
 
-    /// What water adds to the stress of a particle.
+    /// The stress of water at a particle.
     #[inline]
     pub(crate) fn response<const D: usize>(
         &self,

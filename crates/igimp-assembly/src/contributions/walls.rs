@@ -1,7 +1,7 @@
 //! Forces of walls behind which the ground goes on (theory, eqs. 69 to 71 and 77a): dashpots and springs at their nodes against the
 //! ground or a free field, and springs that make the nodes of two walls move together.
 //!
-//! The soil that touches a wall is what its particles leave at the nodes: with a first layer of cells of width h across the
+//! The soil that touches a wall is that of its particles at the nodes: with a first layer of cells of width h across the
 //! wall that is full, 2 Σ_p V_p S_ip / h is the area of a node on it.
 
 use std::collections::BTreeMap;
@@ -34,7 +34,7 @@ struct NodeAtWall<const D: usize> {
     dashpot: [f64; D],
     /// \[force/length\].
     spring: [f64; D],
-    /// What of dashpots \[force·time/length\] and springs \[force/length\] moves against the free field, and not against the ground:
+    /// Parts of dashpots \[force·time/length\] and springs \[force/length\] that move against the free field, and not against the ground:
     /// that of its own wall.
     followed: [[f64; D]; 2],
     /// At the start of the step \[length\].
@@ -43,7 +43,7 @@ struct NodeAtWall<const D: usize> {
     velocity: [f64; D],
     /// At the start of the step \[length/time²\].
     acceleration: [f64; D],
-    /// What the free field does beside it.
+    /// Motion of the free field beside it.
     beside: FreeMotion<D>,
 }
 
@@ -58,7 +58,7 @@ pub struct TieForce<const D: usize> {
 }
 
 impl<const D: usize> NodeAtWall<D> {
-    /// Adds what a wall does at the node, with the area that a unit of volume there has on it \[1/length\].
+    /// Adds the dashpots and springs of a wall, with the area that a unit of volume there has on it \[1/length\].
     fn join(&mut self, wall: &AbsorbingWall<D>, per_volume: f64, share: &Shares) {
         for a in 0..D {
             let wave = usize::from(a != wall.normal);
@@ -84,7 +84,7 @@ struct Tie<const D: usize> {
     gap: [f64; D],
 }
 
-/// What soil leaves at a node: impedance and modulus, each for compression and shear.
+/// Shares of soil at a node: impedance and modulus, each for compression and shear.
 #[derive(Clone, Copy, Debug, Default)]
 struct Shares {
     /// Σ m S c \[mass·length/time\].
@@ -113,10 +113,10 @@ impl<const D: usize> WallForces<D> {
         let mut shares = shares(particles, stencils, conditions, mass_of);
         shares.retain(|&node, _| unknowns.is_active(node) && !stencils.is_tied(node));
         let displaced: BTreeMap<usize, [f64; D]> = (walls.nodes.iter())
-            .map(|own| (own.node, own.displacement))
+            .map(|n| (n.node, n.displacement))
             .collect();
         let beside: BTreeMap<usize, FreeMotion<D>> =
-            walls.beside.iter().map(|own| (own.node, *own)).collect();
+            walls.beside.iter().map(|free| (free.node, *free)).collect();
         let displacement = |node: usize| displaced.get(&node).copied().unwrap_or([0.0; D]);
         let mut nodes: BTreeMap<usize, NodeAtWall<D>> = BTreeMap::new();
         for wall in &walls.absorbing {
@@ -124,7 +124,7 @@ impl<const D: usize> WallForces<D> {
             let last = axis.cell_count() - 1;
             let cell = if wall.upper { last } else { 0 };
             for (&node, share) in shares.iter().filter(|(node, _)| wall.holds(grid, **node)) {
-                let own = nodes.entry(node).or_insert_with(|| NodeAtWall {
+                let at_wall = nodes.entry(node).or_insert_with(|| NodeAtWall {
                     node,
                     dashpot: [0.0; D],
                     spring: [0.0; D],
@@ -134,7 +134,7 @@ impl<const D: usize> WallForces<D> {
                     acceleration: [0.0; D],
                     beside: (beside.get(&node).copied()).unwrap_or(FreeMotion::still(node)),
                 });
-                own.join(wall, 2.0 / axis.spacing(cell), share);
+                at_wall.join(wall, 2.0 / axis.spacing(cell), share);
             }
         }
         Self {
@@ -148,66 +148,66 @@ impl<const D: usize> WallForces<D> {
     /// Lets dashpots act in a step that begins with this motion.
     pub(crate) fn set_in_motion(&mut self, inertia: &Inertia<D>) {
         self.step = Some(*inertia.step());
-        for own in &mut self.nodes {
-            own.velocity = inertia.velocity()[own.node];
-            own.acceleration = inertia.acceleration()[own.node];
+        for wall in &mut self.nodes {
+            wall.velocity = inertia.velocity()[wall.node];
+            wall.acceleration = inertia.acceleration()[wall.node];
         }
     }
 
     /// The forces at the start of a step that begins with these velocities, without those of springs and ties as the end of the
-    /// step has them before anything moves if `what_differs`, added to `f` \[force\].
+    /// step has them before anything moves if `is_difference`, added to `f` \[force\].
     pub(crate) fn add_at_start(
         &self,
         velocity: &[[f64; D]],
-        what_differs: bool,
+        is_difference: bool,
         f: &mut [[f64; D]],
     ) {
-        for own in &self.nodes {
-            let free = &own.beside;
+        for wall in &self.nodes {
+            let free = &wall.beside;
             for a in 0..D {
-                f[own.node][a] += own.dashpot[a] * velocity[own.node][a]
-                    - own.followed[0][a] * free.velocity[0][a];
+                f[wall.node][a] += wall.dashpot[a] * velocity[wall.node][a]
+                    - wall.followed[0][a] * free.velocity[0][a];
             }
         }
-        if what_differs {
-            for own in &self.nodes {
+        if is_difference {
+            for wall in &self.nodes {
                 let FreeMotion {
                     displacement: [d0, d1],
                     force: [f0, f1],
                     ..
-                } = &own.beside;
+                } = &wall.beside;
                 for a in 0..D {
-                    f[own.node][a] += own.followed[1][a] * (d1[a] - d0[a]) + (f1[a] - f0[a]);
+                    f[wall.node][a] += wall.followed[1][a] * (d1[a] - d0[a]) + (f1[a] - f0[a]);
                 }
             }
             return;
         }
-        for own in &self.nodes {
-            let free = &own.beside;
+        for wall in &self.nodes {
+            let free = &wall.beside;
             for a in 0..D {
-                f[own.node][a] += own.spring[a] * own.displacement[a]
-                    - own.followed[1][a] * free.displacement[0][a]
+                f[wall.node][a] += wall.spring[a] * wall.displacement[a]
+                    - wall.followed[1][a] * free.displacement[0][a]
                     - free.force[0][a];
             }
         }
-        for own in &self.ties {
+        for tie in &self.ties {
             for a in 0..D {
-                let force = own.stiffness * own.gap[a];
-                f[own.nodes[0]][a] += force;
-                f[own.nodes[1]][a] -= force;
+                let force = tie.stiffness * tie.gap[a];
+                f[tie.nodes[0]][a] += force;
+                f[tie.nodes[1]][a] -= force;
             }
         }
     }
 
     /// The forces of ties over a step by nodal displacements `u` \[length\].
     pub(crate) fn of_ties(&self, u: &[[f64; D]]) -> Vec<TieForce<D>> {
-        let force = |own: &Tie<D>| {
-            let [first, second] = own.nodes.map(|node| &u[node]);
+        let force = |tie: &Tie<D>| {
+            let [first, second] = tie.nodes.map(|node| &u[node]);
             TieForce {
-                nodes: own.nodes,
+                nodes: tie.nodes,
                 force: [
-                    own.gap.map(|gap| own.stiffness * gap),
-                    std::array::from_fn(|a| own.stiffness * (own.gap[a] + first[a] - second[a])),
+                    tie.gap.map(|gap| tie.stiffness * gap),
+                    std::array::from_fn(|a| tie.stiffness * (tie.gap[a] + first[a] - second[a])),
                 ],
             }
         };
@@ -217,7 +217,7 @@ impl<const D: usize> WallForces<D> {
 
 impl<const D: usize> NodalForces<D> for WallForces<D> {
     fn pairs(&self) -> Vec<(usize, usize)> {
-        let ties = self.ties.iter().map(|own| own.nodes);
+        let ties = self.ties.iter().map(|tie| tie.nodes);
         ties.flat_map(|[a, b]| [(a, b), (b, a)]).collect()
     }
 
@@ -227,28 +227,28 @@ impl<const D: usize> NodalForces<D> for WallForces<D> {
 
     fn add(&self, u: &[[f64; D]], f: &mut [[f64; D]], blocks: Option<&mut AddBlock<'_, D>>) {
         let still = [0.0; D];
-        for own in &self.nodes {
-            let by = &u[own.node];
+        for wall in &self.nodes {
+            let by = &u[wall.node];
             let velocity = self.step.map_or(still, |step| {
-                step.after(&own.velocity, &own.acceleration, by).0
+                step.after(&wall.velocity, &wall.acceleration, by).0
             });
-            let free = &own.beside;
+            let free = &wall.beside;
             let of_free = if self.step.is_some() {
                 free.velocity[1]
             } else {
                 still
             };
             for a in 0..D {
-                f[own.node][a] += own.dashpot[a] * velocity[a] - own.followed[0][a] * of_free[a]
-                    + own.spring[a] * (own.displacement[a] + by[a])
-                    - own.followed[1][a] * free.displacement[1][a]
+                f[wall.node][a] += wall.dashpot[a] * velocity[a] - wall.followed[0][a] * of_free[a]
+                    + wall.spring[a] * (wall.displacement[a] + by[a])
+                    - wall.followed[1][a] * free.displacement[1][a]
                     - free.force[1][a];
             }
         }
-        for own in &self.ties {
-            let [first, second] = own.nodes;
+        for tie in &self.ties {
+            let [first, second] = tie.nodes;
             for a in 0..D {
-                let force = own.stiffness * (own.gap[a] + u[first][a] - u[second][a]);
+                let force = tie.stiffness * (tie.gap[a] + u[first][a] - u[second][a]);
                 f[first][a] += force;
                 f[second][a] -= force;
             }
@@ -257,15 +257,15 @@ impl<const D: usize> NodalForces<D> for WallForces<D> {
             return;
         };
         let rate = self.step.map_or(0.0, |step| step.velocity_rate());
-        for own in &self.nodes {
+        for wall in &self.nodes {
             let mut block = [[0.0; D]; D];
             for (a, row) in block.iter_mut().enumerate() {
-                row[a] = rate * own.dashpot[a] + own.spring[a];
+                row[a] = rate * wall.dashpot[a] + wall.spring[a];
             }
-            blocks(own.node, own.node, &block);
+            blocks(wall.node, wall.node, &block);
         }
-        for own in &self.ties {
-            let [first, second] = own.nodes;
+        for tie in &self.ties {
+            let [first, second] = tie.nodes;
             for (row, column, sign) in [
                 (first, first, 1.0),
                 (second, second, 1.0),
@@ -274,7 +274,7 @@ impl<const D: usize> NodalForces<D> for WallForces<D> {
             ] {
                 let mut block = [[0.0; D]; D];
                 for (a, entries) in block.iter_mut().enumerate() {
-                    entries[a] = sign * own.stiffness;
+                    entries[a] = sign * tie.stiffness;
                 }
                 blocks(row, column, &block);
             }
@@ -309,7 +309,7 @@ fn ties<const D: usize>(
         .collect()
 }
 
-/// What soil leaves at the nodes of the walls of a grid.
+/// Shares of soil at the nodes of the walls of a grid.
 fn shares<const D: usize>(
     particles: &Particles<D>,
     stencils: &Stencils<D>,
@@ -325,7 +325,7 @@ fn shares<const D: usize>(
     for &particle in stencils.order() {
         let particle = particle as usize;
         let supports = stencils.of(particle);
-        if !supports.iter().any(|own| at_wall(own.node)) {
+        if !supports.iter().any(|support| at_wall(support.node)) {
             continue;
         }
         let bound = conditions.laws[particles.law[particle]].stiffness_bound();
@@ -334,11 +334,11 @@ fn shares<const D: usize>(
         let shear = bound.shear() * stiffness;
         let compression = bound.bulk() * stiffness + 4.0 / 3.0 * shear + water;
         let (mass, volume) = (mass_of(particle), particles.volume(particle));
-        for support in supports.iter().filter(|own| at_wall(own.node)) {
-            let own = shares.entry(support.node).or_default();
+        for support in supports.iter().filter(|support| at_wall(support.node)) {
+            let share = shares.entry(support.node).or_default();
             for (k, modulus) in [compression, shear].into_iter().enumerate() {
-                own.impedance[k] += support.value * (mass * volume * modulus).sqrt();
-                own.modulus[k] += support.value * volume * modulus;
+                share.impedance[k] += support.value * (mass * volume * modulus).sqrt();
+                share.modulus[k] += support.value * volume * modulus;
             }
         }
     }

@@ -1,5 +1,5 @@
 //! Laws that are asked for many particles at once: their trial strains are gathered before a pass, and the
-//! pass finds the answers there. What is computed is the same.
+//! pass finds the answers there. The results are the same.
 
 use igimp_material::{History, PointContext, Principal, ReturnMap};
 use rayon::prelude::*;
@@ -21,7 +21,7 @@ impl<const D: usize> System<'_, D> {
             .map(|particle| {
                 let law = &laws[particles.law[particle]];
                 let is_asked = law.batches().is_some() && particles.ratios[particle].are_one();
-                // What is wrong with the step is said in the pass.
+                // Faults of the step are found in the pass.
                 let strained = is_asked.then(|| {
                     let (supports, hoops) = self.stencils.with_hoops(particle);
                     self.strain_particle((particle, supports, hoops), u).ok()
@@ -35,20 +35,20 @@ impl<const D: usize> System<'_, D> {
             let Some(batches) = law.batches() else {
                 continue;
             };
-            let is_own = |&particle: &usize| particles.law[particle] == number;
-            let (own, asked): (Vec<usize>, Vec<Principal>) = (0..particles.len())
-                .filter(is_own)
+            let of_law = |&particle: &usize| particles.law[particle] == number;
+            let (list, asked): (Vec<usize>, Vec<Principal>) = (0..particles.len())
+                .filter(of_law)
                 .filter_map(|particle| Some((particle, strains[particle]?)))
                 .unzip();
-            let Some(&first) = own.first() else { continue };
-            let histories: Vec<History> = own.iter().map(|&own| particles.history(own)).collect();
+            let Some(&first) = list.first() else { continue };
+            let histories: Vec<History> = list.iter().map(|&p| particles.history(p)).collect();
             let found = batches
                 .return_maps(&asked, &histories, &context)
                 .map_err(|source| AssemblyError::Material {
                     particle: first,
                     source,
                 })?;
-            for (particle, answer) in std::iter::zip(own, found) {
+            for (particle, answer) in std::iter::zip(list, found) {
                 answers[particle] = Some(answer);
             }
         }

@@ -31,10 +31,10 @@ pub(crate) struct BlockTable<const D: usize> {
     wide: BTreeMap<u32, Vec<(u32, u32)>>,
 }
 
-/// What scattering needs to know of a node.
+/// Data of a node for scattering.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NodePlace {
-    /// A number such that differences of it tell two nodes' distance apart.
+    /// A number such that differences of it stand for the distance of two nodes.
     pub(crate) code: u32,
     /// Its block in the pattern, or [`NONE`].
     pub(crate) block: u32,
@@ -135,16 +135,16 @@ impl<const D: usize> BlockTable<D> {
         let mut shapes = vec![0_u64; grid.node_count()];
         let mut nodes = Vec::new();
         for &particle in stencils.order() {
-            let own = stencils.of(particle as usize);
-            if same_nodes(own, last) {
+            let supports = stencils.of(particle as usize);
+            if same_nodes(supports, last) {
                 continue;
             }
-            last = own;
-            if let Some(extent) = box_extent(grid, own) {
-                shapes[own[0].node] |= 1 << shape(extent);
+            last = supports;
+            if let Some(extent) = box_extent(grid, supports) {
+                shapes[supports[0].node] |= 1 << shape(extent);
             } else {
                 nodes.clear();
-                nodes.extend(own.iter().map(|support| support.node));
+                nodes.extend(supports.iter().map(|support| support.node));
                 self.couple_all(&nodes, &mut wide);
             }
         }
@@ -334,15 +334,15 @@ fn box_nodes<const D: usize>(
 ) -> impl Iterator<Item = usize> {
     let mut stride = 1;
     let strides: [usize; D] = std::array::from_fn(|axis| {
-        let own = stride;
+        let step = stride;
         stride *= grid.axes[axis].node_count();
-        own
+        step
     });
     let count = extent.iter().map(|extent| extent + 1).product();
     let mut place = [0; D];
     let mut node = first;
     (0..count).map(move |_| {
-        let own = node;
+        let current = node;
         for axis in 0..D {
             if place[axis] < extent[axis] {
                 place[axis] += 1;
@@ -352,7 +352,7 @@ fn box_nodes<const D: usize>(
             node -= place[axis] * strides[axis];
             place[axis] = 0;
         }
-        own
+        current
     })
 }
 
@@ -362,8 +362,8 @@ const SIDES: usize = 4;
 /// How far the box extends that supports fill, in nodes along each axis; `None` when they do not fill it, or when it
 /// is larger than any common one.
 #[inline]
-fn box_extent<const D: usize>(grid: &Grid<D>, own: &[Support<D>]) -> Option<[usize; D]> {
-    let (first, last) = (own[0].node, own[own.len() - 1].node);
+fn box_extent<const D: usize>(grid: &Grid<D>, supports: &[Support<D>]) -> Option<[usize; D]> {
+    let (first, last) = (supports[0].node, supports[supports.len() - 1].node);
     let places = (grid.node_place(first), grid.node_place(last));
     let mut extent = [0; D];
     for axis in 0..D {
@@ -372,7 +372,7 @@ fn box_extent<const D: usize>(grid: &Grid<D>, own: &[Support<D>]) -> Option<[usi
             return None;
         }
     }
-    let nodes = own.iter().map(|support| support.node);
+    let nodes = supports.iter().map(|support| support.node);
     nodes.eq(box_nodes(grid, first, extent)).then_some(extent)
 }
 

@@ -1,4 +1,4 @@
-//! What acts in a step that takes time beside inertia: the motion of the ground, what walls carry, and damping of soil
+//! Forces beside inertia in a step that takes time: the motion of the ground, walls, and damping of soil
 //! (theory, eqs. 69 to 75).
 
 use igimp_material::TangentKind;
@@ -23,15 +23,15 @@ pub(crate) struct WorkOfGround {
 }
 
 impl<const D: usize> System<'_, D> {
-    /// Adds to the external force what the motion of the ground and the forces that walls carry give, and lets soil be damped by
+    /// Adds the motion of the ground and the forces that walls carry to the external force, and lets soil be damped by
     /// its mass.
     pub(crate) fn act_by_ground(&mut self, inertia: &mut Inertia<D>) {
         let conditions = &self.conditions;
-        for own in conditions.walls.iter().flat_map(|own| own.nodes.iter()) {
-            for carrier in self.stencils.carriers(own.node) {
+        for wall in conditions.walls.iter().flat_map(|walls| walls.nodes.iter()) {
+            for carrier in self.stencils.carriers(wall.node) {
                 if self.stencils.node_volume(carrier.node) > 0.0 {
                     for a in 0..D {
-                        self.loads.f_ext[carrier.node][a] += carrier.weight * own.force[a];
+                        self.loads.f_ext[carrier.node][a] += carrier.weight * wall.force[a];
                     }
                 }
             }
@@ -42,7 +42,7 @@ impl<const D: usize> System<'_, D> {
                 *f_ext = std::array::from_fn(|a| f_ext[a] - force[a]);
             }
         }
-        inertia.damp(conditions.damping.map_or(0.0, |own| own.mass));
+        inertia.damp(conditions.damping.map_or(0.0, |damping| damping.mass));
     }
 
     /// A motion of all nodes of the grid and of the centres of mass of rigid bodies, by node.
@@ -140,8 +140,8 @@ impl<const D: usize> System<'_, D> {
             *f = std::array::from_fn(|a| f[a] + force[a]);
         }
         let rate = damping.factor * damping.rate;
-        for (value, own) in values.into_iter().flatten().zip(&damping.stiffness.values) {
-            *value += rate * own;
+        for (value, entry) in values.into_iter().flatten().zip(&damping.stiffness.values) {
+            *value += rate * entry;
         }
     }
 
@@ -156,14 +156,14 @@ impl<const D: usize> System<'_, D> {
             .walls
             .add_at_start(inertia.velocity(), false, &mut at_start);
         let carried = (self.conditions.walls.iter())
-            .flat_map(|own| own.nodes.iter())
-            .map(|own| {
+            .flat_map(|walls| walls.nodes.iter())
+            .map(|wall| {
                 // Where it is tied it moves with others.
                 let carried = |a: usize| {
-                    let carriers = self.stencils.carriers(own.node);
+                    let carriers = self.stencils.carriers(wall.node);
                     carriers.map(|by| by.weight * u[by.node][a]).sum::<f64>()
                 };
-                (0..D).map(|a| own.force[a] * carried(a)).sum::<f64>()
+                (0..D).map(|a| wall.force[a] * carried(a)).sum::<f64>()
             })
             .sum();
         let damped = |velocity: &[[f64; D]]| {

@@ -51,7 +51,7 @@ pub struct ParticleTrial<const D: usize> {
 }
 
 impl<const D: usize> ParticleTrial<D> {
-    /// A particle at rest without stress: what is there before the first evaluation.
+    /// A particle at rest without stress: its state before the first evaluation.
     pub(crate) fn at_rest() -> Self {
         Self {
             delta_def_grad: identity(),
@@ -71,7 +71,7 @@ impl<const D: usize> ParticleTrial<D> {
     }
 }
 
-/// What the linearisation of a particle needs beside its stress.
+/// Data for the linearisation of a particle beside its stress.
 #[derive(Clone, Debug)]
 pub(crate) struct Linearisation<const D: usize> {
     /// ΔF⁻¹; the identity in small strain, where gradients are not pushed forward.
@@ -80,7 +80,7 @@ pub(crate) struct Linearisation<const D: usize> {
     pub(crate) push_bar: [[f64; D]; D],
     /// Stress and tangent in spatial axes, those of the water in the pores included.
     pub(crate) lifted: Lifted<D>,
-    /// What its plastic and its nonlocal strain are to each other, where strength sees that.
+    /// Its plastic strain and the rates of that, where strength sees that.
     pub(crate) nonlocal: Option<SpatialRates<D>>,
 }
 
@@ -92,7 +92,7 @@ pub(crate) struct ParticleState<'a> {
     pub(crate) pores: PoreResponse,
 }
 
-/// How a particle is strained at nodal step displacements: what its law is asked at, and what its linearisation needs.
+/// How a particle is strained at nodal step displacements: the strain for its law, and data for its linearisation.
 pub(crate) struct Straining<const D: usize> {
     delta_def_grad: [[f64; D]; D],
     /// As [`Linearisation::push`] and [`Linearisation::push_bar`].
@@ -120,7 +120,7 @@ pub(crate) fn strained<const D: usize>(
 ) -> Result<Straining<D>, AssemblyError> {
     let particle = state.particle;
     let gradients = Gradients::of((supports, hoops), u);
-    let mut delta_def_grad = gradients.own;
+    let mut delta_def_grad = gradients.grad;
     let mut delta_bar = gradients.bar;
     let around = gradients.hoop.map(|hoop| Hoop::UNSTRETCHED.plus(1.0, hoop));
     for a in 0..D {
@@ -220,7 +220,7 @@ pub(crate) fn answered<const D: usize>(
 /// Gradients of nodal step displacements at a particle \[-\].
 pub(crate) struct Gradients<const D: usize> {
     /// Its own.
-    pub(crate) own: [[f64; D]; D],
+    pub(crate) grad: [[f64; D]; D],
     /// The cell-averaged one.
     pub(crate) bar: [[f64; D]; D],
     /// Strain around the axis u_r/r, both of them; none unless the section is axisymmetric.
@@ -231,19 +231,19 @@ impl<const D: usize> Gradients<D> {
     /// Those of displacements `u` \[length\].
     #[inline]
     pub(crate) fn of((supports, hoops): (&[Support<D>], &[Hoop]), u: &[[f64; D]]) -> Self {
-        let mut own = [[0.0; D]; D];
+        let mut grad = [[0.0; D]; D];
         let mut bar = [[0.0; D]; D];
         for support in supports {
             let displacement = &u[support.node];
             for a in 0..D {
                 for b in 0..D {
-                    own[a][b] += displacement[a] * support.grad[b];
+                    grad[a][b] += displacement[a] * support.grad[b];
                     bar[a][b] += displacement[a] * support.grad_bar[b];
                 }
             }
         }
         let hoop = (!hoops.is_empty()).then(|| Hoop::strain(supports, hoops, u));
-        Self { own, bar, hoop }
+        Self { grad, bar, hoop }
     }
 
     /// The cell-averaged dilatation, in small strain.
@@ -256,12 +256,12 @@ impl<const D: usize> Gradients<D> {
     /// Adds the small strain of the step, with the cell-averaged dilatation (theory, eqs. 9 and 130c) \[-\].
     #[inline]
     pub(crate) fn add_small_strain(&self, strain: &mut Tensor) {
-        let Self { own, bar, hoop } = self;
+        let Self { grad, bar, hoop } = self;
         let mut difference = 0.0;
         for a in 0..D {
-            difference += bar[a][a] - own[a][a];
+            difference += bar[a][a] - grad[a][a];
             for b in 0..D {
-                strain[a][b] += 0.5 * (own[a][b] + own[b][a]);
+                strain[a][b] += 0.5 * (grad[a][b] + grad[b][a]);
             }
         }
         if let Some(hoop) = hoop {
@@ -300,7 +300,7 @@ fn pushed_forward<const D: usize>(
     out
 }
 
-/// What a law answers is checked here, whatever law it is, so that the particle can be named.
+/// Answers of laws are checked here, for any law, so that the particle can be named.
 #[inline]
 fn finite<const D: usize>(lifted: &Lifted<D>) -> Result<(), MaterialError> {
     let quantity = if !lifted.tau.iter().flatten().all(|tau| tau.is_finite()) {

@@ -61,9 +61,9 @@ impl<const D: usize> Moduli<D> {
         reason = "compiled for the instructions of the caller"
     )]
     #[inline(always)]
-    pub(crate) fn of(own: &Linearisation<D>, volume: f64, kinematics: Kinematics) -> Self {
-        let tangent = own.lifted.tangent();
-        let tau = &own.lifted.tau;
+    pub(crate) fn of(point: &Linearisation<D>, volume: f64, kinematics: Kinematics) -> Self {
+        let tangent = point.lifted.tangent();
+        let tau = &point.lifted.tau;
         let p = (tau[0][0] + tau[1][1] + tau[2][2]) / 3.0;
         let geometric = match kinematics {
             Kinematics::FiniteStrain => volume,
@@ -99,7 +99,7 @@ impl<const D: usize> Moduli<D> {
     }
 }
 
-/// What the tangent of stress of a particle of a body of revolution has to do with the direction around the axis, t (theory,
+/// Moduli of a particle of a body of revolution in the direction around the axis, t (theory,
 /// eq. 130e).
 struct HoopModuli<const D: usize> {
     /// V A_ttcd by c, d \[energy\].
@@ -115,9 +115,9 @@ struct HoopModuli<const D: usize> {
 }
 
 impl<const D: usize> HoopModuli<D> {
-    /// Those of a particle of volume `volume`: what sums over all directions have beyond those over the plane.
-    fn of(own: &Linearisation<D>, volume: f64, kinematics: Kinematics) -> Self {
-        let (tangent, tau) = (own.lifted.tangent(), &own.lifted.tau);
+    /// Those of a particle of volume `volume`: sums over all directions less those over the plane.
+    fn of(point: &Linearisation<D>, volume: f64, kinematics: Kinematics) -> Self {
+        let (tangent, tau) = (point.lifted.tangent(), &point.lifted.tau);
         let (mut row, mut column) = ([[0.0; D]; D], [[0.0; D]; D]);
         for c in 0..D {
             for d in 0..D {
@@ -177,7 +177,7 @@ impl<const D: usize> Linearised<D> {
     pub(crate) fn push(
         &mut self,
         (supports, around): (&[Support<D>], Option<Around<'_>>),
-        own: &Linearisation<D>,
+        point: &Linearisation<D>,
     ) {
         self.g.clear();
         self.g_bar.clear();
@@ -185,8 +185,8 @@ impl<const D: usize> Linearised<D> {
         if let Some(Around { hoops, push }) = around {
             self.hoops.extend(hoops.iter().map(|hoop| hoop.times(push)));
         }
-        let g = |support: &Support<D>| transpose_apply(&own.push, &support.grad);
-        let g_bar = |support: &Support<D>| transpose_apply(&own.push_bar, &support.grad_bar);
+        let g = |support: &Support<D>| transpose_apply(&point.push, &support.grad);
+        let g_bar = |support: &Support<D>| transpose_apply(&point.push_bar, &support.grad_bar);
         self.g.extend(supports.iter().map(g));
         self.g_bar.extend(supports.iter().map(g_bar));
     }
@@ -205,10 +205,10 @@ impl<const D: usize> Linearised<D> {
     #[inline]
     pub(crate) fn forces(
         &self,
-        own: &Linearisation<D>,
+        point: &Linearisation<D>,
         volume: f64,
     ) -> impl Iterator<Item = [f64; D]> {
-        let mut tau = own.lifted.tau;
+        let mut tau = point.lifted.tau;
         let p = (tau[0][0] + tau[1][1] + tau[2][2]) / 3.0;
         for a in 0..D {
             tau[a][a] -= p;
@@ -229,10 +229,10 @@ impl<const D: usize> Linearised<D> {
     #[inline]
     pub(crate) fn hoop_forces(
         &self,
-        own: &Linearisation<D>,
+        point: &Linearisation<D>,
         volume: f64,
     ) -> impl Iterator<Item = f64> {
-        let tau = &own.lifted.tau;
+        let tau = &point.lifted.tau;
         let p = (tau[0][0] + tau[1][1] + tau[2][2]) / 3.0;
         let deviator = tau[2][2] - p;
         (self.hoops.iter()).map(move |hoop| volume * (deviator * hoop.own + p * hoop.bar))
@@ -246,18 +246,18 @@ impl<const D: usize> Linearised<D> {
     #[inline(always)]
     pub(crate) fn linearise_particle(
         &mut self,
-        own: &Linearisation<D>,
+        point: &Linearisation<D>,
         volume: f64,
         kinematics: Kinematics,
     ) {
-        let moduli = Moduli::of(own, volume, kinematics);
+        let moduli = Moduli::of(point, volume, kinematics);
         self.linearise(&moduli);
         if !self.hoops.is_empty() {
-            self.add_hoops(&moduli, &HoopModuli::of(own, volume, kinematics));
+            self.add_hoops(&moduli, &HoopModuli::of(point, volume, kinematics));
         }
     }
 
-    /// Adds to the factors of the rows what stretching around the axis does, and sets those of its columns.
+    /// Adds to the factors of the rows the terms of stretching around the axis, and sets those of its columns.
     #[inline(never)]
     fn add_hoops(&mut self, moduli: &Moduli<D>, hoop: &HoopModuli<D>) {
         for factors in &mut self.around {
@@ -294,12 +294,12 @@ impl<const D: usize> Linearised<D> {
                 let radial = if a == 0 { 1.0 } else { 0.0 };
                 let d_3 = g_bar[a] - g[a] + radial * (t_bar - t);
                 let mut z = moduli.trace * d_3 + radial * hoop.right * t;
-                let mut own = hoop.left * d_3 + radial * hoop.both * t;
+                let mut sum = hoop.left * d_3 + radial * hoop.both * t;
                 for b in 0..D {
                     z += moduli.right[b][a] * g[b];
-                    own += hoop.column[b][a] * g[b];
+                    sum += hoop.column[b][a] * g[b];
                 }
-                around[i * D + a] = own - z;
+                around[i * D + a] = sum - z;
                 around_bar[i * D + a] = z - radial * moduli.vp * t_bar;
             }
         }
@@ -337,23 +337,23 @@ impl<const D: usize> Linearised<D> {
             }
             for c in 0..D {
                 for d in 0..D {
-                    let mut own_y: [f64; D] = std::array::from_fn(|a| left[c][d] * d_3[a]);
+                    let mut y_cd: [f64; D] = std::array::from_fn(|a| left[c][d] * d_3[a]);
                     for b in 0..D {
                         for a in 0..D {
-                            own_y[a] += modulus[c][d][b][a] * g[b];
+                            y_cd[a] += modulus[c][d][b][a] * g[b];
                         }
                     }
-                    let mut own_h = [0.0; D];
-                    own_h[d] = -vp * g_bar[c];
+                    let mut h_cd = [0.0; D];
+                    h_cd[d] = -vp * g_bar[c];
                     if c == d {
                         for a in 0..D {
-                            own_y[a] -= z[a];
-                            own_h[a] += z[a];
+                            y_cd[a] -= z[a];
+                            h_cd[a] += z[a];
                         }
                     }
                     let place = (c * D + d) * stride + i * D;
-                    y[place..place + D].copy_from_slice(&own_y);
-                    h[place..place + D].copy_from_slice(&own_h);
+                    y[place..place + D].copy_from_slice(&y_cd);
+                    h[place..place + D].copy_from_slice(&h_cd);
                 }
             }
         }
@@ -406,14 +406,14 @@ impl<const D: usize> Linearised<D> {
         std::array::from_fn(|c| &columns[c * LANES * lanes..][..LANES * lanes])
     }
 
-    /// Adds to the radial column of a support what stretching around the axis does.
+    /// Adds stretching around the axis to the radial column of a support.
     #[inline(never)]
     fn add_radial_column(&mut self, j: usize) {
         let (hoop, [around, around_bar]) = (self.hoops[j], &self.around);
         let radial = self.columns[..self.lanes].iter_mut();
-        for (column, (own, bar)) in radial.zip(around.iter().zip(around_bar)) {
+        for (column, (value, bar)) in radial.zip(around.iter().zip(around_bar)) {
             for lane in 0..LANES {
-                column[lane] += own[lane] * hoop.own + bar[lane] * hoop.bar;
+                column[lane] += value[lane] * hoop.own + bar[lane] * hoop.bar;
             }
         }
     }

@@ -25,13 +25,13 @@ pub(crate) fn mirror(pattern: &Pattern, values: &mut [f64]) {
     let slices = split(values, pieces.iter().map(stored));
     let mut all: Vec<(Range<usize>, &mut [f64])> = pieces.into_iter().zip(slices).collect();
     let into_second = |pair: &mut [(Range<usize>, &mut [f64])]| {
-        if let [(before, earlier), (piece, own)] = pair {
-            fill_upper(pattern, (before.clone(), earlier), (piece.clone(), own));
+        if let [(before, earlier), (piece, slice)] = pair {
+            fill_upper(pattern, (before.clone(), earlier), (piece.clone(), slice));
         }
     };
     all.par_chunks_mut(2).for_each(into_second);
-    if let Some(((piece, own), rest)) = all.split_first_mut() {
-        fill_upper(pattern, (0..0, &[]), (piece.clone(), own));
+    if let Some(((piece, slice), rest)) = all.split_first_mut() {
+        fill_upper(pattern, (0..0, &[]), (piece.clone(), slice));
         rest.par_chunks_mut(2).for_each(into_second);
     }
 }
@@ -40,7 +40,7 @@ pub(crate) fn mirror(pattern: &Pattern, values: &mut [f64]) {
 fn fill_upper(
     pattern: &Pattern,
     (before, earlier): (Range<usize>, &[f64]),
-    (piece, own): (Range<usize>, &mut [f64]),
+    (piece, slice): (Range<usize>, &mut [f64]),
 ) {
     let first_block = if before.is_empty() {
         piece.start
@@ -74,7 +74,7 @@ fn fill_upper(
             let source = if other < piece.start {
                 &earlier[first(other) - first(before.start)..]
             } else {
-                &own[first(other) - first(piece.start)..]
+                &slice[first(other) - first(piece.start)..]
             };
             let (source, stride) = (&source[*next..], pattern.height(other));
             // Most nodes have three unknowns: known lengths leave nothing of the loops.
@@ -84,7 +84,7 @@ fn fill_upper(
                     *column.expect("rows of a node follow one another")
                 });
                 for c in 0..3 {
-                    let to = &mut own[to + c * height + row..][..3];
+                    let to = &mut slice[to + c * height + row..][..3];
                     for a in 0..3 {
                         to[a] = block[a][c];
                     }
@@ -96,7 +96,7 @@ fn fill_upper(
                 }
                 for a in 0..other_len {
                     for c in 0..len {
-                        own[to + c * height + row + a] = block[a][c];
+                        slice[to + c * height + row + a] = block[a][c];
                     }
                 }
             }

@@ -3,7 +3,7 @@
 use crate::equations::system::System;
 
 impl<const D: usize> System<'_, D> {
-    /// The place in the matrix of what a component of the displacement of the column node does along itself to the row node; both of
+    /// The place in the matrix that couples a component of the column node with the same of the row node; both of
     /// the grid. None where one of them is held.
     pub(crate) fn place_of(&self, row: usize, column: usize, axis: usize) -> Option<usize> {
         let rank = self.unknowns.index(row, axis)? - self.unknowns.before(row);

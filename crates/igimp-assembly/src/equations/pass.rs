@@ -136,13 +136,13 @@ impl<const D: usize> System<'_, D> {
             let particle = particle as usize;
             let (supports, hoops) = self.stencils.with_hoops(particle);
             let answer = answers.get(particle).and_then(Option::as_ref);
-            let own = self
+            let point = self
                 .evaluate_with((particle, supports, hoops), u, kind, answer, trial)
                 .map_err(|error| (particle, error))?;
             let volume = self.reference_volume(particle);
             let around = self.around((supports, hoops), u);
-            scratch.linearised.push((supports, around), &own);
-            let forces = scratch.linearised.forces(&own, volume);
+            scratch.linearised.push((supports, around), &point);
+            let forces = scratch.linearised.forces(&point, volume);
             for (support, force) in supports.iter().zip(forces) {
                 let sum = &mut strip.f_int[support.node - strip.first_node];
                 for axis in 0..D {
@@ -150,7 +150,7 @@ impl<const D: usize> System<'_, D> {
                 }
             }
             if around.is_some() {
-                let forces = scratch.linearised.hoop_forces(&own, volume);
+                let forces = scratch.linearised.hoop_forces(&point, volume);
                 for (support, force) in supports.iter().zip(forces) {
                     strip.f_int[support.node - strip.first_node][0] += force;
                 }
@@ -162,7 +162,7 @@ impl<const D: usize> System<'_, D> {
             if let Some(water) = &water {
                 water.add_forces(strip.first_scalar, strip.f_of_scalars);
             }
-            let strain = self.strain_of_particle(particle, &own, u);
+            let strain = self.strain_of_particle(particle, &point, u);
             if let Some(strain) = &strain {
                 strain.add_forces(supports, strip.first_scalar, strip.f_of_scalars);
             }
@@ -186,7 +186,7 @@ impl<const D: usize> System<'_, D> {
             }
             arch.dispatch(Addition {
                 supports,
-                own: &own,
+                point: &point,
                 water: water.as_ref(),
                 strain: strain.as_ref(),
                 volume,
@@ -240,17 +240,17 @@ impl<const D: usize> System<'_, D> {
                     .return_map(straining.principal(), &history, &context)
                     .map_err(material)?,
             };
-            let mut own = answered(state, straining, law, &answer, (kind, kinematics), trial)?;
+            let mut point = answered(state, straining, law, &answer, (kind, kinematics), trial)?;
             if rise.is_some() {
                 let elastic = match kind {
                     TangentKind::Elastic => 1.0,
                     TangentKind::Consistent => 0.0,
                     TangentKind::Regularised { elastic } => elastic,
                 };
-                let rates = SpatialRates::of(&answer.nonlocal, &own.lifted.frame, elastic);
-                own.nonlocal = Some(rates);
+                let rates = SpatialRates::of(&answer.nonlocal, &point.lifted.frame, elastic);
+                point.nonlocal = Some(rates);
             }
-            Ok(own)
+            Ok(point)
         };
         let laws = &self.conditions.laws;
         let asked = self.particles.ask_law(particle, laws, ask);
@@ -262,10 +262,10 @@ impl<const D: usize> System<'_, D> {
     pub(crate) fn strain_of_particle<'c>(
         &'c self,
         particle: usize,
-        own: &'c Linearisation<D>,
+        point: &'c Linearisation<D>,
         u: &[[f64; D]],
     ) -> Option<StrainOfParticle<'c, D>> {
-        let rates = own.nonlocal.as_ref()?;
+        let rates = point.nonlocal.as_ref()?;
         let supports = (self.stencils.of(particle), rates);
         let volumes = [
             self.particles.volume(particle),
@@ -323,7 +323,7 @@ impl<const D: usize> System<'_, D> {
 /// The tangent of one particle on its way into the matrix, with wider instructions where the processor has them.
 struct Addition<'a, const D: usize> {
     supports: &'a [Support<D>],
-    own: &'a Linearisation<D>,
+    point: &'a Linearisation<D>,
     /// Its water, where that flows.
     water: Option<&'a WaterOfParticle<'a, D>>,
     /// Its nonlocal strain, where strength sees that.
@@ -356,7 +356,7 @@ impl<const D: usize> WithSimd for Addition<'_, D> {
         if D == 3 {
             // Processors with vectors fuse products and sums; without, fusing would be slow.
             let fuses = S::F64_LANES > 1;
-            let moduli = Moduli::of(self.own, self.volume, self.kinematics);
+            let moduli = Moduli::of(self.point, self.volume, self.kinematics);
             patch.take(self.supports, linearised, moduli);
             if self.ends_patch {
                 patch.sum(fuses);
@@ -364,11 +364,11 @@ impl<const D: usize> WithSimd for Addition<'_, D> {
             }
         } else {
             let nodes = self.supports.iter().map(|support| support.node);
-            linearised.linearise_particle(self.own, self.volume, self.kinematics);
-            if let Some(own) = self.water {
-                scalar.set_water(own, self.supports);
-            } else if let Some(own) = self.strain {
-                scalar.set_strain(own, self.supports, linearised);
+            linearised.linearise_particle(self.point, self.volume, self.kinematics);
+            if let Some(water) = self.water {
+                scalar.set_water(water, self.supports);
+            } else if let Some(strain) = self.strain {
+                scalar.set_strain(strain, self.supports, linearised);
             }
             if self.water.is_some() || self.strain.is_some() {
                 rows.set(nodes, self.matrix.0, true);

@@ -35,7 +35,7 @@ type Lane = [f64; LANES];
 pub(crate) struct Patch<const D: usize> {
     /// The nodes of all particles, ascending.
     nodes: Vec<usize>,
-    /// The nodes that particles may have who share the patch, ascending.
+    /// The nodes that particles of the patch may have, ascending.
     allowed: Vec<usize>,
     /// The unknown rows of the nodes.
     rows: Rows,
@@ -104,12 +104,12 @@ impl<const D: usize> Patch<D> {
         self.nodes.clear();
         self.allow(grid, first[0].node, near.min(FURTHEST));
         if let Some(mut mask) = self.mask(first) {
-            for own in supports {
-                if own[0].node != first[0].node {
+            for list in supports {
+                if list[0].node != first[0].node {
                     break;
                 }
-                let Some(own) = self.mask(own) else { break };
-                mask |= own;
+                let Some(bits) = self.mask(list) else { break };
+                mask |= bits;
                 count += 1;
             }
             let allowed = self.allowed.iter().enumerate();
@@ -151,9 +151,9 @@ impl<const D: usize> Patch<D> {
 
     /// The nodes of a particle among those allowed, one bit each; `None` if there are others.
     #[inline]
-    fn mask(&self, own: &[Support<D>]) -> Option<u64> {
+    fn mask(&self, supports: &[Support<D>]) -> Option<u64> {
         let (mut mask, mut k) = (0, 0);
-        for support in own {
+        for support in supports {
             while *self.allowed.get(k)? != support.node {
                 k += 1;
             }
@@ -178,9 +178,9 @@ impl<const D: usize> Patch<D> {
         let nothing = [[[0.0; LANES]; D]; 2];
         self.gradients.resize(first + self.lanes(), nothing);
         let gradients = &mut self.gradients[first..];
-        let own = std::iter::zip(linearised.g(), linearised.g_bar());
+        let pairs = std::iter::zip(linearised.g(), linearised.g_bar());
         let (mut place, mut touched) = (0, 0);
-        for (support, (&g, &g_bar)) in std::iter::zip(supports, own) {
+        for (support, (&g, &g_bar)) in std::iter::zip(supports, pairs) {
             while self.nodes[place] != support.node {
                 place += 1;
             }
@@ -222,12 +222,12 @@ impl<const D: usize> Patch<D> {
             let mut first = 0;
             let gradients = self.gradients.chunks_exact(lanes);
             for (member, gradients) in self.members.iter().zip(gradients) {
-                let own = &self.nodes_of[first..member.end];
+                let of_member = &self.nodes_of[first..member.end];
                 first = member.end;
                 if member.lanes & bit(lane) == 0 {
                     continue;
                 }
-                add_lane(sums, &gradients[lane], own, &member.moduli, fuses);
+                add_lane(sums, &gradients[lane], of_member, &member.moduli, fuses);
             }
             let columns = self.columns.chunks_exact_mut(height);
             for (column, sum) in columns.zip(self.sums[..end].as_flattened()) {
@@ -264,17 +264,17 @@ impl<const D: usize> Patch<D> {
             self.pieces.clear();
             let nodes = (table, &self.nodes[..]);
             self.rows.coupled(nodes, node, first, &mut self.pieces);
-            let own = &self.columns[j * D * stride..][..D * stride];
+            let columns = &self.columns[j * D * stride..][..D * stride];
             for &Piece { first, len, offset } in &self.pieces {
                 if usize::from(column.len) == D {
                     for c in 0..D {
                         let sums = &mut values[c * height + offset..];
-                        add_rows(sums, &own[c * stride + first..], len);
+                        add_rows(sums, &columns[c * stride + first..], len);
                     }
                 } else {
                     for (rank, c) in column.components().enumerate() {
                         let sums = &mut values[rank * height + offset..];
-                        add_rows(sums, &own[c * stride + first..], len);
+                        add_rows(sums, &columns[c * stride + first..], len);
                     }
                 }
             }
@@ -447,11 +447,11 @@ mod tests {
         let mut trial = ParticleTrial::at_rest();
         for particle in 0..body.len() {
             let supports = stencils.of(particle);
-            let own = system.evaluate_particle(particle, &u, kind, &mut trial);
-            let own = own.unwrap();
-            linearised.push((supports, None), &own);
+            let point = system.evaluate_particle(particle, &u, kind, &mut trial);
+            let point = point.unwrap();
+            linearised.push((supports, None), &point);
             let volume = system.reference_volume(particle);
-            linearised.linearise_particle(&own, volume, method.kinematics);
+            linearised.linearise_particle(&point, volume, method.kinematics);
             for (j, column) in supports.iter().enumerate() {
                 let columns = linearised.columns(j);
                 for (component, (c, _)) in system.unknowns().of(column.node).enumerate() {
@@ -479,7 +479,7 @@ mod tests {
     }
 
     #[test]
-    fn patches_sum_what_particles_contribute() {
+    fn patches_sum_contributions_of_particles() {
         let elasticity = Elasticity::new(1e3, 0.3).unwrap();
         compare(Arc::new(HenckyElastic::new(elasticity)));
         compare(Arc::new(

@@ -21,13 +21,13 @@ pub(crate) fn furthest<const D: usize>(
     let mut furthest = vec![0; grid.node_count()];
     let mut last: &[Support<D>] = &[];
     for &particle in stencils.order() {
-        let own = stencils.of(particle as usize);
-        if same_nodes(own, last) {
+        let supports = stencils.of(particle as usize);
+        if same_nodes(supports, last) {
             continue;
         }
-        last = own;
-        let reach = bounds(grid, own).1.into_iter().max().unwrap_or(0);
-        for support in own {
+        last = supports;
+        let reach = bounds(grid, supports).1.into_iter().max().unwrap_or(0);
+        for support in supports {
             furthest[support.node] = reach.max(furthest[support.node]);
         }
     }
@@ -41,12 +41,12 @@ pub(crate) fn furthest<const D: usize>(
 
 /// The reach that nearly all nodes keep to, and which nodes do not.
 pub(crate) fn common_reach(furthest: &[usize], most: usize) -> (usize, Vec<bool>) {
-    let beyond = |reach: usize| furthest.iter().filter(|&&own| own > reach).count();
-    let carrying = furthest.iter().filter(|&&own| own > 0).count();
+    let beyond = |reach: usize| furthest.iter().filter(|&&far| far > reach).count();
+    let carrying = furthest.iter().filter(|&&far| far > 0).count();
     let near = (SMALL_REACH..most)
         .find(|&reach| beyond(reach) * NODES_PER_WIDE <= carrying)
         .unwrap_or(most);
-    (near, furthest.iter().map(|&own| own > near).collect())
+    (near, furthest.iter().map(|&far| far > near).collect())
 }
 
 /// Whether two lists of supports have the same nodes.
@@ -115,8 +115,8 @@ mod tests {
     #[test]
     fn a_reach_that_many_nodes_have_is_common() {
         let furthest = |wide: usize| -> Vec<usize> {
-            let own = |k| if k < wide { 7 } else { 2 };
-            (0..100).map(own).collect()
+            let reach = |k| if k < wide { 7 } else { 2 };
+            (0..100).map(reach).collect()
         };
         assert_eq!(common_reach(&furthest(5), 7).0, 3);
         assert_eq!(common_reach(&furthest(6), 7).0, 7);

@@ -1,4 +1,4 @@
-//! How far a trial is from equilibrium (theory, eq. 24), and when that cannot be told from round-off
+//! How far a trial is from equilibrium (theory, eq. 24), and when that is round-off
 //! (eq. 24a).
 
 use rayon::prelude::*;
@@ -21,7 +21,7 @@ pub struct OutOfBalance {
     /// ‖f_ext − f_int‖ over the unknowns, divided by ‖f_ext‖ + ‖f_react‖, and the norm of the force of acceleration where the step
     /// takes time \[-\].
     pub relative_norm: f64,
-    /// Whether the norm cannot be told from the round-off of the internal force: no smaller one
+    /// Whether the norm cannot be distinguished from the round-off of the internal force: no smaller one
     /// can be reached.
     pub is_round_off: bool,
     /// Node and axis of the largest component.

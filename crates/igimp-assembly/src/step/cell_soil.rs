@@ -1,5 +1,5 @@
 //! The soil in every cell of the grid: how much there is, and where its centroid lies. From it come
-//! gradients that the particles of a cell share, which cells hold slivers only, and what of the weight shared
+//! gradients that the particles of a cell share, which cells hold slivers only, and the weight that shared
 //! gradients do not see (theory, eqs. 8a to 8i).
 
 use igimp_material::ConstitutiveModel;
@@ -24,17 +24,17 @@ const SLIVER: f64 = 0.02;
 
 /// Share β of its own distortion that a particle keeps where plastic flow is associated, on a given
 /// geometry \[-\].
-const OWN_GIVEN: f64 = 0.02;
+const SHARE_GIVEN: f64 = 0.02;
 
-/// The same on a moving one: what the mean does not see is held in every step \[-\].
-const OWN_MOVING: f64 = 0.1;
+/// The same on a moving one: strain that the mean does not see is held in every step \[-\].
+const SHARE_MOVING: f64 = 0.1;
 
 /// The same where plastic flow keeps volume although the law has friction, on both \[-\]: with less Newton's method loses its way
 /// where equilibrium is not unique, with more factors of safety rise (docs/src/comparisons.md: slopes with ψ = 0 at 0.3 and 1).
-const OWN_ISOCHORIC: f64 = 0.3;
+const SHARE_ISOCHORIC: f64 = 0.3;
 
 /// The least share in cells whose face is loaded, on both \[-\]: a load that ends within a cell pushes modes that the mean does not see.
-const OWN_LOADED: f64 = 0.3;
+const SHARE_LOADED: f64 = 0.3;
 
 /// The soil of every cell, and the parts of every particle.
 pub(crate) struct CellSoil<const D: usize> {
@@ -51,7 +51,7 @@ pub(crate) struct CellSoil<const D: usize> {
     /// that of its soil by area \[length\]. Empty unless the section is axisymmetric.
     hoop_at: Vec<f64>,
     /// Share β of its own distortion that a particle keeps, by law \[-\].
-    own_share: Vec<f64>,
+    law_share: Vec<f64>,
     locking: Locking,
 }
 
@@ -72,7 +72,7 @@ struct Kept<'a, const D: usize> {
     centroid: [f64; D],
     /// Radius of the middle of the part \[length\]; 0 unless the section is axisymmetric.
     radius: f64,
-    /// Its share of what is kept \[-\].
+    /// Its share of the parts kept \[-\].
     weight: f64,
 }
 
@@ -91,13 +91,13 @@ impl<const D: usize> CellSoil<D> {
         let parts = (0..len.div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
-                let own = chunk * CHUNK..len.min((chunk + 1) * CHUNK);
+                let range = chunk * CHUNK..len.min((chunk + 1) * CHUNK);
                 let mut parts = Parts {
-                    first: Vec::with_capacity(own.len() + 1),
+                    first: Vec::with_capacity(range.len() + 1),
                     ..Parts::default()
                 };
                 parts.first.push(0);
-                for particle in own {
+                for particle in range {
                     let (x, half_length) = soil_of(particles, particle, method.geometry);
                     let half_length = capped_half_length(grid, &x, half_length);
                     cell_parts(grid, &*method.basis, &x, &half_length, &mut parts.all)
@@ -111,14 +111,14 @@ impl<const D: usize> CellSoil<D> {
             })
             .collect::<Vec<Result<_, AssemblyError>>>();
         let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let of_law = |law: &SharedLaw| own_share(&**law, method.geometry);
+        let of_law = |law: &SharedLaw| share_of_law(&**law, method.geometry);
         let mut soil = Self {
             parts,
             is_sliver: vec![false; grid.cell_count()],
             least_share: vec![0.0; grid.cell_count()],
             shared_at: vec![[0.5; D]; grid.cell_count()],
             hoop_at: Vec::new(),
-            own_share: conditions.laws.iter().map(of_law).collect(),
+            law_share: conditions.laws.iter().map(of_law).collect(),
             locking: method.locking,
         };
         if method.section.is_axisymmetric() {
@@ -154,15 +154,15 @@ impl<const D: usize> CellSoil<D> {
     /// Lets cells that move with a neighbour share gradients at the place where that shares them (theory, eq. 63b).
     pub(crate) fn follow(&mut self, grid: &Grid<D>, ties: &Ties) {
         for (cell, leader) in followers(grid, ties) {
-            let [own, other] = [cell, leader].map(|place| grid.cell_index(place));
+            let [index, other] = [cell, leader].map(|place| grid.cell_index(place));
             let (from, size) = (grid.cell_size(leader), grid.cell_size(cell));
-            self.shared_at[own] = std::array::from_fn(|axis| {
+            self.shared_at[index] = std::array::from_fn(|axis| {
                 let nodes = grid.axes[axis].nodes();
                 let beyond = nodes[leader[axis]] - nodes[cell[axis]];
                 (beyond + self.shared_at[other][axis] * from[axis]) / size[axis]
             });
             if !self.hoop_at.is_empty() {
-                self.hoop_at[own] = self.hoop_at[other];
+                self.hoop_at[index] = self.hoop_at[other];
             }
         }
     }
@@ -185,13 +185,13 @@ impl<const D: usize> CellSoil<D> {
         for particle in 0..particles.len() {
             for (part, centroid, radius) in self.parts_of(particle) {
                 let cell = grid.cell_index(part.cell);
-                let own = part.share * particles.volume(particle);
-                volume[cell] += own;
+                let part_volume = part.share * particles.volume(particle);
+                volume[cell] += part_volume;
                 for axis in 0..D {
-                    moment[cell][axis] += own * centroid[axis];
+                    moment[cell][axis] += part_volume * centroid[axis];
                 }
                 if let Some(area) = area.get_mut(cell) {
-                    *area += own / radius;
+                    *area += part_volume / radius;
                 }
             }
         }
@@ -208,13 +208,13 @@ impl<const D: usize> CellSoil<D> {
                 }
             }
         }
-        if self.locking == Locking::SharedStrain && self.own_share.iter().any(|&own| own < 1.0) {
+        if self.locking == Locking::SharedStrain && self.law_share.iter().any(|&beta| beta < 1.0) {
             let held = &conditions.constraints;
             let free = |node| (0..D).filter(|&axis| held.of(node, axis).is_none()).count();
             let strains = (D * (D + 1) / 2) as u8 + u8::from(!self.hoop_at.is_empty());
             let least = |(is_loose, is_loaded)| match (is_loose, is_loaded) {
                 (true, _) => 1.0,
-                (false, true) => OWN_LOADED,
+                (false, true) => SHARE_LOADED,
                 (false, false) => 0.0,
             };
             let is_loose = loose_cells(grid, &holds_soil, free, strains);
@@ -224,9 +224,9 @@ impl<const D: usize> CellSoil<D> {
     }
 
     /// The share β of its own distortion that soil of a law keeps in a cell \[-\].
-    fn own_share(&self, law: usize, cell: usize) -> f64 {
+    fn kept_share(&self, law: usize, cell: usize) -> f64 {
         match self.locking {
-            Locking::SharedStrain => self.own_share[law].max(self.least_share[cell]),
+            Locking::SharedStrain => self.law_share[law].max(self.least_share[cell]),
             Locking::None | Locking::BBar => 1.0,
         }
     }
@@ -270,19 +270,19 @@ impl<const D: usize> CellSoil<D> {
         for kept in self.kept(grid, particle) {
             let Kept { part, weight, .. } = kept;
             let cell = grid.cell_index(part.cell);
-            let own = self.own_share(law, cell);
+            let beta = self.kept_share(law, cell);
             let shared_at = match self.locking {
                 Locking::None => kept.centroid,
                 Locking::BBar | Locking::SharedStrain => self.shared_at[cell],
             };
-            let own_tents = grid.tents(part.cell, kept.centroid);
-            for (tent, shared) in own_tents.zip(grid.tents(part.cell, shared_at)) {
+            let tents = grid.tents(part.cell, kept.centroid);
+            for (tent, shared) in tents.zip(grid.tents(part.cell, shared_at)) {
                 let (node, value, grad) = tent;
                 out.push(Support {
                     node,
                     value: weight * value,
                     grad: std::array::from_fn(|axis| {
-                        weight * (own * grad[axis] + (1.0 - own) * shared.2[axis])
+                        weight * (beta * grad[axis] + (1.0 - beta) * shared.2[axis])
                     }),
                     grad_bar: shared.2.map(|slope| weight * slope),
                 });
@@ -297,7 +297,7 @@ impl<const D: usize> CellSoil<D> {
         }
     }
 
-    /// Sets `hoops` to what the supports of a particle of a law stretch it around the axis (theory, eqs. 130a and 130b).
+    /// Sets `hoops` to the stretch of a particle of a law around the axis by its supports (theory, eqs. 130a and 130b).
     fn add_hoops(
         &self,
         grid: &Grid<D>,
@@ -314,7 +314,7 @@ impl<const D: usize> CellSoil<D> {
         } in self.kept(grid, particle)
         {
             let (cell, [start, end]) = (grid.cell_index(part.cell), radii(grid, part.cell));
-            let own = self.own_share(law, cell);
+            let beta = self.kept_share(law, cell);
             let at = |radius: f64, mut point: [f64; D]| {
                 point[0] = (radius - start) / (end - start);
                 grid.tents(part.cell, point)
@@ -331,7 +331,7 @@ impl<const D: usize> CellSoil<D> {
                     continue;
                 };
                 let hoop = Hoop {
-                    own: own * at_part + (1.0 - own) * shared,
+                    own: beta * at_part + (1.0 - beta) * shared,
                     bar: shared,
                     place: at_part,
                 };
@@ -340,7 +340,7 @@ impl<const D: usize> CellSoil<D> {
         }
     }
 
-    /// The parts of a particle that are not in slivers, or all if most of it is there; each with its share of what is
+    /// The parts of a particle that are not in slivers, or all if most of it is there; each with its share of those
     /// kept (theory, eq. 8d).
     fn kept(&self, grid: &Grid<D>, particle: usize) -> impl Iterator<Item = Kept<'_, D>> {
         let kept = |part: &CellPart<D>| !self.is_sliver[grid.cell_index(part.cell)];
@@ -373,33 +373,33 @@ impl<const D: usize> CellSoil<D> {
         if method.geometry != Geometry::Given || self.locking != Locking::SharedStrain {
             return Vec::new();
         }
-        let shared = |own: &f64| if *own < 1.0 { grid.node_count() } else { 0 };
-        let mut moments: Vec<Moments<D>> = (self.own_share.iter())
-            .map(|own| Moments {
-                by_node: vec![[[0.0; D]; D]; shared(own)],
+        let shared = |beta: &f64| if *beta < 1.0 { grid.node_count() } else { 0 };
+        let mut moments: Vec<Moments<D>> = (self.law_share.iter())
+            .map(|beta| Moments {
+                by_node: vec![[[0.0; D]; D]; shared(beta)],
                 layer: 0.0,
             })
             .collect();
         for particle in 0..particles.len() {
             let law = particles.law[particle];
-            let own = &mut moments[law];
-            if own.by_node.is_empty() {
+            let of_law = &mut moments[law];
+            if of_law.by_node.is_empty() {
                 continue;
             }
             let density = particles.mass[particle] / particles.volume(particle);
             for kept in self.kept(grid, particle) {
                 let Kept { part, weight, .. } = kept;
                 let size = grid.cell_size(part.cell);
-                own.layer = own.layer.max(density * size[D - 1]);
+                of_law.layer = of_law.layer.max(density * size[D - 1]);
                 let cell = grid.cell_index(part.cell);
-                let mass = (1.0 - self.own_share(law, cell)) * particles.mass[particle];
+                let mass = (1.0 - self.kept_share(law, cell)) * particles.mass[particle];
                 let shared_at = self.shared_at[cell];
                 let arm: [f64; D] = std::array::from_fn(|axis| {
                     weight * mass * (kept.centroid[axis] - shared_at[axis]) * size[axis]
                 });
                 let tents = grid.tents(part.cell, kept.centroid);
                 for (tent, shared) in tents.zip(grid.tents(part.cell, shared_at)) {
-                    let moment = &mut own.by_node[tent.0];
+                    let moment = &mut of_law.by_node[tent.0];
                     for a in 0..D {
                         for b in 0..D {
                             moment[a][b] += (tent.2[a] - shared.2[a]) * arm[b];
@@ -421,7 +421,7 @@ fn loaded_cells<const D: usize>(grid: &Grid<D>, points: &[LoadPoint<D>]) -> Vec<
     is_loaded
 }
 
-/// What of the weight of the soil of a law shared gradients do not see (theory, eq. 8f).
+/// The weight of the soil of a law that shared gradients do not see (theory, eq. 8f).
 #[derive(Clone, Debug)]
 pub(crate) struct Moments<const D: usize> {
     /// By node, component a of the gradient, component b of the arm \[mass\].
@@ -463,30 +463,30 @@ impl<const D: usize> Parts<D> {
         } else {
             half_length
         };
-        let own = &mut self.all[self.radial.len()..];
-        let radial = own
+        let parts = &mut self.all[self.radial.len()..];
+        let radial = parts
             .iter()
             .map(|part| RadialPart::of(grid, part, x, half_length));
         self.radial.extend(radial);
-        weigh_by_radius(grid, own);
+        weigh_by_radius(grid, parts);
     }
 }
 
 /// The share β of its own distortion that a particle of a law keeps (theory, eq. 8c), the same for a
-/// law and for what a reduction of its strength leaves of it. Elastic soil keeps all of it: bending has to be
-/// resisted. In soil that yields the rest is shared, and what is kept holds modes that the mean does not see;
+/// law and for the law with reduced strength. Elastic soil keeps all of it: bending has to be
+/// resisted. In soil that yields the rest is shared, and the kept part holds modes that the mean does not see;
 /// they add up from step to step where the body moves. The less flow dilates the less has to be shared, and
 /// sharing less keeps Newton's method on its way where equilibrium is not unique.
-fn own_share(law: &dyn ConstitutiveModel, geometry: Geometry) -> f64 {
+fn share_of_law(law: &dyn ConstitutiveModel, geometry: Geometry) -> f64 {
     if !law.yields() {
         return 1.0;
     }
     let associated = match geometry {
-        Geometry::Given => OWN_GIVEN,
-        Geometry::Moving => OWN_MOVING,
+        Geometry::Given => SHARE_GIVEN,
+        Geometry::Moving => SHARE_MOVING,
     };
     let dilates = law.dilatancy().sqrt();
-    ((1.0 - dilates) / OWN_ISOCHORIC + dilates / associated).recip()
+    ((1.0 - dilates) / SHARE_ISOCHORIC + dilates / associated).recip()
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use crate::step::ties::{Carrier, Ties};
 /// a spray would be that of its neighbours many times over.
 pub(crate) const REACH: usize = 1;
 
-/// What is none of a weight \[-\].
+/// A weight that counts as none \[-\].
 const ROUND_OFF: f64 = 1e-12;
 
 /// The cells around a node, and those that are up to `reach` cells away from them.
@@ -20,15 +20,15 @@ pub(crate) fn cells_around<const D: usize>(
     reach: usize,
 ) -> impl Iterator<Item = [usize; D]> + '_ {
     let place = grid.node_place(node);
-    let lower: [usize; D] = place.map(|own| own.saturating_sub(reach + 1));
+    let lower: [usize; D] = place.map(|k| k.saturating_sub(reach + 1));
     let count: [usize; D] = std::array::from_fn(|axis| {
         (place[axis] + reach + 1).min(grid.axes[axis].cell_count()) - lower[axis]
     });
     (0..count.iter().product()).map(move |mut index: usize| {
         std::array::from_fn(|axis| {
-            let own = lower[axis] + index % count[axis];
+            let at = lower[axis] + index % count[axis];
             index /= count[axis];
-            own
+            at
         })
     })
 }
@@ -45,7 +45,7 @@ pub(crate) fn carried_beyond<const D: usize>(
     let within = std::array::from_fn(|axis| (x[axis] - first[axis]) / size[axis]);
     (grid.tents(cell, within))
         .map(|(node, weight, _)| Carrier { node, weight })
-        .filter(|own| own.weight.abs() > ROUND_OFF)
+        .filter(|carrier| carrier.weight.abs() > ROUND_OFF)
         .collect()
 }
 

@@ -7,11 +7,11 @@ use crate::error::{AssemblyError, padded};
 /// The lowest place of supports, and how far they extend along each axis.
 pub(crate) fn bounds<const D: usize>(
     grid: &Grid<D>,
-    own: &[Support<D>],
+    supports: &[Support<D>],
 ) -> ([usize; D], [usize; D]) {
     let mut lower = [usize::MAX; D];
     let mut upper = [0; D];
-    for support in own {
+    for support in supports {
         let place = grid.node_place(support.node);
         for axis in 0..D {
             lower[axis] = lower[axis].min(place[axis]);
@@ -22,12 +22,12 @@ pub(crate) fn bounds<const D: usize>(
 }
 
 /// Adds up neighbouring supports of the same node; returns how many are left at the front.
-pub(crate) fn merge_equal_nodes<const D: usize>(own: &mut [Support<D>]) -> usize {
+pub(crate) fn merge_equal_nodes<const D: usize>(supports: &mut [Support<D>]) -> usize {
     let mut kept = 0;
-    for k in 1..own.len() {
-        let support = own[k];
-        if own[kept].node == support.node {
-            let sum = &mut own[kept];
+    for k in 1..supports.len() {
+        let support = supports[k];
+        if supports[kept].node == support.node {
+            let sum = &mut supports[kept];
             sum.value += support.value;
             for axis in 0..D {
                 sum.grad[axis] += support.grad[axis];
@@ -35,7 +35,7 @@ pub(crate) fn merge_equal_nodes<const D: usize>(own: &mut [Support<D>]) -> usize
             }
         } else {
             kept += 1;
-            own[kept] = support;
+            supports[kept] = support;
         }
     }
     kept + 1
@@ -56,7 +56,7 @@ pub(crate) fn capped_half_length<const D: usize>(
     half_length
 }
 
-/// What is said of a particle whose centre or domain has no place on the grid.
+/// The error of a particle whose centre or domain has no place on the grid.
 pub(crate) fn off_grid<const D: usize>(
     particle: usize,
     x: &[f64; D],

@@ -1,4 +1,4 @@
-//! What holds during a step: shape functions, supports, loads and the cells that hold soil.
+//! Constants of a step: shape functions, supports, loads and the cells that hold soil.
 
 pub(crate) mod cell_soil;
 pub(crate) mod continuation;

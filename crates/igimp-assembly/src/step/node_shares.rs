@@ -1,4 +1,4 @@
-//! What every node represents of the body: volume and mass.
+//! Every node's share of the body: volume and mass.
 
 use igimp_shape::Grid;
 use rayon::prelude::*;
@@ -8,7 +8,7 @@ use crate::method::Section;
 use crate::step::strips::{Strips, split};
 use crate::step::supports::Supports;
 
-/// What a node represents of the body.
+/// A node's share of the body.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct NodeShare {
     /// Σ S V, over the thickness of the section \[length^D\].
@@ -29,9 +29,9 @@ pub(crate) fn node_shares<const D: usize>(
 ) -> Vec<NodeShare> {
     let mut shares = vec![NodeShare::default(); grid.node_count()];
     for parity in 0..2 {
-        let own = strips.of_parity(parity);
-        let slices = split(&mut shares, own.clone().map(|(nodes, _)| nodes.clone()));
-        let tasks: Vec<_> = own.zip(slices).collect();
+        let half = strips.of_parity(parity);
+        let slices = split(&mut shares, half.clone().map(|(nodes, _)| nodes.clone()));
+        let tasks: Vec<_> = half.zip(slices).collect();
         tasks.into_par_iter().for_each(|((nodes, slots), slice)| {
             for &particle in &strips.order()[slots.clone()] {
                 let particle = particle as usize;

@@ -13,11 +13,11 @@ use crate::step::node_shares::NodeShare;
 use crate::step::supports::Supports;
 use crate::step::ties::{Carrier, Ties};
 
-/// What extrapolation leaves to a node that it rests on, of the volume below which a node is a small cut \[-\].
+/// The share that extrapolation leaves to a node that it rests on, of the volume below which a node is a small cut \[-\].
 const KEPT: f64 = 0.5;
 
-/// Which nodes are small cuts, their volume being less than a fraction of their cells' or of what full soil leaves there. Touched, not of positive volume: a point on a
-/// face sees the cell beyond by its gradient only.
+/// Which nodes are small cuts: their volume is less than a fraction of their cells' or of that of full soil there.
+/// Touched, not of positive volume: a point on a face sees the cell beyond by its gradient only.
 pub(crate) fn small_cuts<const D: usize>(
     grid: &Grid<D>,
     shares: &[NodeShare],
@@ -32,8 +32,8 @@ pub(crate) fn small_cuts<const D: usize>(
 }
 
 /// Ties small cuts to the nearest cell whose nodes all carry enough soil, by its linear functions beyond its faces: of equally near
-/// ones to that with most soil. What a cut is held by holds all nodes that it is tied to, and weights below zero leave these half of
-/// what makes a cut at least. Cuts without such a cell find none.
+/// ones to that with most soil. A constraint of a cut holds all nodes that it is tied to, and weights below zero leave these half of
+/// the least volume. Cuts without such a cell find none.
 pub(crate) fn extrapolations<const D: usize>(
     conditions: &StepConditions<D>,
     shares: &[NodeShare],
@@ -50,21 +50,21 @@ pub(crate) fn extrapolations<const D: usize>(
         let mut nearest: Option<(f64, f64, Vec<Carrier>)> = None;
         for cell in cells_around(grid, cut, REACH) {
             let carriers = carried_beyond(grid, cell, cut);
-            let is_firm = carriers.iter().all(|own| {
-                let then = left[own.node] + own.weight * shares[cut].volume;
-                !cuts[own.node]
-                    && stays_on_walls(conditions, cut, own.node)
-                    && then > KEPT * least_volume(grid, method, own.node)
+            let is_firm = carriers.iter().all(|carrier| {
+                let then = left[carrier.node] + carrier.weight * shares[cut].volume;
+                !cuts[carrier.node]
+                    && stays_on_walls(conditions, cut, carrier.node)
+                    && then > KEPT * least_volume(grid, method, carrier.node)
                     && (0..D).all(|axis| {
-                        held(axis).is_none() || held(axis) == constraints.of(own.node, axis)
+                        held(axis).is_none() || held(axis) == constraints.of(carrier.node, axis)
                     })
             });
             if !is_firm {
                 continue;
             }
             // The sum of the magnitudes of weights grows with the distance.
-            let distance: f64 = carriers.iter().map(|own| own.weight.abs()).sum();
-            let soil: f64 = carriers.iter().map(|own| shares[own.node].volume).sum();
+            let distance: f64 = carriers.iter().map(|carrier| carrier.weight.abs()).sum();
+            let soil: f64 = carriers.iter().map(|by| shares[by.node].volume).sum();
             let is_nearer = (nearest.as_ref()).is_none_or(|&(other, most, _)| {
                 distance < other || (distance <= other && soil > most)
             });
@@ -73,8 +73,8 @@ pub(crate) fn extrapolations<const D: usize>(
             }
         }
         if let Some((_, _, carriers)) = nearest {
-            for own in &carriers {
-                left[own.node] += own.weight * shares[cut].volume;
+            for carrier in &carriers {
+                left[carrier.node] += carrier.weight * shares[cut].volume;
             }
             ties.insert(cut, carriers);
         }
@@ -82,7 +82,7 @@ pub(crate) fn extrapolations<const D: usize>(
     ties
 }
 
-/// Whether a node lies on all walls with dashpots that another lies on: a wall holds its nodes as supports do, and what moved off
+/// Whether a node lies on all walls with dashpots that another lies on: a wall holds its nodes as supports do, and a node moved off
 /// it would leave it without dashpots.
 fn stays_on_walls<const D: usize>(
     conditions: &StepConditions<D>,
@@ -114,8 +114,7 @@ pub(crate) fn masters_of_cuts<const D: usize>(
     };
     let mut masters = BTreeMap::new();
     for particle in supports.touching(cuts) {
-        let own = supports.of(particle);
-        let nodes = own.iter().map(|support| support.node);
+        let nodes = supports.of(particle).iter().map(|support| support.node);
         for cut in nodes.clone().filter(|&node| cuts[node] && !fixed(node)) {
             for candidate in nodes.clone() {
                 let alike =
@@ -139,8 +138,8 @@ pub(crate) fn least_volume<const D: usize>(grid: &Grid<D>, cuts: &SmallCuts, nod
     cuts.below * volume_at(grid, cuts.of, node)
 }
 
-/// The mean volume of a cell around a node: the product of half the lengths to its neighbours, doubled at walls. Or what full
-/// soil leaves there: at walls it is not doubled \[length^D\].
+/// The mean volume of a cell around a node: the product of half the lengths to its neighbours, doubled at walls. Or that of full
+/// soil there: at walls it is not doubled \[length^D\].
 pub(crate) fn volume_at<const D: usize>(grid: &Grid<D>, of: CutVolume, node: usize) -> f64 {
     let place = grid.node_place(node);
     (0..D)

@@ -1,5 +1,5 @@
 //! The supports of every particle, frozen for one step, with small cuts tied,
-//! and what follows from them for the nodes.
+//! and their sums at the nodes.
 
 use igimp_shape::{Grid, Support};
 
@@ -52,8 +52,8 @@ impl<const D: usize> Stencils<D> {
         Self::build_under(particles, method, conditions, &[])
     }
 
-    /// The same where points load faces of the body, by factors that are not zero: soil of their cells balances what they
-    /// press (theory, eq. 8h).
+    /// The same where points load faces of the body, by factors that are not zero: soil of their cells balances their
+    /// load (theory, eq. 8h).
     ///
     /// # Errors
     /// As [`Self::build`].
@@ -90,18 +90,18 @@ impl<const D: usize> Stencils<D> {
             if let (Some(soil), Geometry::Given) = (&mut soil, method.geometry) {
                 soil.follow(grid, &ties);
             }
-            let (mut own, mut hoops) = (Vec::new(), Vec::new());
+            let (mut stencil, mut hoops) = (Vec::new(), Vec::new());
             for particle in supports.touching(&tied) {
                 match &soil {
                     Some(soil) => soil.supports(
                         grid,
                         (particle, particles.law[particle]),
-                        &mut own,
+                        &mut stencil,
                         &mut hoops,
                     ),
-                    None => own = supports.of(particle).to_vec(),
+                    None => stencil = supports.of(particle).to_vec(),
                 }
-                supports.tie(grid, particle, (&own, &hoops), &ties);
+                supports.tie(grid, particle, (&stencil, &hoops), &ties);
             }
             strips = Strips::build(grid, &supports);
         }
@@ -213,8 +213,8 @@ impl<const D: usize> Stencils<D> {
     /// The nodes that a node moves with: itself alone unless it is tied.
     pub fn carriers(&self, node: usize) -> impl Iterator<Item = Carrier> + '_ {
         let tie = self.ties.get(&node);
-        let own = tie.is_none().then_some(Carrier { node, weight: 1.0 });
-        own.into_iter().chain(tie.into_iter().flatten().copied())
+        let single = tie.is_none().then_some(Carrier { node, weight: 1.0 });
+        single.into_iter().chain(tie.into_iter().flatten().copied())
     }
 
     /// The supports of a point on the nodes that carry it, in their order.
@@ -235,16 +235,16 @@ fn ties<const D: usize>(
     supports: &Supports<D>,
     shares: &[NodeShare],
 ) -> Ties {
-    let own = &method.small_cuts;
-    if own.remedy == Remedy::Drop {
+    let rules = &method.small_cuts;
+    if rules.remedy == Remedy::Drop {
         return Ties::new();
     }
-    let cuts = small_cuts(&conditions.grid, shares, own);
+    let cuts = small_cuts(&conditions.grid, shares, rules);
     if !cuts.contains(&true) {
         return Ties::new();
     }
-    let mut ties = match own.remedy {
-        Remedy::Extrapolate => extrapolations(conditions, shares, (&cuts, own)),
+    let mut ties = match rules.remedy {
+        Remedy::Extrapolate => extrapolations(conditions, shares, (&cuts, rules)),
         Remedy::Tie | Remedy::Drop => Ties::new(),
     };
     let masters = masters_of_cuts(conditions, supports, shares, &cuts);

@@ -32,8 +32,8 @@ impl Strips {
         // How many particles begin before each node; the sort keeps the order of equal ones.
         let mut start = vec![0_u32; grid.node_count() + 1];
         for particle in 0..supports.len() {
-            let own = supports.of(particle);
-            let (first, last) = (own[0].node, own[own.len() - 1].node);
+            let stencil = supports.of(particle);
+            let (first, last) = (stencil[0].node, stencil[stencil.len() - 1].node);
             start[first + 1] += 1;
             if last - first >= (tallest - 1) * row_nodes {
                 tallest = tallest.max(last / row_nodes - first / row_nodes + 1);

@@ -93,8 +93,8 @@ impl<const D: usize> Supports<D> {
             .map(|chunk| {
                 let particles = chunk * CHUNK..self.len.min((chunk + 1) * CHUNK);
                 let touches = |&particle: &usize| {
-                    let mut own = self.of(particle).iter();
-                    own.any(|support| marked[support.node])
+                    let mut supports = self.of(particle).iter();
+                    supports.any(|support| marked[support.node])
                 };
                 particles.filter(touches).collect()
             })
@@ -111,18 +111,18 @@ impl<const D: usize> Supports<D> {
         (supports, hoops): (&[Support<D>], &[Hoop]),
         ties: &Ties,
     ) {
-        let mut own = carried(supports, ties);
-        own.sort_by_key(|support| support.node);
-        let count = merge_equal_nodes(&mut own);
-        let hoops = carried_hoops(supports, hoops, ties, &own[..count]);
+        let mut tied = carried(supports, ties);
+        tied.sort_by_key(|support| support.node);
+        let count = merge_equal_nodes(&mut tied);
+        let hoops = carried_hoops(supports, hoops, ties, &tied[..count]);
         let chunk = &mut self.chunks[particle / CHUNK];
         let (start, room) = &mut chunk.places[particle % CHUNK];
         if count > *room as usize {
             *start = chunk.all.len() as u32;
-            chunk.all.extend_from_slice(&own[..count]);
+            chunk.all.extend_from_slice(&tied[..count]);
             chunk.hoops.extend_from_slice(&hoops);
         } else {
-            chunk.all[*start as usize..][..count].copy_from_slice(&own[..count]);
+            chunk.all[*start as usize..][..count].copy_from_slice(&tied[..count]);
             if !hoops.is_empty() {
                 chunk.hoops[*start as usize..][..count].copy_from_slice(&hoops);
             }
@@ -149,25 +149,25 @@ impl<const D: usize> Chunk<D> {
             reach: 0,
         };
         let mut scratch = Scratch::default();
-        let (mut own, mut hoops) = (Vec::new(), Vec::new());
+        let (mut stencil, mut hoops) = (Vec::new(), Vec::new());
         for particle in range {
             if let Some(soil) = soil {
                 soil.supports(
                     grid,
                     (particle, particles.law[particle]),
-                    &mut own,
+                    &mut stencil,
                     &mut hoops,
                 );
-                let (_, extent) = bounds(grid, &own);
+                let (_, extent) = bounds(grid, &stencil);
                 chunk.reach = extent.into_iter().fold(chunk.reach, usize::max);
             } else {
                 let x = particles.x[particle];
                 let half_length = capped_half_length(grid, &x, particles.half_length[particle]);
                 let basis = &*method.basis;
-                supports(grid, basis, &x, &half_length, &mut scratch, &mut own)
+                supports(grid, basis, &x, &half_length, &mut scratch, &mut stencil)
                     .map_err(|source| off_grid(particle, &x, source))?;
                 if method.locking == Locking::None {
-                    for support in &mut own {
+                    for support in &mut stencil {
                         support.grad_bar = support.grad;
                     }
                 }
@@ -177,8 +177,8 @@ impl<const D: usize> Chunk<D> {
             }
             chunk
                 .places
-                .push((chunk.all.len() as u32, own.len() as u32));
-            chunk.all.extend_from_slice(&own);
+                .push((chunk.all.len() as u32, stencil.len() as u32));
+            chunk.all.extend_from_slice(&stencil);
             chunk.hoops.extend_from_slice(&hoops);
         }
         Ok(chunk)
@@ -196,12 +196,12 @@ fn carried_hoops<const D: usize>(
     for (support, &hoop) in supports.iter().zip(hoops) {
         let mut add = |node: usize, weight: f64| {
             let place = tied.binary_search_by_key(&node, |support| support.node);
-            if let Some(own) = place.ok().and_then(|place| carried.get_mut(place)) {
-                *own = own.plus(weight, hoop);
+            if let Some(sum) = place.ok().and_then(|place| carried.get_mut(place)) {
+                *sum = sum.plus(weight, hoop);
             }
         };
         match ties.get(&support.node) {
-            Some(carriers) => carriers.iter().for_each(|own| add(own.node, own.weight)),
+            Some(carriers) => carriers.iter().for_each(|by| add(by.node, by.weight)),
             None => add(support.node, 1.0),
         }
     }

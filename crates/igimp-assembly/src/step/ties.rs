@@ -9,7 +9,7 @@ use igimp_shape::Support;
 pub struct Carrier {
     /// The node.
     pub node: usize,
-    /// What its displacement counts; the weights of a tie sum to one \[-\].
+    /// The weight of its displacement; the weights of a tie sum to one \[-\].
     pub weight: f64,
 }
 
@@ -18,20 +18,20 @@ pub(crate) type Ties = BTreeMap<usize, Vec<Carrier>>;
 
 /// Supports on the nodes that tied ones move with, in their order; equal nodes are not added up.
 pub(crate) fn carried<const D: usize>(supports: &[Support<D>], ties: &Ties) -> Vec<Support<D>> {
-    let mut own = Vec::with_capacity(supports.len());
+    let mut tied = Vec::with_capacity(supports.len());
     for support in supports {
         let Some(carriers) = ties.get(&support.node) else {
-            own.push(*support);
+            tied.push(*support);
             continue;
         };
         for &Carrier { node, weight } in carriers {
-            own.push(Support {
+            tied.push(Support {
                 node,
                 value: weight * support.value,
-                grad: support.grad.map(|own| weight * own),
-                grad_bar: support.grad_bar.map(|own| weight * own),
+                grad: support.grad.map(|slope| weight * slope),
+                grad_bar: support.grad_bar.map(|slope| weight * slope),
             });
         }
     }
-    own
+    tied
 }

@@ -67,19 +67,19 @@ impl<const D: usize> Unknowns<D> {
             if !active[node] {
                 continue;
             }
-            let mut own = 0;
+            let mut count = 0;
             for axis in 0..D {
                 if constraints.of(node, axis).is_none() {
-                    rank[node][axis] = own;
-                    own += 1;
+                    rank[node][axis] = count;
+                    count += 1;
                 }
             }
             if has_scalar.get(node) == Some(&true) {
-                scalars.push((len + own, node as u32));
-                own += 1;
+                scalars.push((len + count, node as u32));
+                count += 1;
             }
-            len += own;
-            blocks += u32::from(own > 0);
+            len += count;
+            blocks += u32::from(count > 0);
         }
         blocks_before.push(blocks);
         if len == 0 {
@@ -88,12 +88,12 @@ impl<const D: usize> Unknowns<D> {
         let of_grid = len as usize;
         for (free, rank) in of_bodies.iter().zip(&mut rank[nodes..]) {
             first.push(len);
-            let mut own = 0;
+            let mut count = 0;
             for axis in (0..D).filter(|&axis| free[axis]) {
-                rank[axis] = own;
-                own += 1;
+                rank[axis] = count;
+                count += 1;
             }
-            len += own;
+            len += count;
         }
         first.push(len);
         Ok(Self {
@@ -160,9 +160,9 @@ impl<const D: usize> Unknowns<D> {
         (rank != NONE).then(|| (self.first[node] + rank) as usize)
     }
 
-    /// The node and the axis of an unknown, if there is such an unknown; of a scalar the node that stands for it.
+    /// The node and the axis of an unknown, if it exists; of a scalar the node that stands for it.
     pub fn place(&self, unknown: usize) -> Option<(usize, usize)> {
-        let among = (self.scalars).binary_search_by_key(&unknown, |&(own, _)| own as usize);
+        let among = (self.scalars).binary_search_by_key(&unknown, |&(scalar, _)| scalar as usize);
         if let Ok(place) = among {
             return Some((self.rank.len() + place, 0));
         }

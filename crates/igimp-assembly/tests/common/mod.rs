@@ -229,5 +229,5 @@ pub fn by_particle<'a, const D: usize>(
     let mut slots: Vec<(u32, &ParticleTrial<D>)> =
         std::iter::zip(stencils.order().iter().copied(), &trial.particles).collect();
     slots.sort_by_key(|&(particle, _)| particle);
-    slots.into_iter().map(|(_, own)| own).collect()
+    slots.into_iter().map(|(_, trial)| trial).collect()
 }

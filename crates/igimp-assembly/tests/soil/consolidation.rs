@@ -73,7 +73,7 @@ fn tangent_error<const D: usize>(
             system.evaluate(&u, TangentKind::Consistent).unwrap()
         });
         let regimes = |of: &igimp_assembly::Trial<D>| -> Vec<_> {
-            of.particles.iter().map(|own| own.regime).collect()
+            of.particles.iter().map(|p| p.regime).collect()
         };
         if regimes(&plus) != regimes(&minus) {
             continue; // the force has a kink here, and differences have no meaning
@@ -211,10 +211,10 @@ fn pressures_are_held() {
         let mut mass = DMatrix::<f64>::zeros(pressures.len(), pressures.len());
         let places: Vec<usize> = unknowns.scalar_nodes().collect();
         for particle in 0..body.len() {
-            let own = stencils.of(particle);
-            for a in own {
-                for b in own {
-                    let [i, j] = [a, b].map(|own| places.binary_search(&own.node).unwrap());
+            let supports = stencils.of(particle);
+            for a in supports {
+                for b in supports {
+                    let [i, j] = [a, b].map(|s| places.binary_search(&s.node).unwrap());
                     mass[(i, j)] += scale * scale * body.volume(particle) * a.value * b.value;
                 }
             }
@@ -224,7 +224,7 @@ fn pressures_are_held() {
             let half = factor.solve_lower_triangular(pair).unwrap();
             let whole = factor.solve_lower_triangular(&half.transpose()).unwrap();
             let mut all: Vec<f64> = (whole.symmetric_eigenvalues().iter())
-                .map(|own| own * shear)
+                .map(|value| value * shear)
                 .collect();
             all.sort_by(f64::total_cmp);
             all

@@ -38,8 +38,8 @@ fn error_of_force<const D: usize>(method: &Method, cells: usize, count: usize) -
         let trial = evaluate(u);
         let slots = std::iter::zip(stencils.order(), &trial.particles);
         slots
-            .map(|(&particle, own)| {
-                body.volume0[particle as usize] * stored(law.stiffness_bound(), &own.eps_e)
+            .map(|(&particle, point)| {
+                body.volume0[particle as usize] * stored(law.stiffness_bound(), &point.eps_e)
             })
             .sum()
     };

@@ -1,4 +1,4 @@
-//! GOAL: what makes no sense is refused with a message that names the field or the particle.
+//! GOAL: input without sense is refused with a message that names the field or the particle.
 
 use crate::common::{Random, conditions, grid, laws, particles};
 use igimp_assembly::{
@@ -160,18 +160,18 @@ fn constraints_of_another_grid_or_axis() {
         assert!(error.to_string().contains("[6, 4]"), "{error}");
     }
 
-    let mut own = Constraints::free(&grid);
+    let mut free = Constraints::free(&grid);
     let unknown = |axis| Err(AssemblyError::UnknownAxis { axis, axes: 2 });
-    assert_eq!(own.fix_wall(&grid, 2, false, 0), unknown(2));
-    assert_eq!(own.fix_wall(&grid, 0, true, 3), unknown(3));
-    assert_eq!(own.prescribe(0, 2, 0.0), unknown(2));
+    assert_eq!(free.fix_wall(&grid, 2, false, 0), unknown(2));
+    assert_eq!(free.fix_wall(&grid, 0, true, 3), unknown(3));
+    assert_eq!(free.prescribe(0, 2, 0.0), unknown(2));
     let node = AssemblyError::UnknownNode {
         node: 24,
         nodes: 24,
     };
-    assert_eq!(own.prescribe(24, 0, 0.0), Err(node));
-    assert_eq!(own, Constraints::free(&grid));
-    assert_eq!((own.of(24, 0), own.of(0, 2)), (None, None));
+    assert_eq!(free.prescribe(24, 0, 0.0), Err(node));
+    assert_eq!(free, Constraints::free(&grid));
+    assert_eq!((free.of(24, 0), free.of(0, 2)), (None, None));
 }
 
 #[test]
@@ -266,16 +266,16 @@ fn an_edge_load_keeps_resultant_and_moment() {
     assert!((moment - lever).abs() < 1e-10);
 }
 
-/// GOAL: a determinant is told with four digits. ORACLE: by hand.
+/// GOAL: a determinant is printed with four digits. ORACLE: by hand.
 #[test]
 fn determinants_have_four_digits() {
     let error = AssemblyError::Inverted {
         particle: 8072,
         determinant: -0.204_181_711_961_970_46,
     };
-    let told = error.to_string();
+    let text = error.to_string();
     assert!(
-        told.contains("increment is -2.042e-1, but must be positive"),
-        "{told}"
+        text.contains("increment is -2.042e-1, but must be positive"),
+        "{text}"
     );
 }

@@ -1,5 +1,5 @@
 //! GOAL: on a given geometry strain adds up without turning or moving anything, and a sliver of soil
-//! beyond a face resists nothing; what is shared where strain is shared.
+//! beyond a face resists nothing; shared gradients are means.
 //! BODY: a block of three by three cells, moved a little over a line of the grid, so that its particles
 //! reach into the cells beyond.
 //! ORACLE: strain that adds up linearly, identities of a consistent gradient, and modes that a mean over
@@ -91,7 +91,7 @@ fn two_half_steps_are_one_whole_step_and_nothing_moves() {
         }
         let largest = |sigma: &[[[f64; 3]; 3]]| {
             let all = sigma.iter().flatten().flatten();
-            all.fold(0.0_f64, |largest, own| largest.max(own.abs()))
+            all.fold(0.0_f64, |largest, value| largest.max(value.abs()))
         };
         let scale = largest(&ends[0]);
         assert!(scale > 0.0);
@@ -111,16 +111,16 @@ fn a_sliver_has_no_nodes_of_its_own() {
     for locking in [Locking::None, Locking::BBar, Locking::SharedStrain] {
         let stencils = Stencils::build(&body, &given(locking), &conditions).unwrap();
         for particle in 0..body.len() {
-            let own = stencils.of(particle);
+            let list = stencils.of(particle);
             let place = |node| conditions.grid.node_place(node);
             assert!(
-                own.iter()
+                list.iter()
                     .all(|s| place(s.node).into_iter().all(|k| k <= 5))
             );
             for a in 0..2 {
                 for b in 0..2 {
                     let sum = |gradient: fn(&igimp_shape::Support<2>) -> [f64; 2]| -> f64 {
-                        own.iter()
+                        list.iter()
                             .map(|s| gradient(s)[b] * conditions.grid.node_position(s.node)[a])
                             .sum()
                     };
@@ -151,8 +151,8 @@ fn the_mean_of_a_cell_sees_no_hourglass() {
         .collect();
     for particle in 0..body.len() {
         let strain = |gradient: fn(&igimp_shape::Support<2>) -> [f64; 2]| -> f64 {
-            let own = stencils.of(particle).iter();
-            own.map(|s| u[s.node][0] * gradient(s)[0])
+            let list = stencils.of(particle).iter();
+            list.map(|s| u[s.node][0] * gradient(s)[0])
                 .sum::<f64>()
                 .abs()
         };
@@ -191,7 +191,7 @@ fn a_layer_that_moves_with_the_cell_behind_shares_its_mean() {
 }
 
 #[test]
-fn elastic_soil_that_moves_shares_what_b_bar_shares() {
+fn elastic_soil_that_moves_shares_as_b_bar_does() {
     let conditions = conditions(0);
     let body = particles::<2>(&grid(), 0.0, &mut Random(11));
     let of = |method: &Method| Stencils::build(&body, method, &conditions).unwrap();
@@ -257,9 +257,9 @@ fn weight_acts_at_the_centroid_of_the_soil() {
         let system = System::new(&particles, &stencils, &conditions, &method).unwrap();
         system.f_ext().to_vec()
     };
-    let (shared, own) = (forces(Locking::SharedStrain), forces(Locking::None));
+    let (shared, alone) = (forces(Locking::SharedStrain), forces(Locking::None));
     let mass: f64 = seeds.iter().map(|seed| seed.volume).sum();
-    for force in [&shared, &own] {
+    for force in [&shared, &alone] {
         for axis in 0..2 {
             let sum: f64 = force.iter().map(|f| f[axis]).sum();
             assert!((sum - mass * gravity[axis]).abs() < 1e-12, "{sum}");
@@ -282,7 +282,7 @@ fn weight_acts_at_the_centroid_of_the_soil() {
     let apart = |place: [usize; 2]| {
         let node = grid.node_index(place);
         (0..2).fold(0.0_f64, |most, axis| {
-            most.max((shared[node][axis] - own[node][axis]).abs())
+            most.max((shared[node][axis] - alone[node][axis]).abs())
         })
     };
     assert!(apart([3, 3]) < 1e-14, "{}", apart([3, 3]));
@@ -293,12 +293,12 @@ fn weight_acts_at_the_centroid_of_the_soil() {
 // CASE: a block whose uppermost cells are filled to their lower half, each particle within one cell.
 // ORACLE: the mean of the gradients of the particles in the cell, which without sharing are those of their places.
 #[test]
-fn what_is_shared_is_the_mean_over_the_soil_of_a_cell() {
+fn shared_slopes_are_the_mean_over_the_soil_of_a_cell() {
     let conditions = conditions(1);
     let whole = block(0.0);
     let body = whole.keeping(|p| whole.x[p][1] < 4.5).unwrap();
     let of = |locking| Stencils::build(&body, &given(locking), &conditions).unwrap();
-    let (own, shared) = (of(Locking::None), of(Locking::SharedStrain));
+    let (alone, shared) = (of(Locking::None), of(Locking::SharedStrain));
     let cell = |particle: usize| body.x[particle].map(|x| x.floor() as i64);
     for particle in 0..body.len() {
         let beside: Vec<usize> = (0..body.len())
@@ -307,8 +307,8 @@ fn what_is_shared_is_the_mean_over_the_soil_of_a_cell() {
         for support in shared.of(particle) {
             for axis in 0..2 {
                 let slopes = beside.iter().map(|&other| {
-                    let mut own = own.of(other).iter().filter(|s| s.node == support.node);
-                    own.next().map_or(0.0, |s| s.grad[axis])
+                    let mut near = alone.of(other).iter().filter(|s| s.node == support.node);
+                    near.next().map_or(0.0, |s| s.grad[axis])
                 });
                 let mean = slopes.sum::<f64>() / beside.len() as f64;
                 let found = support.grad_bar[axis];
@@ -339,13 +339,13 @@ fn a_particle_keeps_the_slivers_that_it_is_mostly_in() {
         // Nodes beyond are small cuts: they would be those of the block.
         method.small_cuts.below = 0.0;
         let stencils = Stencils::build(&body, &method, &conditions).unwrap();
-        let own = stencils.of(body.len() - 1);
-        let sum: f64 = own.iter().map(|support| support.value).sum();
+        let supports = stencils.of(body.len() - 1);
+        let sum: f64 = supports.iter().map(|support| support.value).sum();
         assert!((sum - 1.0).abs() < 1e-14, "{sum}");
         let beyond = |support: &igimp_shape::Support<2>| {
             let [column, _] = conditions.grid.node_place(support.node);
             column == 6 && support.value > 0.0
         };
-        assert_eq!(own.iter().any(beyond), keeps, "{x}");
+        assert_eq!(supports.iter().any(beyond), keeps, "{x}");
     }
 }

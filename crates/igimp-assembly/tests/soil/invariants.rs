@@ -1,4 +1,4 @@
-//! GOAL: what holds whatever the body looks like: balance of force and moment, conservation of
+//! GOAL: laws that hold for any body: balance of force and moment, conservation of
 //! volume and mass, and the bookkeeping of supports.
 //! BODY: random graded grids in two and three dimensions with up to a dozen particles anywhere on
 //! them, domains cut by walls and overlapping, laws mixed, in their second step.
@@ -140,15 +140,15 @@ impl<const D: usize> State<D> {
     /// Σ V τ over the particles, and the sum of its magnitudes.
     fn total_stress(&self) -> ([[f64; D]; D], f64) {
         let (mut total, mut size) = ([[0.0; D]; D], 0.0);
-        for (particle, own) in by_particle(&self.trial, &self.stencils)
+        for (particle, state) in by_particle(&self.trial, &self.stencils)
             .into_iter()
             .enumerate()
         {
             let volume = self.stressed_volume(particle);
             for a in 0..D {
                 for b in 0..D {
-                    total[a][b] += volume * own.tau[a][b];
-                    size += volume * own.tau[a][b].abs();
+                    total[a][b] += volume * state.tau[a][b];
+                    size += volume * state.tau[a][b].abs();
                 }
             }
         }
@@ -239,8 +239,8 @@ fn supports_are_in_order<const D: usize>(sample: Sample<D>) -> Result<(), TestCa
     let state = State::of(sample, true);
     prop_assert_eq!(state.stencils.len(), state.before.len());
     for particle in 0..state.stencils.len() {
-        let own = state.stencils.of(particle);
-        prop_assert!(!own.is_empty() && own.is_sorted_by(|a, b| a.node < b.node));
+        let supports = state.stencils.of(particle);
+        prop_assert!(!supports.is_empty() && supports.is_sorted_by(|a, b| a.node < b.node));
     }
     Ok(())
 }

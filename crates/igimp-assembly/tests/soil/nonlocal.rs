@@ -1,5 +1,5 @@
-//! GOAL: equations with nonlocal strain among the unknowns: their tangent, what prescribed motion does to it, its bits on threads, and
-//! what they are refused with.
+//! GOAL: equations with nonlocal strain among the unknowns: their tangent, the effect of prescribed motion, its bits on threads, and
+//! their refusals.
 //! ORACLE: central differences of the force; one thread; typed errors.
 
 use std::sync::Arc;
@@ -121,7 +121,7 @@ fn tangent_error(
             system.evaluate(&u, TangentKind::Consistent).unwrap()
         });
         let regimes = |of: &igimp_assembly::Trial<2>| -> Vec<_> {
-            of.particles.iter().map(|own| own.regime).collect()
+            of.particles.iter().map(|p| p.regime).collect()
         };
         if regimes(&plus) != regimes(&minus) {
             continue; // the force has a kink here, and differences have no meaning
@@ -154,7 +154,7 @@ fn the_tangent_is_the_derivative() {
                 let system = System::new(&body, &stencils, &conditions, &method).unwrap();
                 let u = nodal_values(&system, &grid, &mut random);
                 let (trial, matrix) = system.linearise(&u, TangentKind::Consistent).unwrap();
-                let plastic = trial.particles.iter().filter(|own| own.regime.is_plastic());
+                let plastic = trial.particles.iter().filter(|p| p.regime.is_plastic());
                 assert!(plastic.count() > body.len() / 4, "{name}");
                 let error = tangent_error(&system, &matrix, &u, 7);
                 let label = format!("{name}, {}, {:?}", method.label(), method.geometry);
@@ -188,7 +188,7 @@ fn prescribed_motion_spreads_plastic_strain() {
                 .collect();
             system.evaluate(&moved, kind).unwrap().f_int
         });
-        let scale = known.iter().fold(0.0, |most: f64, own| most.max(own.abs()));
+        let scale = known.iter().fold(0.0, |most: f64, f| most.max(f.abs()));
         let unknowns = system.unknowns();
         let mut of_strain = 0.0_f64;
         for (unknown, known) in known.iter().enumerate() {

@@ -71,10 +71,10 @@ fn uniform_gradient_is_exact<const D: usize>(cells: usize) {
                 }
             }
             .unwrap();
-            for own in &trial.particles {
+            for point in &trial.particles {
                 for a in 0..3 {
                     for c in 0..3 {
-                        let difference = own.tau[a][c] - exact.tau[a][c];
+                        let difference = point.tau[a][c] - exact.tau[a][c];
                         assert!(
                             difference.abs() < 1e-11,
                             "{label}: stress off by {difference:e}"
@@ -280,7 +280,7 @@ fn out_of_balance_under_tractions(
         System::with_structures(&body, &structures, &stencils, &conditions, method).unwrap();
     let left = system.out_of_balance(&trial).unwrap().force;
     let largest = |values: &mut dyn Iterator<Item = f64>| {
-        values.fold(0.0, |most: f64, own| most.max(own.abs()))
+        values.fold(0.0, |most: f64, value| most.max(value.abs()))
     };
     largest(&mut left.into_iter()) / largest(&mut tau.into_iter().flatten())
 }

@@ -90,8 +90,8 @@ fn standing_water_leaves_buoyant_weight() {
             ..(*body).clone()
         })
         .unwrap();
-        let own = Stencils::build(&buoyant, &method, &dry).unwrap();
-        let dry = System::new(&buoyant, &own, &dry, &method).unwrap();
+        let drained = Stencils::build(&buoyant, &method, &dry).unwrap();
+        let dry = System::new(&buoyant, &drained, &dry, &method).unwrap();
         let size = dry
             .f_ext()
             .iter()
@@ -139,7 +139,7 @@ fn the_tangent_knows_the_water() {
                     };
                     let (plus, minus) = (moved(1e-6), moved(-1e-6));
                     let regimes = |trial: &igimp_assembly::Trial<D>| -> Vec<_> {
-                        trial.particles.iter().map(|own| own.regime).collect()
+                        trial.particles.iter().map(|p| p.regime).collect()
                     };
                     tried += 1;
                     if regimes(&plus) != regimes(&minus) {
@@ -149,10 +149,10 @@ fn the_tangent_knows_the_water() {
                     let largest = column.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
                     for &(row, along) in &dofs {
                         let slope = (plus.f_int[row][along] - minus.f_int[row][along]) / 2e-6;
-                        let own = column[unknowns.index(row, along).unwrap()];
+                        let entry = column[unknowns.index(row, along).unwrap()];
                         assert!(
-                            (slope - own).abs() < 2e-6 * largest,
-                            "{name}: {slope} {own}"
+                            (slope - entry).abs() < 2e-6 * largest,
+                            "{name}: {slope} {entry}"
                         );
                     }
                 }
@@ -334,8 +334,8 @@ fn water_moves_with_its_mass() {
             factor: 1.0,
             stiffness: vec![0.0.into()],
         })
-        .and_then(|own| {
-            own.with_time(Some(TimeStep {
+        .and_then(|conditions| {
+            conditions.with_time(Some(TimeStep {
                 duration,
                 scheme: TimeScheme::BackwardEuler,
                 lumped: 0.0,

@@ -8,7 +8,7 @@ use igimp_assembly::{Constraints, Stencils, StepConditions, StepLoads, System};
 use igimp_material::TangentKind;
 
 #[test]
-fn round_off_is_told_from_the_force_of_small_strain() {
+fn round_off_differs_from_the_force_of_small_strain() {
     fn tell<const D: usize>() {
         let grid = grid::<D>(5);
         let mut random = Random(21);

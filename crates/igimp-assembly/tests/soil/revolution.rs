@@ -153,8 +153,8 @@ fn a_uniform_stretch_is_exact() {
                 Geometry::Moving => [a.ln_1p(), b.ln_1p(), a.ln_1p()],
                 Geometry::Given => [a, b, a],
             };
-            for own in by_particle(&trial, &stencils) {
-                let mut strains = own.eps_e;
+            for point in by_particle(&trial, &stencils) {
+                let mut strains = point.eps_e;
                 let mut expected = expected;
                 strains.sort_by(f64::total_cmp);
                 expected.sort_by(f64::total_cmp);
@@ -181,13 +181,13 @@ fn uniform_pressure_is_in_equilibrium() {
             continue;
         }
         let (trial, stencils, _) = trial(&method, elastic(), [stretch, stretch]);
-        let own = by_particle(&trial, &stencils)[0].tau[0][0];
+        let sigma = by_particle(&trial, &stencils)[0].tau[0][0];
         let (p, [radius, height]) = match method.geometry {
             Geometry::Moving => (
-                own * (1.0_f64 + stretch).powi(-3),
+                sigma * (1.0_f64 + stretch).powi(-3),
                 [2.9, 2.0].map(|x| x * (1.0 + stretch)),
             ),
-            Geometry::Given => (own, [2.9, 2.0]),
+            Geometry::Given => (sigma, [2.9, 2.0]),
         };
         let mut sums = [0.0; 2];
         for (node, f_int) in trial.f_int.iter().enumerate() {

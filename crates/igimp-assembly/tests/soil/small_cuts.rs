@@ -126,12 +126,12 @@ fn a_rigid_translation_of_tied_bodies_causes_no_strain() {
                     "{label}: nothing is tied"
                 );
                 for particle in 0..stencils.len() {
-                    let own = stencils.of(particle);
-                    let unity: f64 = own.iter().map(|support| support.value).sum();
+                    let list = stencils.of(particle);
+                    let unity: f64 = list.iter().map(|support| support.value).sum();
                     assert!((unity - 1.0).abs() < 1e-15, "{label}: {unity}");
                     for axis in 0..2 {
-                        let grad: f64 = own.iter().map(|support| support.grad[axis]).sum();
-                        let bar: f64 = own.iter().map(|support| support.grad_bar[axis]).sum();
+                        let grad: f64 = list.iter().map(|support| support.grad[axis]).sum();
+                        let bar: f64 = list.iter().map(|support| support.grad_bar[axis]).sum();
                         assert!(grad.abs() < 1e-15, "{label}: {grad:e}");
                         assert!(bar.abs() < 1e-15, "{label}: {bar:e}");
                     }
@@ -141,11 +141,11 @@ fn a_rigid_translation_of_tied_bodies_causes_no_strain() {
                 for size in [1e-3, 0.2, 5.0, 1e3] {
                     let u = translated(&system, [size, -0.7 * size]);
                     let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
-                    for own in &trial.particles {
+                    for point in &trial.particles {
                         for a in 0..2 {
                             for b in 0..2 {
                                 let identity = f64::from(u8::from(a == b));
-                                let strain = own.delta_def_grad[a][b] - identity;
+                                let strain = point.delta_def_grad[a][b] - identity;
                                 assert!(strain.abs() < 1e-15 * (1.0 + size), "{label}: {strain:e}");
                             }
                         }
@@ -230,8 +230,8 @@ fn the_tangent_of_tied_bodies_is_the_derivative_of_the_force() {
 }
 
 fn regimes(trial: &Trial<2>) -> Vec<igimp_material::Regime> {
-    let own = trial.particles.iter();
-    own.map(|own| own.regime).collect()
+    let points = trial.particles.iter();
+    points.map(|point| point.regime).collect()
 }
 
 /// The unknowns with their nodes and axes.
@@ -294,7 +294,7 @@ fn settle(method: &Method) -> (Vec<f64>, f64) {
     let residual = force.iter().fold(0.0_f64, |m, value| m.max(value.abs()));
     assert!(residual < 1e-12 * 100.0, "{residual:e}");
     let stress = by_particle(&trial, &stencils);
-    let stress = stress.iter().map(|own| own.tau[1][1]);
+    let stress = stress.iter().map(|point| point.tau[1][1]);
     (stress.collect(), condition)
 }
 
@@ -341,7 +341,7 @@ fn dropped_nodes_resist_a_settlement_and_tied_ones_do_not() {
     }
 }
 
-/// What tying costs: a uniform gradient G of the unknowns' displacements is felt in full by
+/// The error of ties: a uniform gradient G of the unknowns' displacements is felt in full by
 /// particles that touch no tied node, and off by no more than |G| times the share of the domain
 /// beyond the face by the others, because Σ X_i ⊗ ∇S_i = I lacks what the tied nodes stand apart
 /// from their masters.
@@ -362,13 +362,13 @@ fn tied_nodes_miss_no_more_of_a_gradient_than_their_share() {
         let mut u = system.prescribed_motion();
         system.add_correction(&mut u, &du);
         let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
-        for (particle, own) in by_particle(&trial, &stencils).into_iter().enumerate() {
+        for (particle, point) in by_particle(&trial, &stencils).into_iter().enumerate() {
             let reaches = body.x[particle][1] + 0.25 > 4.0;
             let share = if reaches { SLIVER / 0.5 } else { 0.0 };
             for a in 0..2 {
                 for b in 0..2 {
                     let exact = f64::from(u8::from(a == b)) + gradient[a][b];
-                    let missed = (own.delta_def_grad[a][b] - exact).abs();
+                    let missed = (point.delta_def_grad[a][b] - exact).abs();
                     let allowed = gradient[a][b].abs() * share + 1e-15;
                     assert!(missed <= 1.000_001 * allowed, "{missed:e} {allowed:e}");
                     assert!(!reaches || b == 0 || missed > 0.99 * allowed);
@@ -537,7 +537,7 @@ fn loads_beside_dropped_nodes_keep_resultant_and_moment() {
     }
 }
 
-/// The ghost stiffness between all nodes, one component, as what it adds to the internal force.
+/// The ghost stiffness between all nodes, one component, as its part of the internal force.
 fn ghost_stiffness(body: &Particles<2>, gamma: f64) -> (Grid<2>, DMatrix<f64>) {
     let grid = unit_grid([6, 6]);
     let conditions = free(&grid, &elastic());
@@ -556,13 +556,13 @@ fn ghost_stiffness(body: &Particles<2>, gamma: f64) -> (Grid<2>, DMatrix<f64>) {
         for axis in 0..2 {
             let (with, without) = (force(gamma, column, axis), force(0.0, column, axis));
             for row in 0..nodes {
-                let own = 1e3 * (with[row][axis] - without[row][axis]);
+                let entry = 1e3 * (with[row][axis] - without[row][axis]);
                 let other = 1e3 * (with[row][1 - axis] - without[row][1 - axis]);
                 assert!(other == 0.0, "components are coupled: {other}");
                 if axis == 0 {
-                    stiffness[(row, column)] = own;
+                    stiffness[(row, column)] = entry;
                 } else {
-                    let difference: f64 = stiffness[(row, column)] - own;
+                    let difference: f64 = stiffness[(row, column)] - entry;
                     assert!(
                         difference.abs() < 1e-11,
                         "components differ by {difference:e}"
@@ -649,7 +649,7 @@ fn forces_that_hold_tied_nodes_act_on_their_masters() {
     let mut random = Random(9);
     let held: Vec<[f64; 2]> = (0..grid.node_count())
         .map(|node| {
-            let touched = (stencils.carriers(node)).any(|own| stencils.node_volume(own.node) > 0.0);
+            let touched = (stencils.carriers(node)).any(|by| stencils.node_volume(by.node) > 0.0);
             [0, 1].map(|_| if touched { random.symmetric() } else { 0.0 })
         })
         .collect();
@@ -703,24 +703,24 @@ fn extrapolated_small_cuts_keep_linear_fields() {
                 for &cut in &cuts {
                     let carriers: Vec<_> = tied.carriers(cut).collect();
                     extrapolated += usize::from(carriers.len() > 1);
-                    for own in carriers {
-                        assert!(!tied.is_tied(own.node));
+                    for by in carriers {
+                        assert!(!tied.is_tied(by.node));
                         if conditions.constraints.of(cut, 1).is_some() {
-                            assert!(conditions.constraints.of(own.node, 1).is_some());
+                            assert!(conditions.constraints.of(by.node, 1).is_some());
                         }
                     }
                 }
                 for particle in 0..body.len() {
                     let sums = |stencils: &Stencils<2>| {
                         let mut sums = [0.0; 11];
-                        for own in stencils.of(particle) {
-                            let x = grid.node_position(own.node);
-                            sums[0] += own.value;
+                        for s in stencils.of(particle) {
+                            let x = grid.node_position(s.node);
+                            sums[0] += s.value;
                             for a in 0..2 {
-                                sums[1 + a] += own.value * x[a];
+                                sums[1 + a] += s.value * x[a];
                                 for b in 0..2 {
-                                    sums[3 + 2 * a + b] += own.grad[a] * x[b];
-                                    sums[7 + 2 * a + b] += own.grad_bar[a] * x[b];
+                                    sums[3 + 2 * a + b] += s.grad[a] * x[b];
+                                    sums[7 + 2 * a + b] += s.grad_bar[a] * x[b];
                                 }
                             }
                         }

@@ -1,4 +1,4 @@
-//! GOAL: what a particle sees of the grid is exact, for domains of any size and place, walls and
+//! GOAL: the supports of a particle are exact, for domains of any size and place, walls and
 //! tied small cuts included, with both bases, with and without B-bar.
 //! BODY: random graded grids in two and three dimensions, particles anywhere on them: in corners,
 //! on nodes and walls, with domains down to nothing and across many cells.
@@ -95,18 +95,18 @@ fn sums_over_nodes<const D: usize>(sample: &Sample<D>) -> Result<(), TestCaseErr
     for cuts in [false, true] {
         let (particles, stencils) = stencils(sample, cuts);
         for particle in 0..particles.len() {
-            let own = stencils.of(particle);
-            prop_assert!(own.windows(2).all(|pair| pair[0].node < pair[1].node));
+            let list = stencils.of(particle);
+            prop_assert!(list.windows(2).all(|pair| pair[0].node < pair[1].node));
             prop_assert!(
-                own.iter()
+                list.iter()
                     .all(|support| support.node < sample.grid.node_count())
             );
-            prop_assert!(own.iter().all(|support| support.value >= 0.0));
-            let unity: f64 = own.iter().map(|support| support.value).sum();
+            prop_assert!(list.iter().all(|support| support.value >= 0.0));
+            let unity: f64 = list.iter().map(|support| support.value).sum();
             prop_assert!((unity - 1.0).abs() <= 1e-14, "{unity}");
             for d in 0..D {
-                let sum: f64 = own.iter().map(|support| support.grad[d]).sum();
-                let sum_bar: f64 = own.iter().map(|support| support.grad_bar[d]).sum();
+                let sum: f64 = list.iter().map(|support| support.grad[d]).sum();
+                let sum_bar: f64 = list.iter().map(|support| support.grad_bar[d]).sum();
                 let largest = sum.abs().max(sum_bar.abs());
                 prop_assert!(largest <= 1e-13 / SMALLEST_CELL, "{sum} {sum_bar}");
             }
@@ -119,11 +119,11 @@ fn sums_over_nodes<const D: usize>(sample: &Sample<D>) -> Result<(), TestCaseErr
 fn linear_fields<const D: usize>(sample: &Sample<D>) -> Result<(), TestCaseError> {
     let (particles, stencils) = stencils(sample, false);
     for particle in 0..particles.len() {
-        let own = stencils.of(particle);
+        let list = stencils.of(particle);
         let middle = middle(sample, particle);
         let weighted = |of: &dyn Fn(&Support<D>) -> f64, a: usize| -> f64 {
             let about = |node: usize| sample.grid.node_position(node)[a] - middle[a];
-            own.iter()
+            list.iter()
                 .map(|support| of(support) * about(support.node))
                 .sum()
         };
@@ -139,7 +139,7 @@ fn linear_fields<const D: usize>(sample: &Sample<D>) -> Result<(), TestCaseError
             }
         }
         if sample.method.locking == Locking::None {
-            prop_assert!(own.iter().all(
+            prop_assert!(list.iter().all(
                 |support| support.grad.map(f64::to_bits) == support.grad_bar.map(f64::to_bits)
             ));
         }
@@ -181,10 +181,16 @@ fn shares_add_up<const D: usize>(sample: &Sample<D>) -> Result<(), TestCaseError
         let volume = whole(&|particle| particles.volume(particle), particles.len());
         let mass = whole(&|particle| particles.mass[particle], particles.len());
         for node in 0..nodes {
-            let (own, expected) = (stencils.node_volume(node), volumes[node]);
-            prop_assert!((own - expected).abs() <= 1e-14 * volume, "{own} {expected}");
-            let (own, expected) = (stencils.node_mass(node), masses[node]);
-            prop_assert!((own - expected).abs() <= 1e-14 * mass, "{own} {expected}");
+            let (found, expected) = (stencils.node_volume(node), volumes[node]);
+            prop_assert!(
+                (found - expected).abs() <= 1e-14 * volume,
+                "{found} {expected}"
+            );
+            let (found, expected) = (stencils.node_mass(node), masses[node]);
+            prop_assert!(
+                (found - expected).abs() <= 1e-14 * mass,
+                "{found} {expected}"
+            );
         }
         let sum = whole(&|node| stencils.node_volume(node), nodes);
         prop_assert!((sum - volume).abs() <= 1e-13 * volume, "{sum} {volume}");
@@ -194,7 +200,7 @@ fn shares_add_up<const D: usize>(sample: &Sample<D>) -> Result<(), TestCaseError
     Ok(())
 }
 
-/// Ties only join nodes: what a particle gives to a node is what it gave to those that the node now
+/// Ties only join nodes: the share of a node is the sum of those of the nodes that it now
 /// stands for, so that supports never grow in number.
 fn ties_only_join<const D: usize>(sample: &Sample<D>) -> Result<(), TestCaseError> {
     let (particles, plain) = stencils(sample, false);
@@ -204,9 +210,9 @@ fn ties_only_join<const D: usize>(sample: &Sample<D>) -> Result<(), TestCaseErro
         prop_assert!(after.len() <= before.len());
         for support in after {
             // A node that is left stands for itself and for others.
-            let own = before.iter().find(|other| other.node == support.node);
-            if let Some(own) = own {
-                prop_assert!(support.value >= own.value - 1e-15);
+            let whole = before.iter().find(|other| other.node == support.node);
+            if let Some(whole) = whole {
+                prop_assert!(support.value >= whole.value - 1e-15);
             }
         }
     }
@@ -261,15 +267,15 @@ fn particles_of_later_blocks_see_the_grid() {
     for method in [Method::shared_strain(), Method::igimp_bbar()] {
         let stencils = Stencils::build(&body, &method, &conditions).unwrap();
         for particle in 0..body.len() {
-            let own = stencils.of(particle);
+            let list = stencils.of(particle);
             for a in 0..2 {
                 let place = |support: &Support<2>| grid.node_position(support.node)[a];
-                let x: f64 = own.iter().map(|own| own.value * place(own)).sum();
+                let x: f64 = list.iter().map(|s| s.value * place(s)).sum();
                 assert!((x - body.x[particle][a]).abs() < 1e-10, "{particle}: {x}");
                 for b in 0..2 {
                     let expected = f64::from(u8::from(a == b));
-                    let sum: f64 = own.iter().map(|own| own.grad[b] * place(own)).sum();
-                    let bar: f64 = own.iter().map(|own| own.grad_bar[b] * place(own)).sum();
+                    let sum: f64 = list.iter().map(|s| s.grad[b] * place(s)).sum();
+                    let bar: f64 = list.iter().map(|s| s.grad_bar[b] * place(s)).sum();
                     assert!((sum - expected).abs() < 1e-10 && (bar - expected).abs() < 1e-10);
                 }
             }

@@ -51,7 +51,7 @@ fn tangent_error<const D: usize>(
             let mut u = u.clone();
             u[node][axis] += sign * d;
             let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
-            let regimes: Vec<_> = trial.particles.iter().map(|own| own.regime).collect();
+            let regimes: Vec<_> = trial.particles.iter().map(|p| p.regime).collect();
             (trial.f_int, regimes)
         };
         let ((plus, regimes_plus), (minus, regimes_minus)) = (moved(1.0), moved(-1.0));
@@ -312,7 +312,7 @@ fn elastic_tangent_is_symmetric_where_strength_fell() {
             let stencils = Stencils::build(&body, &method, &conditions).unwrap();
             let system = System::new(&body, &stencils, &conditions, &method).unwrap();
             let (trial, matrix) = system.linearise(&still, TangentKind::Elastic).unwrap();
-            let plastic = trial.particles.iter().filter(|own| own.regime.is_plastic());
+            let plastic = trial.particles.iter().filter(|p| p.regime.is_plastic());
             assert!(
                 name == "elastic" || plastic.count() > body.len() / 8,
                 "{name}"

@@ -36,7 +36,7 @@ fn body(corners: &[[f64; 2]]) -> RigidBody<2> {
     body
 }
 
-/// What a step over some time leaves that lifts the soil by so much below a body whose lower side is at this height.
+/// The result of a step over some time that lifts the soil by so much below a body whose lower side is at this height.
 fn lifted(
     base: f64,
     by: f64,

@@ -326,18 +326,18 @@ fn balance<const D: usize>(surface: &Surface<D>, cells: usize, depth: f64) {
         let nodes = grid.node_count();
         let mut sum = with[nodes];
         let mut moment: [f64; 3] = std::array::from_fn(|k| {
-            let own = if k < D { with[nodes + 1][k] } else { 0.0 };
-            size * own
+            let m = if k < D { with[nodes + 1][k] } else { 0.0 };
+            size * m
         });
         let mut scale = 0.0_f64;
         for node in 0..nodes {
             let x = grid.node_position(node);
-            let own: [f64; D] = std::array::from_fn(|a| with[node][a] - without[node][a]);
+            let f: [f64; D] = std::array::from_fn(|a| with[node][a] - without[node][a]);
             let (mut arm, mut push) = ([0.0; 3], [0.0; 3]);
             for axis in 0..D {
-                sum[axis] += own[axis];
-                scale += own[axis].abs();
-                (arm[axis], push[axis]) = (x[axis] - origin[axis], own[axis]);
+                sum[axis] += f[axis];
+                scale += f[axis].abs();
+                (arm[axis], push[axis]) = (x[axis] - origin[axis], f[axis]);
             }
             if D == 2 {
                 moment[0] += arm[0] * push[1] - arm[1] * push[0];
@@ -358,7 +358,7 @@ fn balance<const D: usize>(surface: &Surface<D>, cells: usize, depth: f64) {
     }
 }
 
-/// Contact takes from the body what it gives to the soil, moments included.
+/// Contact takes from the body the force that it gives to the soil, moments included.
 #[test]
 fn action_is_reaction() {
     let half_width = 0.5 * (grid::<2>(6).bounds().1[0] - 2.5);
@@ -456,7 +456,7 @@ fn poses_turn_rigidly() {
     assert!((plane.angle[0] - FRAC_PI_4).abs() < 1e-15);
 }
 
-/// What a step with displacements `u` leaves of contact between soil at rest and a body that is held, by knot.
+/// State after a step with displacements `u` of contact between soil at rest and a body that is held, by knot.
 fn left_of(
     (grid, soil): (&Grid<2>, &Particles<2>),
     body: &RigidBody<2>,
@@ -534,7 +534,7 @@ fn a_body_turns_by_its_rotation() {
 // CASE: a rough plate that carried shear, and soil that goes down from it.
 // ORACLE: no traction across a gap.
 #[test]
-fn what_let_go_keeps_no_shear() {
+fn a_knot_that_let_go_keeps_no_shear() {
     let (grid, soil, mut body) = plate(&Interface::rough(), 0.0);
     for knot in &mut body.contact.knots {
         *knot = ContactNode {

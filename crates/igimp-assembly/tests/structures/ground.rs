@@ -49,9 +49,9 @@ fn shaken(grid: &Grid<2>, law: &SharedLaw, scheme: TimeScheme) -> StepConditions
     };
     conditions(grid, law)
         .with_time(Some(time))
-        .and_then(|own| own.with_walls(Some(walls)))
-        .and_then(|own| own.with_ground(Some(ground)))
-        .and_then(|own| own.with_damping(Some(damping)))
+        .and_then(|step| step.with_walls(Some(walls)))
+        .and_then(|step| step.with_ground(Some(ground)))
+        .and_then(|step| step.with_damping(Some(damping)))
         .unwrap()
 }
 
@@ -78,9 +78,9 @@ fn the_tangent_of_walls_and_damping_is_the_derivative_of_the_force() {
         for column in 0..unknowns.len() {
             let (node, axis) = unknowns.place(column).unwrap();
             let mut unit = vec![0.0; unknowns.len()];
-            let mut own = unit.clone();
+            let mut product = unit.clone();
             unit[column] = 1.0;
-            matrix.multiply(&unit, &mut own);
+            matrix.multiply(&unit, &mut product);
             let d = 1e-6;
             let force = |by: f64| {
                 let mut u = u.clone();
@@ -88,10 +88,10 @@ fn the_tangent_of_walls_and_damping_is_the_derivative_of_the_force() {
                 let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
                 system.by_unknown(&trial.f_int)
             };
-            for ((plus, minus), own) in std::iter::zip(force(d), force(-d)).zip(own) {
+            for ((plus, minus), entry) in std::iter::zip(force(d), force(-d)).zip(product) {
                 let difference = (plus - minus) / (2.0 * d);
                 largest = largest.max(difference.abs());
-                error = error.max((difference - own).abs());
+                error = error.max((difference - entry).abs());
             }
         }
         assert!(error < 1e-6 * largest, "{scheme:?}: {error} of {largest}");

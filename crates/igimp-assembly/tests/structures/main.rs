@@ -1,4 +1,4 @@
-//! What touches and holds soil: one program, as every one compiles the equations anew.
+//! Structures that touch and hold soil: one program, as every one compiles the equations anew.
 
 mod clearance;
 #[path = "../common/mod.rs"]

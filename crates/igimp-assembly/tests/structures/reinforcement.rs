@@ -51,7 +51,7 @@ fn member<const D: usize>(from: [f64; D], to: [f64; D], count: usize) -> Reinfor
     }
 }
 
-/// A body on a grid, what holds of it, and a member through it.
+/// A body on a grid, its conditions, and a member through it.
 struct Scene<const D: usize> {
     grid: Grid<D>,
     conditions: StepConditions<D>,
@@ -148,10 +148,10 @@ fn accepted<const D: usize>(
     };
     let (mut after, with) = force(&members);
     let (_, without) = force(&[]);
-    let own = std::iter::zip(with, without)
+    let force = std::iter::zip(with, without)
         .map(|(a, b)| std::array::from_fn(|axis| a[axis] - b[axis]))
         .collect();
-    (after.remove(0), own)
+    (after.remove(0), force)
 }
 
 fn methods() -> [Method; 3] {
@@ -215,15 +215,15 @@ fn a_uniform_stretch_gives_the_force_of_a_bar() {
             let from = straight.stations[0].points[0];
             let d = [to[0] - from[0], to[1] - from[1]];
             let length = d[0].hypot(d[1]);
-            let own = if number == 0 {
+            let along = if number == 0 {
                 (d[0] * (1.0 + strain)).hypot(d[1]) / length - 1.0
             } else {
                 strain * (d[0] / length).powi(2)
             };
-            let expected = (STIFFNESS * own).clamp(0.0, TENSILE);
+            let expected = (STIFFNESS * along).clamp(0.0, TENSILE);
             for bar in &after.segments {
-                assert!((bar.state.force - expected).abs() < 1e-12, "{own}");
-                assert!((bar.state.strain - own).abs() < 1e-14);
+                assert!((bar.state.force - expected).abs() < 1e-12, "{along}");
+                assert!((bar.state.strain - along).abs() < 1e-14);
                 assert_eq!(bar.state.is_at_limit, expected == TENSILE);
             }
             // Its points go with the soil, and stay on a given geometry.
@@ -275,9 +275,9 @@ fn work_is_that_of_the_tension() {
             system.work(&trial, &u).unwrap()
         };
         let (with, without) = (work(std::slice::from_ref(&member)), work(&[]));
-        let own = strain * (d[0] / length).powi(2);
-        let force = (STIFFNESS * own).min(TENSILE);
-        let expected = [force * length * own, force * length * force / STIFFNESS];
+        let along = strain * (d[0] / length).powi(2);
+        let force = (STIFFNESS * along).min(TENSILE);
+        let expected = [force * length * along, force * length * force / STIFFNESS];
         let found = [with.whole - without.whole, with.elastic - without.elastic];
         for (found, expected) in std::iter::zip(found, expected) {
             assert!((found - expected).abs() < 1e-11, "{found} {expected}");
@@ -288,7 +288,7 @@ fn work_is_that_of_the_tension() {
 }
 
 #[test]
-fn what_has_yielded_is_longer_and_takes_tension_when_it_is_straight_again() {
+fn a_yielded_bar_is_longer_and_takes_tension_when_it_is_straight_again() {
     let scene = scene::<2>();
     let method = Method {
         geometry: Geometry::Given,
@@ -487,7 +487,7 @@ fn soil_that_is_not_near_carries_nothing() {
 // CASE: a member with a head of two points, and the same with four, in a body that all moves, and that stretches.
 // ORACLE: a rigid translation strains nothing; the forces of a member sum to nothing; the strain of a uniform stretch.
 #[test]
-fn points_beneath_a_plate_share_what_one_would_carry() {
+fn points_beneath_a_plate_share_the_force_of_one() {
     fn compare<const D: usize>() {
         let mut scene = scene::<D>();
         for twice in [false, true] {

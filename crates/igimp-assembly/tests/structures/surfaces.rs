@@ -191,8 +191,8 @@ fn areas(surface: &Surface<3>) -> Vec<f64> {
             u[0] * v[1] - u[1] * v[0],
         ];
         areas[side] += 0.5 * n.iter().map(|n| n * n).sum::<f64>().sqrt();
-        for own in shares {
-            let sum: f64 = own.iter().map(|(_, share)| share).sum();
+        for corner in shares {
+            let sum: f64 = corner.iter().map(|(_, share)| share).sum();
             assert!((sum - 1.0).abs() < 1e-15);
         }
     }
@@ -279,12 +279,12 @@ fn cones() {
     for _ in 0..400 {
         let mut x: [f64; 3] = std::array::from_fn(|_| 1.5 * random.symmetric());
         x[2] += 1.5;
-        let own = [x[0].hypot(x[1]), x[2]];
+        let point = [x[0].hypot(x[1]), x[2]];
         let least = profile
             .windows(2)
-            .map(|ab| to_segment(own, ab[0], ab[1]))
+            .map(|ab| to_segment(point, ab[0], ab[1]))
             .fold(f64::INFINITY, f64::min);
-        let is_inside = own[0] < (0.5 * own[1]).min(1.0) && own[1] < 3.5;
+        let is_inside = point[0] < (0.5 * point[1]).min(1.0) && point[1] < 3.5;
         within += usize::from(is_inside);
         let expected = if is_inside { -least } else { least };
         let found = body.distance(&x);
@@ -362,16 +362,16 @@ fn prisms() {
         let body = body(surface);
         let mut random = Random(16);
         for _ in 0..200 {
-            let own = [
+            let point = [
                 1.5 + 2.5 * random.symmetric(),
                 1.2 + 2.0 * random.symmetric(),
             ];
             let along = 0.25 + 1.5 * random.symmetric();
             let mut x = [0.0; 3];
             x[axis] = along;
-            x[(axis + 1) % 3] = own[0];
-            x[(axis + 2) % 3] = own[1];
-            let (r, z) = (plane.distance(&own), (along - 0.25).abs() - 0.75);
+            x[(axis + 1) % 3] = point[0];
+            x[(axis + 2) % 3] = point[1];
+            let (r, z) = (plane.distance(&point), (along - 0.25).abs() - 0.75);
             let expected = r.max(0.0).hypot(z.max(0.0)) + r.max(z).min(0.0);
             let found = body.distance(&x);
             assert!(
@@ -426,7 +426,7 @@ fn many_triangles() {
     }
 }
 
-/// What is no closed surface is refused, with the place.
+/// A surface that is not closed is refused, with the place.
 #[test]
 fn open_and_twisted_surfaces_are_refused() {
     let corners = [

@@ -25,7 +25,7 @@ fn ends_are_those_of_the_theory() {
     let von_mises = VonMises::from_undrained_strength(elasticity(), 1e4).unwrap();
     for (geometry, associated) in std::iter::zip(GEOMETRIES, [0.02, 0.1]) {
         let near = |law: &dyn ConstitutiveModel, share: f64| {
-            assert!((own_share(law, geometry) - share).abs() < 1e-15);
+            assert!((share_of_law(law, geometry) - share).abs() < 1e-15);
         };
         near(&soil(0.0), 0.3);
         near(&soil(20.0), associated);
@@ -62,7 +62,7 @@ fn a_layer_is_one_cell_high() {
     };
     let soil = CellSoil::where_it_counts(&particles, &method, &conditions, &[]).unwrap();
     let moments = soil.unwrap().moments(&conditions.grid, &particles, &method);
-    let layers: Vec<f64> = moments.iter().map(|own| own.layer).collect();
+    let layers: Vec<f64> = moments.iter().map(|law| law.layer).collect();
     assert_eq!(layers, [1.0, 6.0]);
 }
 
@@ -92,7 +92,7 @@ fn points_on_lines_are_of_both_cells() {
 fn falls_with_dilation_without_a_jump() {
     for (geometry, associated) in std::iter::zip(GEOMETRIES, [0.02, 0.1]) {
         let shares: Vec<f64> = (0..=1000)
-            .map(|step| own_share(&soil(20.0 * (f64::from(step) / 1000.0).powi(2)), geometry))
+            .map(|step| share_of_law(&soil(20.0 * (f64::from(step) / 1000.0).powi(2)), geometry))
             .collect();
         let steepest = 0.3 * 0.3 * (1.0 / associated - 1.0 / 0.3) / 1000.0;
         for pair in shares.windows(2) {
@@ -112,9 +112,9 @@ fn is_that_of_the_law_as_given() {
             let once: Arc<dyn ConstitutiveModel> = law.reduced(srf).unwrap();
             let twice = once.reduced(1.1).unwrap();
             for geometry in GEOMETRIES {
-                let given = own_share(&law, geometry).to_bits();
-                assert_eq!(own_share(&*once, geometry).to_bits(), given);
-                assert_eq!(own_share(&*twice, geometry).to_bits(), given);
+                let given = share_of_law(&law, geometry).to_bits();
+                assert_eq!(share_of_law(&*once, geometry).to_bits(), given);
+                assert_eq!(share_of_law(&*twice, geometry).to_bits(), given);
             }
         }
     }

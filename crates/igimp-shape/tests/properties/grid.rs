@@ -77,7 +77,7 @@ fn numbering<const D: usize>(axes: [Axis; D]) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// The cell of a point is what a search through all cells finds, and there is none outside.
+/// The cell of a point is the one that a search through all cells finds, and there is none outside.
 fn location<const D: usize>(
     axes: [Axis; D],
     share: [f64; D],
@@ -147,10 +147,10 @@ proptest! {
 
     /// Nodes out of order or not finite are refused, wherever they are.
     #[test]
-    fn a_wrong_node_is_named(axis in axis(), at in 0_usize..64, what in 0_usize..3) {
+    fn a_wrong_node_is_named(axis in axis(), at in 0_usize..64, kind in 0_usize..3) {
         let mut nodes = axis.nodes().to_vec();
         let at = at % nodes.len();
-        nodes[at] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY][what];
+        nodes[at] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY][kind];
         let error = Axis::from_nodes(nodes.clone()).unwrap_err();
         let is_named = matches!(error, ShapeError::NotFinite { index, .. } if index == at);
         prop_assert!(is_named, "{}", error);

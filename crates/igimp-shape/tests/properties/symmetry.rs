@@ -1,4 +1,4 @@
-//! What must hold to the last bit: change of the length unit, mirror image, search for a cell.
+//! Properties that hold to the last bit: change of the length unit, mirror image, search for a cell.
 
 use igimp_shape::{Axis, Basis, Gimp, NodeWeight};
 use proptest::prelude::*;

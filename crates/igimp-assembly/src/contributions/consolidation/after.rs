@@ -1,4 +1,4 @@
-//! What a step leaves in the pores: excess pressures, the water that moved, and the error of the step in time.
+//! Results of a step in the pores: excess pressures, the water that moved, and the error of the step in time.
 
 use crate::contributions::consolidation::{Consolidation, flow};
 use crate::step::stencils::Stencils;
@@ -20,22 +20,22 @@ pub(super) struct Share {
 /// The water that a step moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WaterMoved {
-    /// What left at open faces and drains \[length^D\].
+    /// Outflow at open faces and drains \[length^D\].
     pub outflow: f64,
     /// Growth of the volume of soil that water flows through \[length^D\].
     pub swelling: f64,
-    /// What compression of the water made room for \[length^D\].
+    /// Water stored by its compression \[length^D\].
     pub stored: f64,
 }
 
 impl WaterMoved {
-    /// What does not close \[length^D\].
+    /// The error of the balance \[length^D\].
     pub fn missing(&self) -> f64 {
         self.outflow + self.swelling + self.stored
     }
 }
 
-/// What an accepted step leaves in the pores.
+/// State of the pores after an accepted step.
 #[derive(Clone, Debug, Default)]
 pub struct PoresAfter {
     /// Given pore pressure by particle, empty where there is none \[force/length²\].
@@ -82,7 +82,7 @@ impl<const D: usize> Consolidation<D> {
                 let pressed = self.pressed(seeping, u);
                 let supports = self.supports_of(seeping).iter();
                 let grows: f64 = supports
-                    .map(|own| own.mean * grown[own.place as usize])
+                    .map(|support| support.mean * grown[support.place as usize])
                     .sum();
                 ExcessAfter {
                     particle: seeping.particle as usize,
@@ -94,16 +94,16 @@ impl<const D: usize> Consolidation<D> {
             .collect()
     }
 
-    /// The growth of the water of each pressure by what flows at nodal values `u` \[length^D\].
+    /// The growth of the water of each pressure by flow at nodal values `u` \[length^D\].
     fn grown(&self, u: &[[f64; D]]) -> Vec<f64> {
         let shares = self.shares.iter();
-        let mut grown: Vec<f64> = shares.map(|own| self.of_rate * own.expected).collect();
+        let mut grown: Vec<f64> = shares.map(|share| self.of_rate * share.expected).collect();
         for seeping in &self.seeping {
             let flows = flow(&seeping.flows, &self.pressed(seeping, u).grad);
-            for own in self.supports_of(seeping) {
-                let along = own.grad.iter().zip(&flows);
+            for support in self.supports_of(seeping) {
+                let along = support.grad.iter().zip(&flows);
                 let water: f64 = along.map(|(grad, flow)| grad * flow).sum();
-                grown[own.place as usize] -= water;
+                grown[support.place as usize] -= water;
             }
         }
         for leak in &self.leaks {
@@ -119,13 +119,13 @@ impl<const D: usize> Consolidation<D> {
     /// or over a part of the largest effective stress `stress` \[-\]; none where no water flows (theory, eq. 104).
     pub(crate) fn time_error(&self, u: &[[f64; D]], stress: f64) -> Option<f64> {
         let (mut volume, mut squared, mut largest) = (0.0, 0.0, STRESS_SHARE * stress);
-        for (place, (own, grown)) in self.shares.iter().zip(self.grown(u)).enumerate() {
-            let change = own.by_volume(grown - own.expected);
-            volume += own.volume;
-            squared += own.volume * (0.5 * own.by_volume(own.stiffness) * change).powi(2);
+        for (place, (share, grown)) in self.shares.iter().zip(self.grown(u)).enumerate() {
+            let change = share.by_volume(grown - share.expected);
+            volume += share.volume;
+            squared += share.volume * (0.5 * share.by_volume(share.stiffness) * change).powi(2);
             largest = largest.max((self.scale * self.value(place as u32, u)).abs());
         }
-        let starts = self.seeping.iter().map(|own| own.start.abs());
+        let starts = self.seeping.iter().map(|seeping| seeping.start.abs());
         largest = starts.fold(largest, f64::max);
         (volume > 0.0 && largest > 0.0).then(|| (squared / volume).sqrt() / largest)
     }
@@ -135,7 +135,7 @@ impl<const D: usize> Consolidation<D> {
         if self.seeping.is_empty() {
             return None;
         }
-        let expected: f64 = self.shares.iter().map(|own| own.expected).sum();
+        let expected: f64 = self.shares.iter().map(|share| share.expected).sum();
         let mut moved = WaterMoved {
             outflow: -self.of_rate * expected,
             ..WaterMoved::default()
@@ -152,7 +152,7 @@ impl<const D: usize> Consolidation<D> {
         Some(moved)
     }
 
-    /// What a step with nodal values `u` leaves in the pores, where `given` is the given pore pressure by particle.
+    /// State of the pores after a step with nodal values `u`, where `given` is the given pore pressure by particle.
     pub(crate) fn accepted(
         &self,
         stencils: &Stencils<D>,

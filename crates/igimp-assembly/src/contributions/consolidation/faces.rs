@@ -35,7 +35,7 @@ pub(crate) struct Opening {
     pub(crate) conductance: f64,
 }
 
-/// What soil is in a cell.
+/// The soil in a cell.
 #[derive(Clone, Copy, Debug)]
 struct CellOfSoil<const D: usize> {
     volume: f64,
@@ -62,7 +62,7 @@ pub(crate) fn openings<const D: usize>(
     let mut all = Vec::new();
     let most = (flow.soils.iter())
         .filter_map(|soil| match soil {
-            PoreFlow::Flows(own) => (0..D).map(|a| own.mobility[a][a]).reduce(f64::max),
+            PoreFlow::Flows(soil) => (0..D).map(|a| soil.mobility[a][a]).reduce(f64::max),
             _ => None,
         })
         .fold(0.0, f64::max);
@@ -75,12 +75,12 @@ pub(crate) fn openings<const D: usize>(
         cell_parts(grid, &*method.basis, &x, &half_length, &mut parts)
             .map_err(|source| off_grid(particle, &x, source))?;
         let volume = particles.volume(particle);
-        let own = flow.permeable(law);
+        let soil = flow.permeable(law);
         let in_drain = drained_share(flow, &x, &half_length);
         let leaks = match flow.soils.get(law) {
             Some(PoreFlow::Drained) => Some((1.0, most)),
-            _ => own.filter(|_| in_drain > 0.0).map(|own| {
-                let mobility = (0..D).map(|a| own.mobility[a][a]).fold(0.0, f64::max);
+            _ => soil.filter(|_| in_drain > 0.0).map(|soil| {
+                let mobility = (0..D).map(|a| soil.mobility[a][a]).fold(0.0, f64::max);
                 (in_drain, mobility)
             }),
         };
@@ -93,8 +93,8 @@ pub(crate) fn openings<const D: usize>(
                 seeping: 0.0,
                 mobility: [0.0; D],
             });
-            let own_volume = volume * part.share;
-            cell.volume += own_volume;
+            let part_volume = volume * part.share;
+            cell.volume += part_volume;
             let origin = grid.node_position(grid.node_index(part.cell));
             for axis in 0..D {
                 let end = |sign: f64| {
@@ -104,10 +104,10 @@ pub(crate) fn openings<const D: usize>(
                 cell.lower[axis] = cell.lower[axis].min(end(-1.0));
                 cell.upper[axis] = cell.upper[axis].max(end(1.0));
             }
-            if let Some(own) = own {
-                cell.seeping += own_volume;
+            if let Some(soil) = soil {
+                cell.seeping += part_volume;
                 for axis in 0..D {
-                    cell.mobility[axis] += own_volume * own.mobility[axis][axis];
+                    cell.mobility[axis] += part_volume * soil.mobility[axis][axis];
                 }
             }
             if let Some((share, mobility)) = leaks {
@@ -115,7 +115,7 @@ pub(crate) fn openings<const D: usize>(
                 let tents = grid.tents(part.cell, part.middle);
                 all.push(Opening {
                     values: tents.map(|(node, value, _)| (node, value)).collect(),
-                    conductance: flow.duration * share * own_volume * mobility / side.powi(2),
+                    conductance: flow.duration * share * part_volume * mobility / side.powi(2),
                 });
             }
         }
@@ -234,7 +234,7 @@ fn face<const D: usize>(
 }
 
 /// The share of a domain that drains take, at most 1 \[-\]. A side of a drain takes a domain along with it that lies in it by half, or
-/// that has half of the drain: what a drain merely touches would drain the nodes of its cell.
+/// that has half of the drain: soil that a drain merely touches would drain its cell's nodes.
 fn drained_share<const D: usize>(
     flow: &Consolidating<D>,
     x: &[f64; D],
@@ -244,9 +244,9 @@ fn drained_share<const D: usize>(
         let along = |axis: usize| {
             let from = (x[axis] - half_length[axis]).max(lower[axis]);
             let to = (x[axis] + half_length[axis]).min(upper[axis]);
-            let (own, all) = (2.0 * half_length[axis], upper[axis] - lower[axis]);
-            let is_taken = to - from >= (0.5 - ROUND_OFF) * own.min(all);
-            if is_taken { (to - from) / own } else { 0.0 }
+            let (length, all) = (2.0 * half_length[axis], upper[axis] - lower[axis]);
+            let is_taken = to - from >= (0.5 - ROUND_OFF) * length.min(all);
+            if is_taken { (to - from) / length } else { 0.0 }
         };
         (0..D).map(along).product()
     };

@@ -1,4 +1,4 @@
-//! What does not change during a step: the particles that water flows through, their pressures, and the openings where it leaves.
+//! Constants of a step: the particles that water flows through, their pressures, and the openings where it leaves.
 
 use igimp_shape::{Grid, Support, cell_parts};
 use rayon::prelude::*;
@@ -37,7 +37,7 @@ struct Gathering<'a, const D: usize> {
     numbers: Vec<u32>,
 }
 
-/// A particle that water flows through, and what its soil is.
+/// A particle that water flows through, and its soil.
 struct Gathered<const D: usize> {
     seeping: Seeping<D>,
     /// Oedometric modulus \[force/length²\].
@@ -78,7 +78,7 @@ impl<const D: usize> Consolidation<D> {
             pores,
             numbers,
         };
-        let mut own = Self {
+        let mut consolidation = Self {
             first: unknowns.first_scalar(),
             place_of: vec![NONE; particles.len()],
             shares: vec![Share::default(); nodes.len()],
@@ -92,14 +92,14 @@ impl<const D: usize> Consolidation<D> {
         let parts = parts.map(|particles| gathering.particles(particles));
         let side = least_side(grid);
         for part in parts.collect::<Result<Vec<_>, _>>()? {
-            own.append(part, side);
+            consolidation.append(part, side);
         }
         let near_body =
             |x: &[f64; D], reach: f64| bodies.iter().any(|body| body.distance(x) < reach);
         let openings = openings(particles, (conditions, method), flow, &near_body)?;
         let leaks = openings.iter().map(|opening| gathering.leak(opening));
-        own.leaks = leaks.filter(|leak| !leak.values.is_empty()).collect();
-        Ok(own)
+        consolidation.leaks = leaks.filter(|leak| !leak.values.is_empty()).collect();
+        Ok(consolidation)
     }
 
     /// Appends particles with their supports, on a grid whose shortest side of a cell is `side`.
@@ -109,19 +109,19 @@ impl<const D: usize> Consolidation<D> {
         side: f64,
     ) {
         let before = self.supports.len() as u32;
-        for own in gathered {
+        for entry in gathered {
             let Gathered {
                 mut seeping,
                 modulus,
                 expected,
-            } = own;
+            } = entry;
             self.scale = self.scale.max(modulus / side);
             let volume = seeping.volume;
-            for own in &supports[seeping.first as usize..][..seeping.len as usize] {
-                let share = &mut self.shares[own.place as usize];
-                share.volume += volume * own.mean;
-                share.stiffness += volume * own.mean * modulus;
-                share.expected += volume * own.mean * expected;
+            for support in &supports[seeping.first as usize..][..seeping.len as usize] {
+                let share = &mut self.shares[support.place as usize];
+                share.volume += volume * support.mean;
+                share.stiffness += volume * support.mean * modulus;
+                share.expected += volume * support.mean * expected;
             }
             seeping.first += before;
             self.place_of[seeping.particle as usize] = self.seeping.len() as u32;
@@ -182,7 +182,7 @@ impl<const D: usize> Gathering<'_, D> {
                 start,
                 stores,
                 projects,
-                flows: soil.mobility.map(|row| row.map(|own| flows * own)),
+                flows: soil.mobility.map(|row| row.map(|k| flows * k)),
                 held: stores * start + of_rate * volume * expected,
                 held_within: projects * particles.excess_within_cell[particle],
             },
@@ -191,7 +191,7 @@ impl<const D: usize> Gathering<'_, D> {
         })
     }
 
-    /// Lists the pressures of a particle. What falls to a node that was dropped falls to the one with the largest value: no water is
+    /// Lists the pressures of a particle. The share of a dropped node falls to the one with the largest value: no water is
     /// lost with it.
     fn pressures(
         &self,
@@ -207,21 +207,22 @@ impl<const D: usize> Gathering<'_, D> {
         } in self.stencils.of(particle)
         {
             let mean = mean_of(&means, node);
-            let own = PressureSupport {
+            let at_node = PressureSupport {
                 place: self.numbers[node],
                 node: node as u32,
                 mean,
                 bulge: value - mean,
                 grad,
             };
-            if own.place == NONE {
-                dropped.get_or_insert(PressureSupport::nothing()).take(&own);
+            if at_node.place == NONE {
+                let sum = dropped.get_or_insert(PressureSupport::nothing());
+                sum.take(&at_node);
                 continue;
             }
             if value >= most {
                 (largest, most) = (listed.len(), value);
             }
-            listed.push(own);
+            listed.push(at_node);
         }
         if let (Some(dropped), Some(largest)) = (dropped, listed.get_mut(largest)) {
             largest.take(&dropped);
@@ -233,7 +234,7 @@ impl<const D: usize> Gathering<'_, D> {
     fn leak(&self, opening: &Opening) -> Leak {
         let carried = opening.values.iter().flat_map(|&(node, value)| {
             let carriers = self.stencils.carriers(node);
-            carriers.map(move |own| (self.numbers[own.node], own.weight * value))
+            carriers.map(move |carrier| (self.numbers[carrier.node], carrier.weight * value))
         });
         Leak {
             values: carried.filter(|&(place, _)| place != NONE).collect(),
@@ -287,15 +288,15 @@ impl<const D: usize> PressureSupport<D> {
     fn take(&mut self, other: &Self) {
         self.mean += other.mean;
         self.bulge += other.bulge;
-        for (own, other) in self.grad.iter_mut().zip(other.grad) {
-            *own += other;
+        for (sum, other) in self.grad.iter_mut().zip(other.grad) {
+            *sum += other;
         }
     }
 }
 
 fn mean_of(means: &[(usize, f64)], node: usize) -> f64 {
-    let own = means.iter().find(|(other, _)| *other == node);
-    own.map_or(0.0, |(_, mean)| *mean)
+    let entry = means.iter().find(|(other, _)| *other == node);
+    entry.map_or(0.0, |(_, mean)| *mean)
 }
 
 /// The shortest side of a cell \[length\].

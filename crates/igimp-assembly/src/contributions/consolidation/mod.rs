@@ -1,9 +1,9 @@
 //! Consolidation: water that flows out of soil while a step takes time, with excess pore pressure among the unknowns (theory,
 //! eqs. 97 to 104).
 //!
-//! Soil sees the mean of the pressure over cells, as its dilatation is that of cells (B-bar). What a cell mean does not see is
+//! Soil sees the mean of the pressure over cells, as its dilatation is that of cells (B-bar). Pressure that a cell mean does not see is
 //! held by the projection of Dohrmann and Bochev (2004), in the form of White and Borja (2008): with 1/(2G) there is nothing
-//! to choose. What a particle adds goes into the matrix with its tangent; what an opening adds is a nodal force like others.
+//! to choose. Terms of a particle go into the matrix with its tangent; those of an opening are nodal forces like others.
 
 mod after;
 mod faces;
@@ -24,7 +24,7 @@ use igimp_shape::matrices::{determinant, identity, inverse, transpose_apply};
 /// Marks a node of the grid without a pressure, and a particle that water does not flow through.
 const NONE: u32 = u32::MAX;
 
-/// What a pressure is to a particle.
+/// Values of a pressure at a particle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PressureSupport<const D: usize> {
     /// Number of the pressure.
@@ -56,7 +56,7 @@ struct Seeping<const D: usize> {
     projects: f64,
     /// Water by gradient of pressure that flows during the step, V Δt k/γ_w by its weight \[length^(D+4)/force\].
     flows: [[f64; D]; D],
-    /// Water at the start, with what goes on at the rate of the step before \[length^D\].
+    /// Water at the start, and its growth at the rate of the step before \[length^D\].
     held: f64,
     /// By how much the pressure at the particle was more than its mean, by `projects` \[length^D\].
     held_within: f64,
@@ -98,7 +98,7 @@ pub(crate) struct Consolidation<const D: usize> {
     /// By pressure: its node of the grid.
     nodes: Vec<usize>,
     leaks: Vec<Leak>,
-    /// What the rate of the step before weighs in this one \[-\].
+    /// Weight of the rate of the step before \[-\].
     of_rate: f64,
     duration: f64,
     finite: bool,
@@ -124,7 +124,7 @@ pub(crate) fn pressure_nodes<const D: usize>(
     has_scalar
 }
 
-/// What a particle does to the water in it at some nodal values: the forces of its pressures, and the derivative.
+/// Water of a particle at some nodal values: the forces of its pressures, and the derivative.
 pub(crate) struct WaterOfParticle<'c, const D: usize> {
     scale: f64,
     seeping: &'c Seeping<D>,
@@ -134,9 +134,9 @@ pub(crate) struct WaterOfParticle<'c, const D: usize> {
     grows: f64,
     /// Its volume then \[length^D\].
     volume: f64,
-    /// What pushes gradients forward.
+    /// The push-forward of gradients.
     push: [[f64; D]; D],
-    /// How its supports stretch it around the axis, and what pushes that forward; none unless the section is axisymmetric.
+    /// How its supports stretch it around the axis, and the push-forward of that; none unless the section is axisymmetric.
     hoops: &'c [Hoop],
     push_around: f64,
 }
@@ -147,7 +147,7 @@ struct Stretched<const D: usize> {
     grows: f64,
     /// Its volume then \[length^D\].
     volume: f64,
-    /// What pushes gradients forward, and the strain around the axis.
+    /// The push-forward of gradients, and of the strain around the axis.
     push: [[f64; D]; D],
     push_around: f64,
 }
@@ -166,8 +166,8 @@ impl<const D: usize> Consolidation<D> {
     /// The mean excess pore pressure of a particle at nodal values `u`; none where water does not flow \[force/length²\].
     #[inline]
     pub(crate) fn pressure(&self, particle: usize, u: &[[f64; D]]) -> Option<f64> {
-        let own = self.supports_of(self.seeping_at(particle)?).iter();
-        let sum: f64 = own.map(|own| own.mean * self.value(own.place, u)).sum();
+        let supports = self.supports_of(self.seeping_at(particle)?).iter();
+        let sum: f64 = supports.map(|s| s.mean * self.value(s.place, u)).sum();
         Some(self.scale * sum)
     }
 
@@ -183,11 +183,11 @@ impl<const D: usize> Consolidation<D> {
             bulge: 0.0,
             grad: [0.0; D],
         };
-        for own in self.supports_of(seeping) {
-            let pressure = self.scale * self.value(own.place, u);
-            pressed.mean += own.mean * pressure;
-            pressed.bulge += own.bulge * pressure;
-            for (sum, grad) in pressed.grad.iter_mut().zip(own.grad) {
+        for support in self.supports_of(seeping) {
+            let pressure = self.scale * self.value(support.place, u);
+            pressed.mean += support.mean * pressure;
+            pressed.bulge += support.bulge * pressure;
+            for (sum, grad) in pressed.grad.iter_mut().zip(support.grad) {
                 *sum += grad * pressure;
             }
         }
@@ -304,16 +304,16 @@ impl<const D: usize> WaterOfParticle<'_, D> {
         let flows = flow(&seeping.flows, &pressed.grad);
         let mean = seeping.stores * pressed.mean - seeping.held + self.grows;
         let bulge = seeping.projects * pressed.bulge - seeping.held_within;
-        for own in self.supports {
-            let mut water = own.mean * mean + own.bulge * bulge;
+        for support in self.supports {
+            let mut water = support.mean * mean + support.bulge * bulge;
             for a in 0..D {
-                water += own.grad[a] * flows[a];
+                water += support.grad[a] * flows[a];
             }
-            forces[own.place as usize - first][0] -= self.scale * water;
+            forces[support.place as usize - first][0] -= self.scale * water;
         }
     }
 
-    /// What the water of pressure `row` changes by with displacement of a node, ∂f/∂u over the pushed gradient of the node: the
+    /// Change of the water of pressure `row` with displacement of a node, ∂f/∂u over the pushed gradient of the node: the
     /// same the other way round.
     #[inline]
     pub(crate) fn coupling(&self, row: &PressureSupport<D>) -> f64 {
@@ -343,8 +343,8 @@ impl<const D: usize> WaterOfParticle<'_, D> {
             let along: f64 = (0..D)
                 .map(|axis| slope[axis] * moved(support.node, axis))
                 .sum();
-            for own in self.supports {
-                add(own.place as usize, self.coupling(own) * along);
+            for pressure in self.supports {
+                add(pressure.place as usize, self.coupling(pressure) * along);
             }
         }
     }

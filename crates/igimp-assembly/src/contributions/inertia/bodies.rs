@@ -1,4 +1,4 @@
-//! Rigid bodies in motion: how their centres of mass go, and what that takes of the nodes that stand for bodies (theory, eqs. 67 to 67c).
+//! Rigid bodies in motion: their centres of mass, and forces at the nodes that stand for bodies (theory, eqs. 67 to 67c).
 
 use std::borrow::Cow;
 
@@ -24,8 +24,8 @@ impl<const D: usize> Inertia<D> {
         let mut u = Cow::Borrowed(u);
         for (node, arm) in self.with_arms() {
             let way = arm.way(&u[node + 1]);
-            let own = &mut u.to_mut()[node];
-            *own = std::array::from_fn(|axis| own[axis] + way[axis]);
+            let displacement = &mut u.to_mut()[node];
+            *displacement = std::array::from_fn(|axis| displacement[axis] + way[axis]);
         }
         u
     }
@@ -36,7 +36,7 @@ impl<const D: usize> Inertia<D> {
         first..first + self.is_given.len()
     }
 
-    /// Sets the motion of what is given of rigid bodies over a step by nodal step displacements `u` \[length\]: it moves evenly, and a
+    /// Sets the given motion of rigid bodies over a step by nodal step displacements `u` \[length\]: it moves evenly, and a
     /// centre of mass beside it as the body turns.
     pub(super) fn move_bodies(&self, u: &[[f64; D]], motion: &mut Motion<D>) {
         for node in self.of_rigid() {
@@ -50,9 +50,9 @@ impl<const D: usize> Inertia<D> {
         for (node, arm) in self.with_arms() {
             let [of_reference, blow] = self.even(node, arm, u);
             let (spin, rate) = (motion.after[node + 1], motion.acceleration[node + 1]);
-            let own = arm.after(&u[node + 1]);
-            let velocity = arm.carried(&own, &spin);
-            let acceleration = accelerated(arm, &own, [&spin, &rate]);
+            let offset = arm.after(&u[node + 1]);
+            let velocity = arm.carried(&offset, &spin);
+            let acceleration = accelerated(arm, &offset, [&spin, &rate]);
             for axis in self.given_of(node) {
                 motion.after[node][axis] = of_reference[axis] + velocity[axis];
                 motion.acceleration[node][axis] = blow[axis] + acceleration[axis];
@@ -60,7 +60,7 @@ impl<const D: usize> Inertia<D> {
         }
     }
 
-    /// Sets accelerations of what is given of rigid bodies between start and end of a step, over the weight of forces at its end: the blow
+    /// Sets accelerations of given motion of rigid bodies between start and end of a step, over the weight of forces at its end: the blow
     /// that takes it to its speed is that of the step.
     pub(super) fn accelerate_given(
         &self,
@@ -78,7 +78,7 @@ impl<const D: usize> Inertia<D> {
         }
         for (node, arm) in self.with_arms() {
             let [_, blow] = self.even(node, arm, u);
-            let own = self.arm_between(arm, &u[node + 1]);
+            let offset = self.arm_between(arm, &u[node + 1]);
             let [spin, rate] = [
                 (of_force, &motion.after, &self.velocity),
                 (of_mass, &motion.acceleration, &self.acceleration),
@@ -89,14 +89,14 @@ impl<const D: usize> Inertia<D> {
                     (1.0 - of_start) * after[turn][a] + of_start * before[turn][a]
                 })
             });
-            let turned = accelerated(arm, &own, [&spin, &rate]);
+            let turned = accelerated(arm, &offset, [&spin, &rate]);
             for axis in self.given_of(node) {
                 between[node][axis] = (blow[axis] + turned[axis]) / (1.0 - of_force);
             }
         }
     }
 
-    /// The components that are given of what a node stands for.
+    /// The given components of the body that a node stands for.
     pub(super) fn given_of(&self, node: usize) -> impl Iterator<Item = usize> + use<D> {
         let is_given = self.is_given[node - self.mass.diagonal.len()];
         (0..D).filter(move |&axis| is_given[axis])
@@ -110,7 +110,7 @@ impl<const D: usize> Inertia<D> {
         [after, blow]
     }
 
-    /// The time integration of what is given.
+    /// The time integration of given motion.
     fn evenly(&self) -> TimeStep {
         TimeStep {
             scheme: TimeScheme::BackwardEuler,
@@ -134,10 +134,10 @@ impl<const D: usize> Inertia<D> {
         u: Option<&[[f64; D]]>,
     ) -> Vec<[f64; D]> {
         for (node, arm) in self.with_arms() {
-            let own = u.map_or(arm.at_start(), |u| self.arm_between(arm, &u[node + 1]));
-            let moment = arm.moment(&own, &force[node]);
-            for (own, moment) in force[node + 1].iter_mut().zip(moment) {
-                *own += moment;
+            let offset = u.map_or(arm.at_start(), |u| self.arm_between(arm, &u[node + 1]));
+            let moment = arm.moment(&offset, &force[node]);
+            for (sum, moment) in force[node + 1].iter_mut().zip(moment) {
+                *sum += moment;
             }
         }
         force
@@ -164,23 +164,23 @@ impl<const D: usize> Inertia<D> {
         // Of the motion of reference point and rotation: the mass at the centre goes by the lever.
         let mass = |row: usize, column: usize| {
             let (a, b) = (row % D, column % D);
-            let own = |row: usize, column: usize| {
+            let coupling = |row: usize, column: usize| {
                 (0..D)
                     .map(|k| of_way[row][k] * lever[k][column])
                     .sum::<f64>()
             };
             match (row / D, column / D) {
                 (0, 0) => of_way[a][b],
-                (0, _) => own(a, b),
-                (_, 0) => own(b, a),
-                _ => of_turn[a][b] + (0..D).map(|k| lever[k][a] * own(k, b)).sum::<f64>(),
+                (0, _) => coupling(a, b),
+                (_, 0) => coupling(b, a),
+                _ => of_turn[a][b] + (0..D).map(|k| lever[k][a] * coupling(k, b)).sum::<f64>(),
             }
         };
         let pulled = arm.map_or([0.0; D], |arm| {
             arm.pulled(&arm.at_start(), &self.velocity[node + 1])
         });
-        let spinning = self.gyrations[body].as_ref().map_or([0.0; D], |own| {
-            own.rate(&of_turn, [&self.velocity[node + 1], &[0.0; D]])
+        let spinning = self.gyrations[body].as_ref().map_or([0.0; D], |gyration| {
+            gyration.rate(&of_turn, [&self.velocity[node + 1], &[0.0; D]])
         });
         let driving = |row: usize| {
             let of_pull = |a: usize| mass(row, a) * pulled[a];
@@ -193,12 +193,12 @@ impl<const D: usize> Inertia<D> {
         // Nothing of a body that is driven is free.
         let found = (len > 0).then(|| masses.lu().solve(&forces)).flatten();
         let mut begun = [[0.0; D]; NODES_PER_BODY];
-        for (&row, own) in free.iter().zip(found.iter().flatten()) {
-            begun[row / D][row % D] = *own;
+        for (&row, value) in free.iter().zip(found.iter().flatten()) {
+            begun[row / D][row % D] = *value;
         }
         let turn = begun[1];
-        for (a, own) in begun[0].iter_mut().enumerate() {
-            *own += pulled[a] + (0..D).map(|k| lever[a][k] * turn[k]).sum::<f64>();
+        for (a, rate) in begun[0].iter_mut().enumerate() {
+            *rate += pulled[a] + (0..D).map(|k| lever[a][k] * turn[k]).sum::<f64>();
         }
         begun
     }
@@ -216,8 +216,8 @@ impl<const D: usize> Inertia<D> {
                 (node % NODES_PER_BODY == 1).then(|| self.gyrations[node / NODES_PER_BODY]);
             let node = self.mass.diagonal.len() + node;
             let block = turning.flatten().map_or_else(
-                || mass.map(|row| row.map(|own| rate * own)),
-                |own| self.slope_of_moments(&own, (node, u), motion),
+                || mass.map(|row| row.map(|m| rate * m)),
+                |gyration| self.slope_of_moments(&gyration, (node, u), motion),
             );
             blocks(node, node, &block);
         }
@@ -226,7 +226,7 @@ impl<const D: usize> Inertia<D> {
             let moved = arm.slope_of_way(&u[node + 1]);
             let lever = transpose(&arm.lever(&self.arm_between(arm, &u[node + 1])));
             let turning = arm.slope_of_moment(&u[node + 1], &force[node]);
-            let by_mass = |block: &[[f64; D]; D]| block.map(|row| row.map(|own| rate * mass * own));
+            let by_mass = |block: &[[f64; D]; D]| block.map(|row| row.map(|v| rate * mass * v));
             blocks(node, node + 1, &by_mass(&moved));
             blocks(node + 1, node, &by_mass(&lever));
             let both = by_mass(&multiply(&lever, &moved));
@@ -243,9 +243,9 @@ impl<const D: usize> Inertia<D> {
 /// The acceleration of a centre of mass against the reference point by an arm, from spin and rate of spin \[length/time²\].
 fn accelerated<const D: usize>(
     arm: &Arm<D>,
-    own: &[f64; D],
+    offset: &[f64; D],
     [spin, rate]: [&[f64; D]; 2],
 ) -> [f64; D] {
-    let (along, towards) = (arm.carried(own, rate), arm.pulled(own, spin));
+    let (along, towards) = (arm.carried(offset, rate), arm.pulled(offset, spin));
     std::array::from_fn(|a| along[a] + towards[a])
 }

@@ -6,8 +6,8 @@
 //! f^{a}(u) = M \left[(1 - \alpha_m)\,a_1 + \alpha_m\,a_0\right]
 //! ```
 //!
-//! The particles are the quadrature of the mass, as they are of stress: momentum and energy of the map are exact. What rigid bodies add
-//! is in [`bodies`], what their moments of inertia add as they turn in [`turning`].
+//! The particles are the quadrature of the mass, as they are of stress: momentum and energy of the map are exact. Terms of rigid bodies
+//! are in [`bodies`], those of their moments of inertia in [`turning`].
 
 mod bodies;
 mod turning;
@@ -94,9 +94,9 @@ impl<const D: usize> Inertia<D> {
             }
         };
         let carries = step.asks_for_acceleration() && !step.is_first;
-        let change = ground.map_or([0.0; D], |own| own.change());
+        let change = ground.map_or([0.0; D], |ground| ground.change());
         let carried = || {
-            let shifted = |own: &[f64; D]| std::array::from_fn(|axis| own[axis] - change[axis]);
+            let shifted = |a: &[f64; D]| std::array::from_fn(|axis| a[axis] - change[axis]);
             let all: Vec<_> = particles.acceleration.iter().map(shifted).collect();
             on_grid(&all)
         };
@@ -111,9 +111,9 @@ impl<const D: usize> Inertia<D> {
             by_means |= also;
         }
         for body in bodies {
-            let own = body.nodal(&body.motion.velocity, &body.motion.spin);
-            velocity.extend(own);
-            mean_velocity.extend(own);
+            let nodal = body.nodal(&body.motion.velocity, &body.motion.spin);
+            velocity.extend(nodal);
+            mean_velocity.extend(nodal);
             let node = acceleration.len();
             let is_free = |axis: usize| unknowns.index(node, axis).is_some();
             let [mut of_way, of_turn] =
@@ -182,8 +182,8 @@ impl<const D: usize> Inertia<D> {
         if self.damping != 0.0 {
             let (of_soil, soil) = (&mut force[..nodes], &velocity[..nodes]);
             self.mass.multiply(soil, of_soil);
-            for own in of_soil.as_flattened_mut() {
-                *own *= self.damping;
+            for value in of_soil.as_flattened_mut() {
+                *value *= self.damping;
             }
         }
         force
@@ -206,7 +206,7 @@ impl<const D: usize> Inertia<D> {
         u
     }
 
-    /// The motion of the nodes over the step, by nodal step displacements `u` \[length\]. What is given of a rigid body moves
+    /// The motion of the nodes over the step, by nodal step displacements `u` \[length\]. Given components of a rigid body move
     /// evenly, as by backward Euler (theory, eq. 67a).
     pub(crate) fn motion(&self, u: &[[f64; D]]) -> Motion<D> {
         let centred = self.of_centres(u);
@@ -288,7 +288,7 @@ impl<const D: usize> Inertia<D> {
         1.0 - self.step.scheme.weights().of_force
     }
 
-    /// The force of acceleration by node, and what equilibrium between start and end has of the forces at the start: over the weight
+    /// The force of acceleration by node, with the share of forces at the start in equilibrium between start and end: over the weight
     /// of those at the end \[force\].
     fn force(&self, motion: &Motion<D>, u: &[[f64; D]]) -> Vec<[f64; D]> {
         let Weights {
@@ -300,9 +300,9 @@ impl<const D: usize> Inertia<D> {
             return self.about_reference(force, Some(u));
         }
         let mut between = motion.acceleration.clone();
-        for (own, before) in between.iter_mut().zip(&self.acceleration) {
-            *own = std::array::from_fn(|a| {
-                ((1.0 - of_mass) * own[a] + of_mass * before[a]) / (1.0 - of_force)
+        for (value, before) in between.iter_mut().zip(&self.acceleration) {
+            *value = std::array::from_fn(|a| {
+                ((1.0 - of_mass) * value[a] + of_mass * before[a]) / (1.0 - of_force)
             });
         }
         self.accelerate_given(u, motion, &mut between);
@@ -329,7 +329,7 @@ impl<const D: usize> Inertia<D> {
     }
 
     /// The error of the time integration over a step by `u` \[length\], as a share of the motion ‖u‖ + Δt² ‖a₁‖ (theory, eq. 68)
-    /// \[-\]; none where the force of acceleration is `negligible` \[force\], as at rest. What is given is not integrated.
+    /// \[-\]; none where the force of acceleration is `negligible` \[force\], as at rest. Given motion is not integrated.
     pub(crate) fn error(&self, u: &[[f64; D]], negligible: f64) -> f64 {
         let accelerated = self.motion(u).acceleration;
         let force = self.times(&accelerated);
@@ -349,7 +349,7 @@ impl<const D: usize> Inertia<D> {
         }
     }
 
-    /// Values by node without those of what is given of rigid bodies.
+    /// Values by node without those of given motion of rigid bodies.
     fn integrated(&self, values: &[[f64; D]]) -> Vec<[f64; D]> {
         let mut integrated = values.to_vec();
         let of_bodies = &mut integrated[self.mass.diagonal.len()..];

@@ -1,5 +1,5 @@
-//! The members of a step: which nodes carry them, the forces that they make, and what an accepted step
-//! leaves of them.
+//! The members of a step: which nodes carry them, the forces that they make, and their state after
+//! an accepted step.
 
 use std::collections::BTreeMap;
 
@@ -97,7 +97,7 @@ impl<'a, const D: usize> Members<'a, D> {
         })
     }
 
-    /// Exchanges what acts on the members, in their order.
+    /// Exchanges the controls of the members, in their order.
     pub(crate) fn control(&mut self, controls: &[ReinforcementControl]) {
         let mut rows = self.rows.iter_mut();
         for (index, member) in self.all.iter().enumerate() {
@@ -179,20 +179,20 @@ fn carried_by<const D: usize>(
     unknowns: &Unknowns<D>,
 ) -> Option<Shares> {
     let grid = &conditions.grid;
-    let mut own = Vec::new();
+    let mut stencil = Vec::new();
     supports(
         grid,
         &Linear,
         x,
         &[0.0; D],
         &mut Scratch::default(),
-        &mut own,
+        &mut stencil,
     )
     .ok()?;
-    let mut own = stencils.carried(&own);
+    let mut stencil = stencils.carried(&stencil);
     let is_dropped = |node: usize| !unknowns.is_active(node);
-    own.retain(|support| support.value > LEAST_SHARE || !is_dropped(support.node));
-    shares_of_carried(grid, unknowns, is_dropped, x, &own)
+    stencil.retain(|support| support.value > LEAST_SHARE || !is_dropped(support.node));
+    shares_of_carried(grid, unknowns, is_dropped, x, &stencil)
 }
 
 /// The mean of one station less that of another, by node.

@@ -1,7 +1,7 @@
 //! Reinforcement: anchors, nails and geotextiles, which pull and do not bend (theory, eqs. 56 to 59).
 //!
 //! A member is a chain of bars between stations that the soil carries along. A bar carries tension only,
-//! up to what the member and its bond on either side of the bar can take.
+//! up to the limit of the member and of its bond on either side.
 
 mod members;
 mod row;
@@ -14,11 +14,11 @@ pub(crate) use members::Members;
 /// A member in the ground.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reinforcement<const D: usize> {
-    /// What messages call it.
+    /// Its name in messages.
     pub name: String,
     /// Axial stiffness EA \[force; per unit thickness in plane strain\].
     pub stiffness: f64,
-    /// What it is made fast to, from its head on.
+    /// The points that it is made fast to, from its head on.
     pub stations: Vec<Station<D>>,
     /// The bars between them: one less.
     pub segments: Vec<Segment>,
@@ -38,22 +38,22 @@ pub struct Segment {
     pub length: f64,
     /// Tension that the member carries at most \[force\].
     pub tensile: f64,
-    /// What holds the member on either side of the bar: towards its head, towards its end.
+    /// Anchorage on either side of the bar: towards its head, towards its end.
     pub held: [Hold; 2],
-    /// What steps have made of it.
+    /// Its state after the steps so far.
     pub state: SegmentState,
 }
 
-/// What holds a member on one side of a bar.
+/// Anchorage of a member on one side of a bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
-    /// Force of its plate, or of what it is fastened to \[force\].
+    /// Force of its plate, or of its fastening \[force\].
     pub fastened: f64,
     /// Force of its bond, which a strength reduction may divide \[force\].
     pub bonded: f64,
 }
 
-/// What steps have made of a bar; written when one is accepted, and nowhere else.
+/// State of a bar; written when one is accepted, and nowhere else.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SegmentState {
     /// Elongation over length, since the member was placed \[-\].
@@ -92,16 +92,16 @@ impl<const D: usize> Station<D> {
 impl<const D: usize> Reinforcement<D> {
     /// The largest tension along it \[force\].
     pub fn largest_force(&self) -> f64 {
-        let forces = self.segments.iter().map(|own| own.state.force);
+        let forces = self.segments.iter().map(|segment| segment.state.force);
         forces.fold(0.0, f64::max)
     }
 
     /// Refuses numbers that are not finite, named with the member's number.
     fn is_finite(&self, index: usize) -> Result<(), AssemblyError> {
-        let points = self.stations.iter().flat_map(|own| &own.points);
-        let numbers = self.segments.iter().flat_map(|own| {
-            let state = [own.state.strain, own.state.slack, own.state.force];
-            [own.length, own.tensile, own.limit(1.0)]
+        let points = self.stations.iter().flat_map(|station| &station.points);
+        let numbers = self.segments.iter().flat_map(|bar| {
+            let state = [bar.state.strain, bar.state.slack, bar.state.force];
+            [bar.length, bar.tensile, bar.limit(1.0)]
                 .into_iter()
                 .chain(state)
         });

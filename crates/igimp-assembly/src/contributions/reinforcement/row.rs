@@ -13,7 +13,7 @@ pub(crate) struct Row<const D: usize> {
     pub(crate) stiffness: f64,
     /// From one station to the next, at the start of the step \[length\].
     pub(crate) along: [f64; D],
-    /// What the displacement of the one station beyond that of the other is made of, nodes ascending \[-\].
+    /// Shares of nodes in the displacement of one station beyond the other's, ascending \[-\].
     pub(crate) relative: Vec<(usize, f64)>,
     /// Whether elongation is linear in the step's displacement, and the direction stays.
     pub(crate) is_small: bool,
@@ -21,7 +21,7 @@ pub(crate) struct Row<const D: usize> {
 
 /// A bar at a trial displacement.
 pub(crate) struct Pull<const D: usize> {
-    /// What it has come to.
+    /// Its state.
     pub(crate) state: SegmentState,
     /// Direction of the tension on the one station, towards the other \[-\].
     direction: [f64; D],

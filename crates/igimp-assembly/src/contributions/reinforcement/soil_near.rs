@@ -48,9 +48,9 @@ impl<'a, const D: usize> SoilNear<'a, D> {
             let other: Option<Vec<usize>> = (0..D)
                 .map(|axis| (cell[axis] + number / 3_usize.pow(axis as u32) % 3).checked_sub(1))
                 .collect();
-            let other = other.and_then(|own| <[usize; D]>::try_from(own).ok());
-            let own = other.and_then(|cell| self.by_cell.get(&cell));
-            own.is_some_and(|own| own.iter().any(|&particle| is_near(particle)))
+            let other = other.and_then(|place| <[usize; D]>::try_from(place).ok());
+            let list = other.and_then(|cell| self.by_cell.get(&cell));
+            list.is_some_and(|list| list.iter().any(|&particle| is_near(particle)))
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Contact between soil and rigid bodies over one step: what touches, and the forces that it makes
+//! Contact between soil and rigid bodies over one step: the knots that touch, and their forces
 //! (theory, eqs. 45 to 48).
 
 use std::collections::BTreeMap;
@@ -48,7 +48,7 @@ pub struct AcceptedContact<const D: usize> {
 }
 
 impl<'a, const D: usize> Contact<'a, D> {
-    /// Finds what touches at the start of a step.
+    /// Finds the knots that touch at the start of a step.
     pub(crate) fn find(
         bodies: &'a [RigidBody<D>],
         particles: &Particles<D>,
@@ -92,7 +92,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         let motion = conditions.motions.get(index);
         let is_pushed = conditions.is_laid || motion.is_some_and(RigidMotion::is_pushed);
         let is_loaded = conditions.time.is_none() && is_pushed;
-        let carries = body.contact.knots.iter().any(|own| own.pressure > 0.0);
+        let carries = body.contact.knots.iter().any(|knot| knot.pressure > 0.0);
         let rolls = rolling_radius(body, conditions).is_some();
         let of_step = (conditions, method.section);
         let knots = Gathering::new(body, node, particles, stencils, of_step, unknowns, &images);
@@ -185,8 +185,8 @@ impl<'a, const D: usize> Contact<'a, D> {
             .fold(0.0, f64::max)
     }
 
-    /// By body, what contact changes in a step by nodal displacements `u` \[length\] that would go on by `free` \[length\] without it, and goes on
-    /// by `next` \[length\].
+    /// By body, changes of contact in a step by nodal displacements `u` \[length\]. Bodies would go on by `free` \[length\] without it,
+    /// and go on by `next` \[length\].
     pub(crate) fn changes(
         &self,
         u: &[[f64; D]],
@@ -213,7 +213,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         changes
     }
 
-    /// What contact leaves behind when nodal step displacements `u` are accepted: the bodies at their
+    /// State of contact when nodal step displacements `u` are accepted: the bodies at their
     /// new places. On a given geometry they stay.
     pub(crate) fn accepted(
         &self,
@@ -233,8 +233,8 @@ impl<'a, const D: usize> Contact<'a, D> {
             let knots = body.contact.knots.len();
             body.contact = ContactState::none(knots);
             let before = &self.bodies[index].contact.knots;
-            for (own, before) in body.contact.knots.iter_mut().zip(before) {
-                own.is_broken = before.is_broken;
+            for (knot, before) in body.contact.knots.iter_mut().zip(before) {
+                knot.is_broken = before.is_broken;
             }
         }
         for (row, penalty) in std::iter::zip(&self.rows, &self.penalties) {
@@ -276,7 +276,7 @@ impl<'a, const D: usize> Contact<'a, D> {
             let (x, step) = (&particles.x[particle], stencils.displacement(particle, u));
             std::array::from_fn(|axis| x[axis] + step[axis])
         };
-        // What creeps against a drag goes a share of a cell in a step, and is pressed off what it meets in the next.
+        // Soil that creeps against a drag goes a share of a cell in a step, and is pressed off bodies in the next.
         let acts = |body: usize, at: &[f64; D]| {
             !takes_time && (method.flows() || self.acts_near(body, at))
         };
@@ -307,7 +307,7 @@ fn turns<const D: usize>(body: &RigidBody<D>, method: &Method) -> bool {
     method.geometry == Geometry::Moving && body.surface.radius().is_none()
 }
 
-/// Sets the gap that a knot begins a step with. Soil that comes near is as far off as what of it stands in front (theory, eq. 45f), and
+/// Sets the gap that a knot begins a step with. Soil that comes near is as far off as its part in front (theory, eq. 45f), and
 /// touches if it overlaps; from then on the gap follows its motion, unless the body `rolls` and the knot is open. Where soil `touches` it does at once.
 fn begin<const D: usize>(before: &mut ContactNode, sums: &Sums<D>, touches: bool, rolls: bool) {
     let gap = sums.mean_gap();

@@ -1,6 +1,6 @@
 //! Rigid bodies that soil touches, slides along and leaves (theory, "contact").
 //!
-//! How a body moves in a step is data ([`RigidMotion`](crate::RigidMotion)); what the soil makes of it is found with the
+//! How a body moves in a step is data ([`RigidMotion`](crate::RigidMotion)); the response of the soil is found with the
 //! displacements of the nodes.
 
 mod contact;

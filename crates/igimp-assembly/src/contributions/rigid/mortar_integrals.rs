@@ -1,4 +1,4 @@
-//! What soil does around the knots of a rigid body: sums over the faces that particles turn to it (theory,
+//! Soil around the knots of a rigid body: sums over the faces that particles turn to it (theory,
 //! eq. 45).
 
 use std::collections::BTreeMap;
@@ -33,7 +33,7 @@ pub(crate) struct Gathering<'a, const D: usize> {
     knots: BTreeMap<usize, Sums<D>>,
 }
 
-/// A face with what the soil behind it is like.
+/// A face with properties of the soil behind it.
 struct Soil<'f, const D: usize> {
     face: &'f Face<D>,
     young: f64,
@@ -108,15 +108,15 @@ impl<'a, const D: usize> Gathering<'a, D> {
         for particle in 0..particles.len() {
             let (x, half) = (&particles.x[particle], &particles.half_length[particle]);
             let margin = 2.0 * half.iter().sum::<f64>();
-            let own = body.pose.into_body(x);
-            if (0..D).any(|a| own[a] < lower[a] - margin || own[a] > upper[a] + margin) {
+            let at = body.pose.into_body(x);
+            if (0..D).any(|a| at[a] < lower[a] - margin || at[a] > upper[a] + margin) {
                 continue;
             }
             let sides = 0..body.surface.side_count();
-            let own = sides.filter_map(|side| Face::of(body, side, x, half));
+            let sides = sides.filter_map(|side| Face::of(body, side, x, half));
             let beyond = particles.beyond_domain(particle, self.section);
             let drawn = &particles.half_length0[particle];
-            faces.extend(own.map(|face| (particle, face.grown(&beyond).drawn_with(drawn))));
+            faces.extend(sides.map(|face| (particle, face.grown(&beyond).drawn_with(drawn))));
         }
         faces
     }
@@ -125,12 +125,12 @@ impl<'a, const D: usize> Gathering<'a, D> {
     fn add_points(&mut self, soil: &Soil<'_, D>, places: &[[f64; D]]) {
         let grid = &self.conditions.grid;
         for point in soil.face.points(self.body, places, grid) {
-            let Some(mut own) = soil_at(grid, self.stencils, self.unknowns, &point.x) else {
+            let Some(mut spot) = soil_at(grid, self.stencils, self.unknowns, &point.x) else {
                 continue;
             };
-            own.gap = self.gap(soil.face, &point.x);
+            spot.gap = self.gap(soil.face, &point.x);
             for (knot, tent) in point.knots {
-                self.add(soil, self.images.at(knot), point.area * tent, &own);
+                self.add(soil, self.images.at(knot), point.area * tent, &spot);
             }
         }
     }
@@ -147,9 +147,9 @@ impl<'a, const D: usize> Gathering<'a, D> {
         let (body, face) = (self.body, soil.face);
         let grid = &self.conditions.grid;
         for piece in pieces(face, half, body, space, places, grid) {
-            for (corner, (weight, own)) in self.means(&piece, face).into_iter().enumerate() {
+            for (corner, (weight, mean)) in self.means(&piece, face).into_iter().enumerate() {
                 for &(knot, share) in &space.shares[piece.corners[corner]] {
-                    self.add(soil, self.images.at(knot), share * weight, &own);
+                    self.add(soil, self.images.at(knot), share * weight, &mean);
                 }
             }
         }
@@ -173,19 +173,19 @@ impl<'a, const D: usize> Gathering<'a, D> {
         };
         let mut sums: Vec<(f64, SoilPoint<D>)> = (0..3).map(|_| (0.0, none())).collect();
         for (x, area, shares) in &piece.points {
-            let Some(own) = soil_at(grid, self.stencils, self.unknowns, x) else {
+            let Some(spot) = soil_at(grid, self.stencils, self.unknowns, x) else {
                 continue;
             };
             let gap = self.gap(face, x);
             for ((weight, mean), share) in sums.iter_mut().zip(shares) {
                 let by = area * share;
                 *weight += by;
-                mean.cell += by * own.cell;
+                mean.cell += by * spot.cell;
                 mean.gap += by * (gap - face.gap);
                 for axis in 0..D {
-                    mean.place[axis] += by * own.place[axis];
+                    mean.place[axis] += by * spot.place[axis];
                 }
-                for &(node, share) in &own.shares {
+                for &(node, share) in &spot.shares {
                     match mean.shares.iter_mut().find(|(known, _)| *known == node) {
                         Some((_, sum)) => *sum += by * share,
                         None => mean.shares.push((node, by * share)),
@@ -197,7 +197,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
             if *weight > 0.0 {
                 mean.cell /= *weight;
                 mean.gap = face.gap + mean.gap / *weight;
-                mean.place = mean.place.map(|own| own / *weight);
+                mean.place = mean.place.map(|x| x / *weight);
                 for (_, share) in &mut mean.shares {
                     *share /= *weight;
                 }
@@ -240,7 +240,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
         sums.cell += weight * cell;
         let of_body = |direction: &[f64; D]| rigid_shares(body, place, direction, node);
         let normal = &soil.face.normal;
-        sums.facing += weight * normal.iter().fold(0.0_f64, |most, own| most.max(own.abs()));
+        sums.facing += weight * normal.iter().fold(0.0_f64, |most, n| most.max(n.abs()));
         let arm = minus(place, &body.pose.origin);
         let [first, second] = &tangents;
         sums.arms.add(weight, &arm, [normal, first, second]);
@@ -305,7 +305,7 @@ fn soil_at<const D: usize>(
         if share <= LEAST_SHARE {
             continue;
         }
-        for carrier in (stencils.carriers(node)).filter(|own| unknowns.is_active(own.node)) {
+        for carrier in (stencils.carriers(node)).filter(|by| unknowns.is_active(by.node)) {
             let share = carrier.weight * share;
             shares.push((carrier.node, share));
             sum += share;
@@ -317,9 +317,9 @@ fn soil_at<const D: usize>(
     let mut place = [0.0; D];
     for (node, share) in &mut shares {
         *share /= sum;
-        let own = grid.node_position(*node);
+        let at = grid.node_position(*node);
         for axis in 0..D {
-            place[axis] += *share * own[axis];
+            place[axis] += *share * at[axis];
         }
     }
     Some(SoilPoint {
@@ -361,15 +361,15 @@ fn add<const D: usize>(
     of_body: [(usize, [f64; D]); 2],
 ) {
     for &(node, share) in shares {
-        let own = sum.entry(node).or_insert([0.0; D]);
+        let entry = sum.entry(node).or_insert([0.0; D]);
         for axis in 0..D {
-            own[axis] += weight * share * direction[axis];
+            entry[axis] += weight * share * direction[axis];
         }
     }
     for (node, share) in of_body {
-        let own = sum.entry(node).or_insert([0.0; D]);
+        let entry = sum.entry(node).or_insert([0.0; D]);
         for axis in 0..D {
-            own[axis] += weight * share[axis];
+            entry[axis] += weight * share[axis];
         }
     }
 }

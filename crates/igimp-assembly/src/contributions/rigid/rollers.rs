@@ -60,8 +60,8 @@ impl<const D: usize> StepConditions<D> {
             if a == normal { of_side } else { from..to }
         });
         let is_roller = |node: usize| {
-            let own = |a| self.constraints.of(node, a);
-            (0..D).all(|a| own(a) == (a == normal).then_some(0.0))
+            let held = |a| self.constraints.of(node, a);
+            (0..D).all(|a| held(a) == (a == normal).then_some(0.0))
         };
         let inwards = if end == 0 { INWARDS } else { -INWARDS };
         let is_within = |place: [usize; D], shift: f64| {
@@ -78,7 +78,7 @@ impl<const D: usize> StepConditions<D> {
         };
         let is_narrow = |place| {
             let mut beside = beside(grid, place, normal);
-            beside.all(|own| !covers(own) || !is_wide(own))
+            beside.all(|other| !covers(other) || !is_wide(other))
         };
         places(near)
             .map(|place| (place, grid.node_index(place)))
@@ -94,9 +94,9 @@ fn places<const D: usize>(ranges: [Range<usize>; D]) -> impl Iterator<Item = [us
     (0..count).map(move |number| {
         let mut rest = number;
         std::array::from_fn(|a| {
-            let own = rest % ranges[a].len();
+            let offset = rest % ranges[a].len();
             rest /= ranges[a].len();
-            ranges[a].start + own
+            ranges[a].start + offset
         })
     })
 }

@@ -1,10 +1,10 @@
-//! What is summed at the knots of a rigid body (theory, eqs. 45 and 48a).
+//! Sums at the knots of a rigid body (theory, eqs. 45 and 48a).
 
 use std::collections::BTreeMap;
 
 use igimp_rigid::Arms;
 
-/// What is summed at a knot.
+/// Sums at a knot.
 #[derive(Default)]
 pub(crate) struct Sums<const D: usize> {
     pub(crate) area: f64,
@@ -39,8 +39,8 @@ impl<const D: usize> Moments<D> {
     pub(super) fn add(&mut self, weight: f64, arm: &[f64; D], directions: [&[f64; D]; 3]) {
         for (sum, direction) in self.0.iter_mut().zip(directions) {
             for (row, arm) in sum.iter_mut().zip(arm) {
-                for (own, part) in row.iter_mut().zip(direction) {
-                    *own += weight * arm * part;
+                for (entry, part) in row.iter_mut().zip(direction) {
+                    *entry += weight * arm * part;
                 }
             }
         }
@@ -56,7 +56,7 @@ impl<const D: usize> Sums<D> {
     /// The mean arms of a body whose rotation is at a node, and that has a size \[length\].
     pub(crate) fn arms_of(&self, node: usize, size: f64) -> Arms<D> {
         let [opening, first, second] =
-            (self.arms.0).map(|sum| sum.map(|row| row.map(|own| own / self.area)));
+            (self.arms.0).map(|sum| sum.map(|row| row.map(|arm| arm / self.area)));
         Arms {
             node,
             size,

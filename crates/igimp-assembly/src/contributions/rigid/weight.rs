@@ -1,21 +1,21 @@
-//! The moment of what acts at the centre of mass of a rigid body: its weight, and −m a of ground that moves (theory, eq. 67c).
+//! The moment of forces at the centre of mass of a rigid body: its weight, and −m a of ground that moves (theory, eq. 67c).
 
 use crate::conditions::StepConditions;
 use crate::contributions::nodal_forces::{AddBlock, NodalForces};
 use crate::method::{Geometry, Method};
 use igimp_rigid::{Arm, NODES_PER_BODY, RigidBody};
 
-/// Adds what acts at the centres of mass to the external force on the nodes of bodies \[force\]: their weight, by arms as the step begins.
+/// Adds forces at the centres of mass to the external force on the nodes of bodies \[force\]: their weight, by arms as the step begins.
 pub(crate) fn add_weights<const D: usize>(
     bodies: &[RigidBody<D>],
     conditions: &StepConditions<D>,
     of_bodies: &mut [[f64; D]],
 ) {
     let nodes = of_bodies.chunks_exact_mut(NODES_PER_BODY);
-    for ((body, motion), own) in bodies.iter().zip(&conditions.motions).zip(nodes) {
-        add_at(&mut own[0], &motion.weight);
+    for ((body, motion), forces) in bodies.iter().zip(&conditions.motions).zip(nodes) {
+        add_at(&mut forces[0], &motion.weight);
         if let Some(arm) = body.arm(true) {
-            add_at(&mut own[1], &arm.moment(&arm.at_start(), &motion.weight));
+            add_at(&mut forces[1], &arm.moment(&arm.at_start(), &motion.weight));
         }
     }
 }
@@ -49,14 +49,14 @@ impl<const D: usize> TurningWeights<D> {
             let weight = conditions
                 .motions
                 .get(slot)
-                .map_or([0.0; D], |own| own.weight);
+                .map_or([0.0; D], |motion| motion.weight);
             let force = std::array::from_fn(|a| {
-                weight[a] - ground.map_or(0.0, |own| body.motion.mass * own.acceleration[a])
+                weight[a] - ground.map_or(0.0, |ground| body.motion.mass * ground.acceleration[a])
             });
             let node = first + NODES_PER_BODY * slot + 1;
             force
                 .iter()
-                .any(|own| *own != 0.0)
+                .any(|f| *f != 0.0)
                 .then_some(TurningWeight { node, arm, force })
         };
         let all = bodies.iter().enumerate().filter(|_| moving);
@@ -74,15 +74,15 @@ impl<const D: usize> NodalForces<D> for TurningWeights<D> {
     }
 
     fn add(&self, u: &[[f64; D]], f: &mut [[f64; D]], mut blocks: Option<&mut AddBlock<'_, D>>) {
-        for own in &self.0 {
-            let arm = own.arm.after(&u[own.node]);
-            let way = std::array::from_fn(|a| own.arm.at_start()[a] - arm[a]);
-            add_at(&mut f[own.node], &own.arm.moment(&way, &own.force));
+        for weight in &self.0 {
+            let arm = weight.arm.after(&u[weight.node]);
+            let way = std::array::from_fn(|a| weight.arm.at_start()[a] - arm[a]);
+            add_at(&mut f[weight.node], &weight.arm.moment(&way, &weight.force));
             if let Some(blocks) = &mut blocks {
-                let turning = own.arm.slope_of_moment(&u[own.node], &own.force);
+                let turning = weight.arm.slope_of_moment(&u[weight.node], &weight.force);
                 blocks(
-                    own.node,
-                    own.node,
+                    weight.node,
+                    weight.node,
                     &turning.map(|row| row.map(|entry| -entry)),
                 );
             }
@@ -90,8 +90,8 @@ impl<const D: usize> NodalForces<D> for TurningWeights<D> {
     }
 }
 
-fn add_at<const D: usize>(own: &mut [f64; D], force: &[f64; D]) {
-    for (own, force) in own.iter_mut().zip(force) {
-        *own += force;
+fn add_at<const D: usize>(sum: &mut [f64; D], force: &[f64; D]) {
+    for (sum, force) in sum.iter_mut().zip(force) {
+        *sum += force;
     }
 }

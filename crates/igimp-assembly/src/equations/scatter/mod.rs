@@ -181,16 +181,16 @@ impl Rows {
                 let i = done / D;
                 let row = &table.nodes[nodes[i]];
                 let rank = if done == rows.start { run.rank } else { 0 };
-                let own = done..rows.end.min((i + 1) * D);
-                let from = own.start.max(first);
-                if let Some(offset) = offset(row.code, row.block).filter(|_| from < own.end) {
+                let part = done..rows.end.min((i + 1) * D);
+                let from = part.start.max(first);
+                if let Some(offset) = offset(row.code, row.block).filter(|_| from < part.end) {
                     pieces.push(Piece {
                         first: from,
-                        len: own.end - from,
-                        offset: offset + rank as usize + from - own.start,
+                        len: part.end - from,
+                        offset: offset + rank as usize + from - part.start,
                     });
                 }
-                done = own.end;
+                done = part.end;
             }
         }
     }

@@ -25,9 +25,9 @@ struct Coupling<const D: usize> {
 pub(crate) struct ScalarColumns<const D: usize> {
     /// By support.
     couplings: Vec<Coupling<D>>,
-    /// By support: what its pressure is to the particle; no share where it has none.
+    /// By support: values of its pressure; no share where it has none.
     pressures: Vec<PressureSupport<D>>,
-    /// What the scalar of a pair of supports does to that of the other, by column and row.
+    /// Couplings of the scalars of pairs of supports, by column and row.
     moves: Vec<f64>,
     /// The columns of one support, those of displacement first.
     columns: Vec<f64>,
@@ -42,8 +42,8 @@ impl<const D: usize> ScalarColumns<D> {
         rows.clear();
         self.couplings.clear();
         for (support, slope) in supports.iter().zip(water.slopes(supports)) {
-            let is_own = |own: &&PressureSupport<D>| own.node as usize == support.node;
-            let pressure = pressures.next_if(is_own).copied();
+            let is_here = |pressure: &&PressureSupport<D>| pressure.node as usize == support.node;
+            let pressure = pressures.next_if(is_here).copied();
             let pressure = pressure.unwrap_or(PressureSupport::nothing());
             rows.push(pressure);
             self.couplings.push(Coupling {
@@ -90,17 +90,17 @@ impl<const D: usize> ScalarColumns<D> {
     pub(crate) fn columns<'c>(
         &'c mut self,
         j: usize,
-        own: [&[f64]; D],
+        of_soil: [&[f64]; D],
     ) -> impl Fn(usize) -> &'c [f64] + use<'c, D> {
         let n = self.couplings.len();
         let height = n * (D + 1);
         self.columns.resize((D + 1) * height, 0.0);
         let slope = self.couplings[j].slopes[0];
-        for (c, own) in own.into_iter().enumerate() {
+        for (c, column) in of_soil.into_iter().enumerate() {
             let into = self.columns[c * height..][..height].chunks_exact_mut(D + 1);
-            let parts = into.zip(own.chunks_exact(D)).zip(&self.couplings);
-            for ((into, own), row) in parts {
-                into[..D].copy_from_slice(own);
+            let parts = into.zip(column.chunks_exact(D)).zip(&self.couplings);
+            for ((into, part), row) in parts {
+                into[..D].copy_from_slice(part);
                 into[D] = row.shares[0] * slope[c];
             }
         }

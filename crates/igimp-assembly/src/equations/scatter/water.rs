@@ -23,10 +23,10 @@ pub(crate) fn scatter_in_space<const D: usize>(
         let block = column.block as usize;
         let (height, offsets) = (pattern.height(block), table.offsets_of(support.node));
         let values = &mut values[pattern.values_of(block).start - start..];
-        for own in water.pressures() {
-            let row = &table.nodes[own.node as usize];
+        for pressure in water.pressures() {
+            let row = &table.nodes[pressure.node as usize];
             let offset = offsets(row.code, row.block) + usize::from(row.len);
-            let share = water.coupling(own);
+            let share = water.coupling(pressure);
             for (rank, axis) in column.components().enumerate() {
                 values[rank * height + offset] += share * slope[axis];
             }
@@ -49,10 +49,10 @@ pub(crate) fn scatter_in_space<const D: usize>(
                 values[offset + rank] += share * slope[axis];
             }
         }
-        for own in water.pressures() {
-            let row = &table.nodes[own.node as usize];
+        for pressure in water.pressures() {
+            let row = &table.nodes[pressure.node as usize];
             let offset = offsets(row.code, row.block) + usize::from(row.len);
-            values[offset] += water.moves(own, column);
+            values[offset] += water.moves(pressure, column);
         }
     }
 }

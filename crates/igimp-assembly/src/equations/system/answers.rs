@@ -1,4 +1,4 @@
-//! What a step at equilibrium says beside stress: reactions, works, and what structures and water are left with.
+//! Results of a step at equilibrium beside stress: reactions, works, and states of structures and water.
 
 use super::System;
 use crate::contributions::consolidation::PoresAfter;
@@ -17,7 +17,7 @@ impl<const D: usize> System<'_, D> {
     /// The reaction f_int − f_ext by node, zero at unknowns \[force\]; where motion is in equilibrium between start and end of a step,
     /// the one there (theory, eq. 61).
     pub fn reactions(&self, trial: &Trial<D>) -> Vec<[f64; D]> {
-        // Forces of such a step are over the weight of those at its end.
+        // Forces of the step are over the weight of those at its end.
         let weight = (self.inertia.as_ref()).map_or(1.0, Inertia::weight_of_end);
         let mut reactions = vec![[0.0; D]; trial.f_int.len()];
         for (node, reaction) in reactions.iter_mut().enumerate() {
@@ -105,8 +105,8 @@ impl<const D: usize> System<'_, D> {
         force.iter().zip(u).map(|(force, u)| force * u).sum()
     }
 
-    /// The gross work of the external force on nodal step displacements `u` \[force·length\]: the sum of what its
-    /// components do, by magnitude. It is not zero where as much rises as falls.
+    /// The gross work of the external force on nodal step displacements `u` \[force·length\]: the sum of the works of
+    /// components, by magnitude. It is not zero where as much rises as falls.
     pub fn gross_work_of_loads(&self, u: &[[f64; D]]) -> f64 {
         let (force, u) = (self.force_along(u), self.by_unknown(u));
         force.iter().zip(u).map(|(force, u)| force * u).sum()
@@ -150,7 +150,7 @@ impl<const D: usize> System<'_, D> {
         self.beside.contact.closing(u)
     }
 
-    /// By rigid body, what contact changes in a step by nodal displacements `u` \[length\]. Motion that is given counts as none; none in statics.
+    /// By rigid body, changes of contact in a step by nodal displacements `u` \[length\]. Given motion counts as none; none in statics.
     pub fn changes_of_contact(&self, u: &[[f64; D]]) -> Vec<ContactChange> {
         let (Some(inertia), Some(free)) = (&self.inertia, self.predicted_motion()) else {
             return Vec::new();
@@ -162,14 +162,14 @@ impl<const D: usize> System<'_, D> {
     /// The error in time of a step with nodal values `u` in which water flows, as a share of its excess pore pressures \[-\]; none
     /// where none flows.
     pub fn flow_error(&self, trial: &Trial<D>, u: &[[f64; D]]) -> Option<f64> {
-        let mean = |own: &ParticleTrial<D>| (own.tau[0][0] + own.tau[1][1] + own.tau[2][2]) / 3.0;
-        let stress = trial.particles.iter().map(|own| mean(own).abs());
+        let mean = |p: &ParticleTrial<D>| (p.tau[0][0] + p.tau[1][1] + p.tau[2][2]) / 3.0;
+        let stress = trial.particles.iter().map(|p| mean(p).abs());
         self.beside
             .consolidation
             .time_error(u, stress.fold(0.0, f64::max))
     }
 
-    /// What a step with nodal step displacements `u` \[length\] leaves of contact when it is accepted: the
+    /// State of contact after an accepted step with nodal step displacements `u` \[length\]: the
     /// bodies at their new places, and the way back of particles whose centres came closer to one than half
     /// of their seeded half-length, for [`Particles::push_out`](crate::Particles::push_out). All particles are looked at, with
     /// the way that they took. On a given geometry nothing moves, and none is put back.
@@ -205,7 +205,7 @@ impl<const D: usize> System<'_, D> {
         self.beside.reinforcement.accepted(u)
     }
 
-    /// What a step with nodal values `u` leaves in the pores when it is accepted, for [`Particles::fill_pores`](crate::Particles::fill_pores).
+    /// State of the pores after an accepted step with nodal values `u`, for [`Particles::fill_pores`](crate::Particles::fill_pores).
     pub fn into_pores(self, u: &[[f64; D]]) -> PoresAfter {
         let given = self.loads.pores.pressure;
         self.beside.consolidation.accepted(self.stencils, u, given)

@@ -56,7 +56,7 @@ impl<const D: usize> System<'_, D> {
             force.add(u, &mut trial.f_int, None);
         }
         let inertia = self.inertia.as_ref();
-        trial.inertia = inertia.map_or(0.0, |own| own.add(u, &mut trial.f_int, None));
+        trial.inertia = inertia.map_or(0.0, |inertia| inertia.add(u, &mut trial.f_int, None));
         self.add_damping(u, &mut trial.f_int, None);
         Ok(())
     }
@@ -106,8 +106,8 @@ impl<const D: usize> System<'_, D> {
             force.add(u, &mut trial.f_int, Some(&mut add_block));
         }
         let inertia = self.inertia.as_ref();
-        trial.inertia = inertia.map_or(0.0, |own| {
-            own.add(u, &mut trial.f_int, Some(&mut add_block))
+        trial.inertia = inertia.map_or(0.0, |inertia| {
+            inertia.add(u, &mut trial.f_int, Some(&mut add_block))
         });
         if let Some(inertia) = inertia {
             let place = |row, column, axis| self.place_of(row, column, axis);
@@ -161,8 +161,8 @@ impl<const D: usize> System<'_, D> {
     pub fn finite_tangents(&self, u: &[[f64; D]], kind: TangentKind) -> Result<(), AssemblyError> {
         let mut trial = ParticleTrial::at_rest();
         for particle in 0..self.particles.len() {
-            let own = self.evaluate_particle(particle, u, kind, &mut trial)?;
-            if !own.lifted.tangent().is_finite() {
+            let point = self.evaluate_particle(particle, u, kind, &mut trial)?;
+            if !point.lifted.tangent().is_finite() {
                 let quantity = "tangent";
                 let source = MaterialError::NonFinite { quantity };
                 return Err(AssemblyError::Material { particle, source });

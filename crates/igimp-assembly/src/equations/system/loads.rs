@@ -1,4 +1,4 @@
-//! What acts on a step from outside: external force, the drives of rigid bodies, given water.
+//! Loads of a step from outside: external force, the drives of rigid bodies, given water.
 
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;
@@ -11,7 +11,7 @@ use crate::method::Method;
 use crate::step::stencils::Stencils;
 use igimp_rigid::{NODES_PER_BODY, RigidBody, rotations};
 
-/// What acts on a step from outside.
+/// Loads of a step from outside.
 #[derive(Debug)]
 pub(crate) struct Loads<const D: usize> {
     /// External force by node \[force\].
@@ -41,7 +41,7 @@ impl<const D: usize> Loads<D> {
         let gravity = &conditions.loads.gravity;
         add_variation_of_weight(stencils, &conditions.laws, gravity, &mut f_ext);
         let water = conditions.water.given.as_ref().map(|field| {
-            let earlier = earlier.and_then(|own| own.water.as_ref());
+            let earlier = earlier.and_then(|loads| loads.water.as_ref());
             Asked::of(field, (particles, method.section), earlier)
         });
         let of_water = (method, water.as_ref());
@@ -74,7 +74,7 @@ impl<const D: usize> Loads<D> {
     }
 }
 
-/// What drives the nodes that stand for rigid bodies: two for each, displacement and rotation, the
+/// Drives of the nodes that stand for rigid bodies: two for each, displacement and rotation, the
 /// latter in lengths: times the size of the body, and moments divided by it.
 fn nodal_motions<const D: usize>(
     bodies: &[RigidBody<D>],

@@ -1,4 +1,4 @@
-//! The equilibrium of one step: its unknowns, what acts on it, and the way to its residual and its tangent.
+//! The equilibrium of one step: its unknowns, its loads, and the way to its residual and its tangent.
 
 mod answers;
 mod evaluation;
@@ -34,7 +34,7 @@ use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
 use igimp_rigid::{NODES_PER_BODY, RigidBody};
 
-/// What stands in the soil and on it as a step begins; by default nothing.
+/// Structures in the soil and on it as a step begins; by default none.
 #[derive(Clone, Copy, Debug)]
 pub struct Structures<'a, const D: usize> {
     /// Rigid bodies that touch it.
@@ -197,7 +197,7 @@ impl<'a, const D: usize> System<'a, D> {
         Ok(self)
     }
 
-    /// Exchanges what acts on the body and its laws for those of other `conditions`, with the forces of the loaded
+    /// Exchanges the loads of the body and its laws for those of other `conditions`, with the forces of the loaded
     /// `points`: grid, supports, prescribed motion and contact stay as the step began with them.
     ///
     /// # Errors
@@ -234,7 +234,7 @@ impl<'a, const D: usize> System<'a, D> {
         self
     }
 
-    /// What holds during the step.
+    /// Conditions of the step.
     pub fn conditions(&self) -> &StepConditions<D> {
         &self.conditions
     }
@@ -284,8 +284,8 @@ impl<'a, const D: usize> System<'a, D> {
         }
         for (&node, carriers) in self.stencils.ties() {
             u[node] = std::array::from_fn(|axis| {
-                let moved = carriers.iter().map(|own| own.weight * u[own.node][axis]);
-                moved.reduce(|sum, own| sum + own).unwrap_or(0.0)
+                let moved = carriers.iter().map(|by| by.weight * u[by.node][axis]);
+                moved.reduce(|sum, part| sum + part).unwrap_or(0.0)
             });
         }
     }

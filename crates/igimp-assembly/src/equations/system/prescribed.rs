@@ -1,4 +1,4 @@
-//! Motion that is prescribed: of nodes by supports, of rigid bodies by what drives them.
+//! Motion that is prescribed: of nodes by supports, of rigid bodies by their drives.
 
 use igimp_material::TangentKind;
 
@@ -61,12 +61,12 @@ impl<const D: usize> System<'_, D> {
             if !supports.iter().any(|support| moves(support.node)) {
                 continue;
             }
-            let own = self.evaluate_particle(particle, u, kind, &mut trial)?;
+            let point = self.evaluate_particle(particle, u, kind, &mut trial)?;
             let volume = self.reference_volume(particle);
-            linearised.push((supports, self.around((supports, hoops), u)), &own);
-            self.add_scalars_of_motion(particle, (&own, &linearised), u, &mut force);
+            linearised.push((supports, self.around((supports, hoops), u)), &point);
+            self.add_scalars_of_motion(particle, (&point, &linearised), u, &mut force);
             let kinematics = self.method.kinematics_of_step();
-            linearised.linearise_particle(&own, volume, kinematics);
+            linearised.linearise_particle(&point, volume, kinematics);
             for (j, column) in supports.iter().enumerate() {
                 if !moves(column.node) {
                     continue;
@@ -90,8 +90,8 @@ impl<const D: usize> System<'_, D> {
             }
         };
         let mut unused = vec![[0.0; D]; u.len()];
-        for own in self.beside.forces() {
-            own.add(u, &mut unused, Some(&mut add_block));
+        for forces in self.beside.forces() {
+            forces.add(u, &mut unused, Some(&mut add_block));
         }
         if let Some(inertia) = &self.inertia {
             inertia.add(u, &mut unused, Some(&mut add_block));
@@ -99,11 +99,11 @@ impl<const D: usize> System<'_, D> {
         Ok(force)
     }
 
-    /// Adds what the prescribed step displacements do to the scalars of a particle, by unknown \[force\].
+    /// Adds the effect of prescribed step displacements on the scalars of a particle, by unknown \[force\].
     fn add_scalars_of_motion(
         &self,
         particle: usize,
-        (own, linearised): (&Linearisation<D>, &Linearised<D>),
+        (point, linearised): (&Linearisation<D>, &Linearised<D>),
         u: &[[f64; D]],
         force: &mut [f64],
     ) {
@@ -119,7 +119,7 @@ impl<const D: usize> System<'_, D> {
         if let Some(water) = water.of_particle(particle, (supports, hoops), u) {
             water.add_force_of_motion(supports, &moved, &mut add);
         }
-        if let Some(strain) = self.strain_of_particle(particle, own, u) {
+        if let Some(strain) = self.strain_of_particle(particle, point, u) {
             let gradients = (linearised.g(), linearised.g_bar());
             strain.add_force_of_motion(supports, gradients, &moved, &mut add);
         }

@@ -19,7 +19,7 @@ impl Reach {
 }
 
 impl<const D: usize> System<'_, D> {
-    /// Refuses nodal step displacements `u` that carry a body beyond a reach, in statics on a moving geometry, by what is free of its motion.
+    /// Refuses nodal step displacements `u` that carry a body beyond a reach, in statics on a moving geometry, by its free motion.
     /// Round bodies turn as they like.
     ///
     /// # Errors
@@ -33,8 +33,8 @@ impl<const D: usize> System<'_, D> {
             let size = body.surface.size();
             let free = |node: usize| {
                 let is_free = |axis| self.unknowns.index(node, axis).is_some();
-                let own = |axis| if is_free(axis) { u[node][axis] } else { 0.0 };
-                norm::<D>(&std::array::from_fn(own))
+                let value = |axis| if is_free(axis) { u[node][axis] } else { 0.0 };
+                norm::<D>(&std::array::from_fn(value))
             };
             let node = first + NODES_PER_BODY * index;
             let (way, rotation) = (free(node), free(node + 1) / size);
