@@ -385,7 +385,7 @@ pub fn remove_picture(root: &Path, file: &str) -> Result<(), ResultsError> {
     let name = file.strip_prefix("figures/").unwrap_or(file);
     let files = [format!("{name}.svg"), format!("{name}.png")];
     remove_files(&root.join(FIGURES), |name| {
-        files.iter().any(|own| own == name)
+        files.iter().any(|file| file == name)
     })
 }
 

@@ -139,7 +139,7 @@ impl LinearSystem {
         }
         let mut blocks: Vec<NodeBlock> = Vec::new();
         for (unknown, place) in self.places.iter().enumerate() {
-            let [x, y, z, component] = place.map(|own| own as usize);
+            let [x, y, z, component] = place.map(|index| index as usize);
             let place = [x, y, z];
             let component = 1_u8.checked_shl(component as u32).unwrap_or(0);
             match blocks.last_mut() {
@@ -160,13 +160,13 @@ impl LinearSystem {
             let rows = self.col_ptr[block.first] as usize..self.col_ptr[block.first + 1] as usize;
             let block_of =
                 |row: &i32| blocks.partition_point(|block| block.first <= *row as usize) - 1;
-            let mut own: Vec<u32> = self.row_idx[rows]
+            let mut neighbours: Vec<u32> = self.row_idx[rows]
                 .iter()
                 .map(|row| block_of(row) as u32)
                 .collect();
-            own.sort_unstable();
-            own.dedup();
-            coupled.extend(own);
+            neighbours.sort_unstable();
+            neighbours.dedup();
+            coupled.extend(neighbours);
             starts.push(coupled.len());
         }
         let pattern = Pattern::new(blocks, starts, coupled, self.about.reach);

@@ -587,11 +587,11 @@ pub struct StrengthShares {
 impl StrengthShares {
     /// Each strength, as the name of its material, its symbol, and the change of the factor with it \[-\].
     pub fn strengths(&self) -> impl Iterator<Item = (&str, &'static str, f64)> {
-        self.materials.iter().flat_map(|own| {
-            let friction = own.friction.map(|friction| ("tan φ", friction));
-            std::iter::once(("c", own.cohesion))
+        self.materials.iter().flat_map(|entry| {
+            let friction = entry.friction.map(|friction| ("tan φ", friction));
+            std::iter::once(("c", entry.cohesion))
                 .chain(friction)
-                .map(|(what, share)| (own.material.as_str(), what, share + 0.0))
+                .map(|(symbol, share)| (entry.material.as_str(), symbol, share + 0.0))
         })
     }
 }

@@ -92,6 +92,6 @@ pub const FORMAT_VERSION: u64 = 5;
 /// The program and its version, as written into checkpoints.
 pub const PROGRAM: &str = concat!("igimp ", env!("CARGO_PKG_VERSION"));
 
-fn in_parentheses(what: Option<&str>) -> String {
-    what.map_or_else(String::new, |what| format!(" ({what})"))
+fn in_parentheses(text: Option<&str>) -> String {
+    text.map_or_else(String::new, |text| format!(" ({text})"))
 }

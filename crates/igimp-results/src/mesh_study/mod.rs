@@ -146,14 +146,14 @@ impl StudyResult {
         let Some(unit) = &self.unit else {
             return self.clone();
         };
-        let told = |value: f64| value / unit.in_si;
+        let scaled = |value: f64| value / unit.in_si;
         Self {
             name: format!("{} [{}]", self.name, unit.name),
-            values: self.values.iter().map(|own| own.map(told)).collect(),
-            half_widths: self.half_widths.iter().copied().map(told).collect(),
+            values: self.values.iter().map(|value| value.map(scaled)).collect(),
+            half_widths: self.half_widths.iter().copied().map(scaled).collect(),
             estimate: self.estimate.map(|found| Estimate {
-                value: told(found.value),
-                uncertainty: told(found.uncertainty),
+                value: scaled(found.value),
+                uncertainty: scaled(found.uncertainty),
                 ..found
             }),
             unit: None,
