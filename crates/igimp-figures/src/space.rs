@@ -208,9 +208,9 @@ impl Edge {
         let far =
             |[start, end]: &[Point; 2]| (0..2).map(|k| out[k] * (start[k] + end[k])).sum::<f64>();
         let edges = [edge(0), edge(1), edge(2), edge(3)];
-        let [start, _] = edges.into_iter().reduce(|best, own| {
-            if far(&own) > far(&best) + 1e-6 {
-                own
+        let [start, _] = edges.into_iter().reduce(|best, next| {
+            if far(&next) > far(&best) + 1e-6 {
+                next
             } else {
                 best
             }
@@ -264,7 +264,7 @@ fn draw_axes(drawing: &mut Drawing, projection: &Projection) {
         drawing.stroke(lines, Stroke::solid(Colour::INK, 0.8));
         let factor = ticks
             .factor
-            .map_or_else(String::new, |own| format!("{own} "));
+            .map_or_else(String::new, |factor| format!("{factor} "));
         let name = format!("{} [{factor}m]", ["x", "y", "z"][axis]);
         // Between two ticks, beyond their labels.
         let major = &ticks.major;

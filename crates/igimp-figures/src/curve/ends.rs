@@ -51,11 +51,11 @@ fn apart(wanted: &[f64], spacing: f64, low: f64, high: f64) -> Vec<f64> {
     let mut groups: Vec<(f64, usize)> = Vec::new();
     let first = |&(sum, count): &(f64, usize)| {
         let length = (count - 1) as f64 * spacing;
-        let own = sum / count as f64;
-        own.min(high - length).max(low)
+        let mean = sum / count as f64;
+        mean.min(high - length).max(low)
     };
-    for &own in wanted {
-        let mut group = (own, 1);
+    for &place in wanted {
+        let mut group = (place, 1);
         while let Some(last) = groups.last().copied() {
             if first(&last) + last.1 as f64 * spacing <= first(&group) {
                 break;

@@ -52,8 +52,8 @@ pub(crate) fn rgb(drawing: &Drawing, width: u32) -> Result<Rgb, FigureError> {
     )]
     let height = (drawing.height * scale).ceil() as u32;
     let pixmap = painted(drawing, (width, height), scale)?;
-    let own = pixmap.data().as_chunks::<4>().0;
-    let rgb = own.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
+    let rgba = pixmap.data().as_chunks::<4>().0;
+    let rgb = rgba.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
     Ok(Rgb {
         width,
         height,
