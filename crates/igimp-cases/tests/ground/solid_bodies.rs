@@ -91,8 +91,8 @@ fn raster(hole: Option<&str>) -> String {
     for row in 0..4 {
         for column in 0..5 {
             let height = format!("{}", 2.0 + 0.5 * f64::from(column));
-            let own = hole.filter(|_| row == 1 && column == 3).unwrap_or(&height);
-            write!(text, "{own} ").unwrap();
+            let entry = hole.filter(|_| row == 1 && column == 3).unwrap_or(&height);
+            write!(text, "{entry} ").unwrap();
         }
         text.push('\n');
     }

@@ -58,9 +58,9 @@ fn layered_slope_is_safer_when_one_layer_alone_weakens() {
 /// ORACLE: the envelope is concave: a tangent lies above it, and the chord from no normal stress to that of the height below it.
 #[test]
 fn rock_slope_lies_between_chord_and_tangent() {
-    let own = ran("rock_slope", &[]);
-    assert_eq!(own.outcomes(), [Completed, Completed]);
-    let rock = own.factor_of_safety(1);
+    let ran = ran("rock_slope", &[]);
+    assert_eq!(ran.outcomes(), [Completed, Completed]);
+    let rock = ran.factor_of_safety(1);
     let file = file("rock_slope", &[]);
     let Strength::HoekBrown(hoek) = file.case().materials[0].strength else {
         panic!("no rock")

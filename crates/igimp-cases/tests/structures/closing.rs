@@ -73,10 +73,10 @@ figures = []
 /// GOAL: a body that no soil is near on a geometry that stays as it is drawn is told of, with the gap; one that is near, or moves, is not.
 #[test]
 fn a_gap_that_never_closes_is_told() {
-    let told = "\"plate\" stands 0.2 m off all soil";
+    let remark = "\"plate\" stands 0.2 m off all soil";
     let (force, warned) = pressed([0.2, 0.205], "given", 10);
     assert!(
-        force.abs() < 1e-6 && warned.contains(told),
+        force.abs() < 1e-6 && warned.contains(remark),
         "{force} {warned}"
     );
     for (gap, geometry) in [(0.2, "moving"), (0.02, "given"), (0.0, "given")] {
