@@ -42,7 +42,7 @@ const BAR: f64 = 260.0;
 pub struct Face {
     /// Corners in turn \[m\].
     pub corners: [[f64; 3]; 4],
-    /// Out of the body, of length 1; what light falls on.
+    /// Out of the body, of length 1; for the light.
     pub normal: [f64; 3],
     /// Share of the surroundings that is free, which hollows have little of: from 0 to 1.
     pub open: f64,
@@ -152,7 +152,7 @@ impl SpacePlot {
         if ends[0][0] > ends[1][0] {
             return None;
         }
-        // Of rigid bodies what is close to the soil.
+        // Of rigid bodies the part close to the soil.
         let [low, high] = ends;
         let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
         for corner in self.bodies.iter().flatten() {

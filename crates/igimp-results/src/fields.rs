@@ -138,7 +138,7 @@ fn young<const D: usize>(
     particles.ask_law(particle, laws, modulus).ok()
 }
 
-/// The strength that a particle carries after what it went through, that of `laws` at its ratios; none for soil without a limit.
+/// The strength that a particle carries after its history, that of `laws` at its ratios; none for soil without a limit.
 fn shear_strength<const D: usize>(
     particles: &Particles<D>,
     particle: usize,

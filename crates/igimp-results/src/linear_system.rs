@@ -8,7 +8,7 @@
 //! | `rhs.npy` | f8, n | right-hand side: the out-of-balance force \[N/m\] |
 //! | `solution.npy` | f8, n | the correction that the run found \[m\] |
 //! | `places.npy` | i4, n × 4 | place of the unknown's node on the grid by axis, the third 0 in the plane, and the component: 0 for x, 1 for y, 2 for z |
-//! | `matrix.json` | | what system it is ([`About`]) |
+//! | `matrix.json` | | the kind of system ([`About`]) |
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ use super::npy::{Array, Values};
 use crate::atomic::{at, write_atomically};
 use crate::error::ResultsError;
 
-/// File that says what system it is; written last.
+/// File of the kind of system; written last.
 const ABOUT: &str = "matrix.json";
 const ARRAYS: [&str; 6] = [
     "col_ptr.npy",

@@ -13,7 +13,7 @@ pub struct Standing<'a, const D: usize> {
     pub index: usize,
     /// The body as the case describes it.
     pub part: &'a RigidPart<D>,
-    /// Where it stands, and what contact has left behind.
+    /// Its place, and the state of its contact.
     pub body: &'a RigidBody<D>,
 }
 
@@ -31,7 +31,7 @@ const HEADER: [&str; 10] = [
     "slips_[-]",
 ];
 
-/// What soil covers: a length by the metre run, and the area of a whole body.
+/// Extent that soil covers: a length by the metre run, and the area of a whole body.
 const CONTACT: [&str; 2] = ["contact_[m]", "contact_[m2]"];
 
 /// A point of the outline of a body in space, with contact if it is a contact node.

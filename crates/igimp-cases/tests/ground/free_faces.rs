@@ -1,6 +1,6 @@
 //! GOAL: supports that hold nothing, gaps that cells bridge and walls that soil sticks to are told with place and remedy; ground
 //! that reaches its sides, gaps as wide as cells and faces that are held are not.
-//! ORACLE: the geometry, by hand. What they do to a factor of safety: 0.48 for 1.35, 1.35 for 1.06, 1.29 without failure of the wall.
+//! ORACLE: the geometry, by hand. Their effect on a factor of safety: 0.48 for 1.35, 1.35 for 1.06, 1.29 without failure of the wall.
 
 use igimp_input::CaseFile;
 
@@ -132,7 +132,7 @@ fn a_gap_at_a_side_is_told() {
     assert!(!text.contains("across a gap"), "{text}");
 }
 
-/// What stands on the soil beside a face does not hold it: the half of a footing had 3.1 for 5.6 of its resistance.
+/// Structures on the soil beside a face do not hold it: the half of a footing had 3.1 for 5.6 of its resistance.
 #[test]
 fn a_footing_beside_a_face_does_not_hold_it() {
     let ground = body("ground", "clay", &rectangle([0.0, 0.0], [30.0, 9.0]));

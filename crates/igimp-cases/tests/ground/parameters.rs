@@ -273,7 +273,7 @@ fn laws_of_places_are_made_anew_when_a_run_goes_on() {
     );
 }
 
-/// Soil, a key and a value that makes no sense of it, with what stands beside.
+/// Soil, a key and a value that makes no sense of it, with the text beside.
 const WRONG: [(&str, &str, &str, &str); 17] = [
     (
         SOIL,

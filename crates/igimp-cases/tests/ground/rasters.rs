@@ -1,4 +1,4 @@
-//! Properties of materials by points in the plane: what is read, what particles are given, and what is refused and why.
+//! Properties of materials by points in the plane: reading, values of particles, refusals.
 
 use std::fmt::Write as _;
 
@@ -36,7 +36,7 @@ name = "weight"
 type = "gravity"
 "#;
 
-/// What is put over the plane \[kPa\]: bilinear.
+/// Strength over the plane \[kPa\]: bilinear.
 fn exact([x, y]: [f64; 2]) -> f64 {
     20.0 + 3.0 * x - 4.0 * y + 2.0 * x * y
 }

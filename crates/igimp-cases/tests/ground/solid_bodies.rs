@@ -1,4 +1,4 @@
-//! Bodies in space from case files: what their keys make, what files they take, and what is refused and why.
+//! Bodies in space from case files: shapes by key, files, and refusals with reasons.
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;

@@ -29,7 +29,7 @@ fn grid() -> Grid<3> {
     ])
 }
 
-/// The sum of the parts of a region in the cells of a grid; what is said to be whole or nothing is.
+/// The sum of the parts of a region in the cells of a grid; parts stated whole or empty are so.
 fn sum(region: &dyn Region<3>, grid: &Grid<3>, round_off: f64) -> Part<3> {
     let (mut volume, mut moment) = (0.0, [0.0; 3]);
     for cell in 0..grid.cell_count() {
@@ -157,7 +157,7 @@ fn assert_columns_are_boxes(region: &dyn Region<3>, per_direction: usize) {
     }
 }
 
-/// Volume and centroid of what triangles enclose: tetrahedra from the origin.
+/// Volume and centroid within triangles: tetrahedra from the origin.
 fn enclosed(triangles: &[[Point; 3]]) -> Part<3> {
     let (mut volume, mut moment) = (0.0, [0.0; 3]);
     for [a, b, c] in triangles {

@@ -24,7 +24,7 @@ fn numbers(text: &str) -> Vec<(f64, f64)> {
     words.filter_map(number).collect()
 }
 
-/// Holds what the row of a case tells as computed.
+/// Holds the computed numbers in the row of a case.
 fn hold(name: &str, found: &[f64]) {
     let begin = format!("| [`{name}`]");
     let page = page();

@@ -138,7 +138,7 @@ fn nails_hold_a_cut_that_would_fall() {
     let overrides = ["grid.cell=0.5 m", "stages.0.steps=3"];
     let held = ran("nailed_cut", &overrides);
     assert_eq!(held.outcomes(), [Completed, Completed]);
-    // Circles through the nails, and what the mesh adds.
+    // Circles through the nails, and the share of the mesh.
     between(held.factor_of_safety(1)[0], 1.15, 1.35);
     let most = held.end_of("force in the middle nails");
     between(most, 10e3, 30e3);

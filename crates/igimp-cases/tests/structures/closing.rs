@@ -10,7 +10,7 @@ fn parsed(text: &str) -> CaseFile {
     file.unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The last point of the curve of a run that reached its end, and what was warned of.
+/// The last point of the curve of a run that reached its end, and its warnings.
 fn end_of<const D: usize>(run: &Run<D>) -> (Vec<f64>, String) {
     assert!(run.failure.is_none(), "{:?}", run.failure);
     let end = run.curves[0].rows.last().unwrap().clone();
@@ -23,7 +23,7 @@ fn ended(text: &str) -> (Vec<f64>, String) {
 }
 
 /// The force under a plate that starts a gap above a slab 2 m high and goes down by a way \[m\] in so many steps, per metre run \[N/m\],
-/// and what was warned of.
+/// and the warnings.
 fn pressed([gap, way]: [f64; 2], geometry: &str, steps: usize) -> (f64, String) {
     let text = format!(
         r#"

@@ -1,5 +1,5 @@
-//! Reinforcement in case files and runs: what is refused and why, what stages do with it, and what a run
-//! writes of it.
+//! Reinforcement in case files and runs: refusals with reasons, changes by stages, and
+//! results.
 
 use std::fs;
 use std::path::PathBuf;

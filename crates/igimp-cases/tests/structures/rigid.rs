@@ -1,4 +1,4 @@
-//! Rigid bodies in case files and runs: what is refused and why, and that bodies do what stages say.
+//! Rigid bodies in case files and runs: refusals with reasons, and that bodies do what stages say.
 
 use igimp_cases::run::{Run, in_memory};
 use igimp_input::CaseFile;

@@ -1,4 +1,4 @@
-//! What a run writes of rigid bodies: contact along their sides, frames, pictures, the report.
+//! Results of rigid bodies: contact along their sides, frames, pictures, the report.
 
 use std::fs;
 use std::path::{Path, PathBuf};

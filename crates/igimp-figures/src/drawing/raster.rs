@@ -80,7 +80,7 @@ fn painted(
     Ok(pixmap)
 }
 
-/// An image whose area begins at a whole point, over what is there.
+/// An image whose area begins at a whole point, over the image there.
 fn draw_image(pixmap: &mut Pixmap, image: &Image, scale: f64) {
     let (left, top) = (pixels(image.area.left), pixels(image.area.top));
     let Some(mut shown) = Pixmap::new(image.width, image.height) else {

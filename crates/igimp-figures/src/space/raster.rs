@@ -243,7 +243,7 @@ impl Placed {
             let ends = [0.0, u[axis], v[axis], u[axis] + v[axis]];
             let low = ends.iter().fold(f64::MAX, |a, &b| a.min(b)) + self.at[axis] - 1.0;
             let high = ends.iter().fold(f64::MIN, |a, &b| a.max(b)) + self.at[axis] + 1.0;
-            // Casts take what is negative to zero.
+            // Casts take negative numbers to zero.
             (low.floor() as usize).min(most)..(high.ceil() as usize).min(most)
         };
         let inside = |share: f64, more: f64| share >= -more && share <= 1.0 + more;

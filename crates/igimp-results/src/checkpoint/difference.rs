@@ -6,7 +6,7 @@ use igimp_text::on_a_line;
 
 use super::CheckpointError;
 
-/// Tables that say nothing of what is computed.
+/// Tables that say nothing of the computation.
 const BESIDE: [&str; 1] = ["output"];
 
 /// Keys of `[case]` and `[solver]` that say nothing of it.
@@ -23,7 +23,7 @@ const BESIDE_KEYS: [&str; 6] = [
 const SHOWN: usize = 60;
 
 /// The same error with the first key that differs between the completed case in a results folder and another one, if there is
-/// such a file and such a key.
+/// a file and a key.
 pub fn named(error: CheckpointError, kept: &Path, completed: &str) -> CheckpointError {
     match error {
         CheckpointError::OtherCase { path, .. } => {
@@ -54,7 +54,7 @@ fn first(before: &str, now: &str) -> Option<String> {
     ))
 }
 
-/// The keys of a completed case in its order, each with the text of its value; lists of tables count from 1. What stands in
+/// The keys of a completed case in its order, each with the text of its value; lists of tables count from 1. A value in
 /// several lines is one text.
 fn keys(text: &str) -> Vec<(String, String)> {
     let mut found: Vec<(String, String)> = Vec::new();

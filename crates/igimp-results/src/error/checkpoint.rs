@@ -51,7 +51,7 @@ pub enum CheckpointError {
         /// The program that wrote it.
         found: String,
     },
-    /// The checkpoint is not what was written.
+    /// The checkpoint differs from the one written.
     #[error("the checkpoint in {} is damaged: {file}: {why}", path.display())]
     Damaged {
         /// The folder.
@@ -80,7 +80,7 @@ pub enum CheckpointError {
     },
 }
 
-/// Adds a path to what the system said.
+/// Adds a path to an error of the system.
 pub(crate) fn at(path: &Path) -> impl FnOnce(io::Error) -> CheckpointError {
     let path = path.to_path_buf();
     move |source| CheckpointError::File { path, source }

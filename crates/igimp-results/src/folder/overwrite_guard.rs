@@ -139,7 +139,7 @@ mod tests {
             ..original.clone()
         };
         admit(&root, &moved, Replace::Finished).unwrap();
-        // Who owns it is not known.
+        // Its owner is not known.
         fs::remove_file(root.join(".igimp")).unwrap();
         insta::assert_snapshot!(
             refused(&original, Replace::Finished),

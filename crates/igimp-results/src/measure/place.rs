@@ -1,6 +1,6 @@
 //! Fields at a place that is no particle (theory, eqs. 40h and 40i). Motion: the nearest particle's value, and from there on along
-//! the plane that fits it and the particles around it best. What follows from strain: the same of means over cells of the grid,
-//! for it is nearly constant in a cell. Fields that are linear are exact either way.
+//! the plane that fits it and the particles around it best. Functions of strain: the same of means over cells of the grid,
+//! for they are nearly constant in a cell. Fields that are linear are exact either way.
 
 use igimp_assembly::{Particles, SharedLaw};
 use igimp_model::Field;
@@ -87,7 +87,7 @@ impl Place {
             length::<D>(&std::array::from_fn(component))
         };
         let read = |field| self.field(field, particles, laws, grid);
-        // The sum of what is read of each.
+        // The sum of the readings of each.
         let total = |effective| read(effective) + read(Field::U);
         match field {
             Field::Displacement => vector(&particles.displacement),
@@ -146,7 +146,7 @@ impl Place {
     }
 }
 
-/// A value that was carried on, kept to what its field can be (theory, eq. 40i). Accumulated strain and shares of strength stay
+/// A value that was carried on, kept to the range of its field (theory, eq. 40i). Accumulated strain and shares of strength stay
 /// in the range of the particles that they were read from. Deviatoric stress does where it would be negative: where it grows
 /// with the depth a line is right.
 fn kept(field: Field, value: f64, [least, most]: [f64; 2]) -> f64 {

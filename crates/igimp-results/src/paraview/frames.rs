@@ -104,7 +104,7 @@ impl Frames {
         Ok(all)
     }
 
-    /// What a stage that moves in time has of frames that are kept; its collections lose the others.
+    /// The kept frames of a stage that moves in time; its collections lose the others.
     fn take_up_motion(&mut self, stage: usize) -> Result<(), ResultsError> {
         let kept = self.particles.frames();
         let place = |frame: &Frame| kept.iter().position(|other| other.file == frame.file);

@@ -1,4 +1,4 @@
-//! Frames of particles read back as fields, in the printed sign: for pictures of what a run left.
+//! Frames of particles read back as fields, in the printed sign: for pictures of a run.
 
 use igimp_model::Field;
 use igimp_schema::field::InFrames;
