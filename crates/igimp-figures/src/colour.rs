@@ -16,7 +16,7 @@ impl Colour {
     pub const WHITE: Self = Self([255, 255, 255]);
     /// The colour of a computed curve.
     pub const CURVE: Self = Self([0, 114, 178]);
-    /// The colour of what failed.
+    /// The colour of failure.
     pub const FAILURE: Self = Self([213, 94, 0]);
     /// The grey of domains without a value.
     pub const NO_VALUE: Self = Self([168, 168, 168]);

@@ -232,7 +232,7 @@ impl Drawing {
     }
 }
 
-/// Writes a new file. A link that has the name goes, and what it leads to stays as it is.
+/// Writes a new file. A link that has the name goes, and its target stays as it is.
 fn write_new(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     match std::fs::remove_file(path) {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(error),

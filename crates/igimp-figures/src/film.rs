@@ -40,17 +40,17 @@ pub fn film(frames: &[(Rgb, f64)]) -> Result<Vec<u8>, FigureError> {
     let mut before: Option<Vec<u8>> = None;
     let mut clock = Clock::default();
     for (rgb, stays) in frames {
-        let own: Vec<u8> = (rgb.pixels.iter())
+        let pixels: Vec<u8> = (rgb.pixels.iter())
             .map(|pixel| {
                 *nearest
                     .entry(*pixel)
                     .or_insert_with(|| palette.nearest(*pixel))
             })
             .collect();
-        let mut frame = changed(before.as_deref(), &own, usize::from(columns));
+        let mut frame = changed(before.as_deref(), &pixels, usize::from(columns));
         frame.delay = clock.delay(*stays);
         encoder.write_frame(&frame)?;
-        before = Some(own);
+        before = Some(pixels);
     }
     drop(encoder);
     Ok(bytes)
@@ -66,16 +66,16 @@ struct Clock {
 impl Clock {
     fn delay(&mut self, stays: f64) -> u16 {
         self.wanted += 100.0 * stays;
-        let own = (self.wanted - self.given)
+        let time = (self.wanted - self.given)
             .round()
             .clamp(100.0 * STAYS[0], f64::from(u16::MAX));
-        self.given += own;
+        self.given += time;
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "it is clamped to the range"
         )]
-        let delay = own as u16;
+        let delay = time as u16;
         delay
     }
 }
@@ -101,12 +101,12 @@ impl Palette {
     }
 
     fn nearest(&self, pixel: [u8; 3]) -> u8 {
-        let distance = |own: &[u8; 3]| -> u32 {
-            let apart = std::iter::zip(own, pixel).map(|(&a, b)| u32::from(a.abs_diff(b)).pow(2));
+        let distance = |rgb: &[u8; 3]| -> u32 {
+            let apart = std::iter::zip(rgb, pixel).map(|(&a, b)| u32::from(a.abs_diff(b)).pow(2));
             apart.sum()
         };
         let all = (0..=u8::MAX).zip(&self.colours);
-        let found = all.min_by_key(|(_, own)| distance(own));
+        let found = all.min_by_key(|(_, rgb)| distance(rgb));
         found.map_or(0, |(k, _)| k)
     }
 
@@ -119,9 +119,9 @@ impl Palette {
 }
 
 /// The rectangle that differs from the frame before, with pixels that stay as they were left out.
-fn changed(before: Option<&[u8]>, own: &[u8], columns: usize) -> gif::Frame<'static> {
-    let rows = own.len() / columns;
-    let differs = |k: usize| before.is_none_or(|before| before[k] != own[k]);
+fn changed(before: Option<&[u8]>, pixels: &[u8], columns: usize) -> gif::Frame<'static> {
+    let rows = pixels.len() / columns;
+    let differs = |k: usize| before.is_none_or(|before| before[k] != pixels[k]);
     let is_other_row = |row: &usize| (0..columns).any(|column| differs(row * columns + column));
     let is_other_column = |column: &usize| (0..rows).any(|row| differs(row * columns + column));
     // A frame that is like the one before has one pixel, that it may stay its time.
@@ -132,7 +132,7 @@ fn changed(before: Option<&[u8]>, own: &[u8], columns: usize) -> gif::Frame<'sta
     let places =
         (top..=bottom).flat_map(|row| (left..=right).map(move |column| row * columns + column));
     let buffer: Vec<u8> = places
-        .map(|k| if differs(k) { own[k] } else { UNCHANGED })
+        .map(|k| if differs(k) { pixels[k] } else { UNCHANGED })
         .collect();
     let side = |from: usize, to: usize| u16::try_from(to - from + 1).unwrap_or(u16::MAX);
     gif::Frame {

@@ -42,7 +42,7 @@ const BAR: f64 = 260.0;
 pub struct Face {
     /// Corners in turn \[m\].
     pub corners: [[f64; 3]; 4],
-    /// Out of the body, of length 1; what light falls on.
+    /// Out of the body, of length 1; for the light.
     pub normal: [f64; 3],
     /// Share of the surroundings that is free, which hollows have little of: from 0 to 1.
     pub open: f64,
@@ -152,7 +152,7 @@ impl SpacePlot {
         if ends[0][0] > ends[1][0] {
             return None;
         }
-        // Of rigid bodies what is close to the soil.
+        // Of rigid bodies the part close to the soil.
         let [low, high] = ends;
         let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
         for corner in self.bodies.iter().flatten() {
@@ -208,9 +208,9 @@ impl Edge {
         let far =
             |[start, end]: &[Point; 2]| (0..2).map(|k| out[k] * (start[k] + end[k])).sum::<f64>();
         let edges = [edge(0), edge(1), edge(2), edge(3)];
-        let [start, _] = edges.into_iter().reduce(|best, own| {
-            if far(&own) > far(&best) + 1e-6 {
-                own
+        let [start, _] = edges.into_iter().reduce(|best, next| {
+            if far(&next) > far(&best) + 1e-6 {
+                next
             } else {
                 best
             }
@@ -264,7 +264,7 @@ fn draw_axes(drawing: &mut Drawing, projection: &Projection) {
         drawing.stroke(lines, Stroke::solid(Colour::INK, 0.8));
         let factor = ticks
             .factor
-            .map_or_else(String::new, |own| format!("{own} "));
+            .map_or_else(String::new, |factor| format!("{factor} "));
         let name = format!("{} [{factor}m]", ["x", "y", "z"][axis]);
         // Between two ticks, beyond their labels.
         let major = &ticks.major;

@@ -1,5 +1,5 @@
 //! Files that are there whole or not at all, also when the program is killed while it writes; and that
-//! are new: a link under a name that is written goes, and what it leads to stays as it is.
+//! are new: a link under a name that is written goes, and its target stays as it is.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -28,8 +28,8 @@ pub fn write_atomically(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Resu
 }
 
 /// Writes a file under a temporary name beside its place and renames it, as [`write_atomically`] does, and
-/// leaves it to the system when the disk has it: whoever kills the program finds a whole file, whoever
-/// takes the power away may not.
+/// leaves it to the system when the disk has it: after a kill the file is whole, after a loss of
+/// power it may not be.
 ///
 /// # Errors
 /// [`ResultsError::File`].
@@ -57,8 +57,8 @@ pub(crate) fn temporary_name(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// A new, empty file; what had the name before is gone. Of a link, symbolic or hard, the name goes and
-/// never what it leads to.
+/// A new, empty file; an earlier one of the name is gone. Of a link, symbolic or hard, the name goes and
+/// never its target.
 pub(crate) fn create(path: &Path) -> io::Result<File> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
@@ -99,7 +99,7 @@ pub(crate) fn sync_folder(folder: &Path) -> io::Result<()> {
     }
 }
 
-/// Adds a path to what the system said.
+/// Adds a path to an error of the system.
 pub fn at(path: &Path) -> impl FnOnce(io::Error) -> ResultsError {
     let path = path.to_path_buf();
     move |source| ResultsError::File { path, source }

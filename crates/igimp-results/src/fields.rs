@@ -90,15 +90,15 @@ pub fn internal_variables<const D: usize>(
     laws: &[SharedLaw],
 ) -> Vec<(String, Vec<f64>)> {
     let mut found: Vec<(InternalVariable, Vec<f64>)> = Vec::new();
-    for (law, own) in laws.iter().enumerate() {
-        for (k, variable) in own.internal_variables().iter().enumerate() {
+    for (law, model) in laws.iter().enumerate() {
+        for (k, variable) in model.internal_variables().iter().enumerate() {
             let place = found.iter().position(|(known, _)| known == variable);
             let place = place.unwrap_or_else(|| {
                 found.push((*variable, vec![f64::NAN; particles.len()]));
                 found.len() - 1
             });
-            let own = (0..particles.len()).filter(|&particle| particles.law[particle] == law);
-            for particle in own {
+            let of_law = (0..particles.len()).filter(|&particle| particles.law[particle] == law);
+            for particle in of_law {
                 found[place].1[particle] = particles.internal[particle][k];
             }
         }
@@ -120,8 +120,7 @@ pub fn length<const D: usize>(vector: &[f64; D]) -> f64 {
     let [x, y, rest @ ..] = &vector[..] else {
         return f64::NAN;
     };
-    rest.iter()
-        .fold(x.hypot(*y), |length, own| length.hypot(*own))
+    rest.iter().fold(x.hypot(*y), |length, z| length.hypot(*z))
 }
 
 /// Young's modulus of a particle in the state that it is in, that of `laws` at its ratios.
@@ -135,11 +134,11 @@ fn young<const D: usize>(
     }
     let eps_e = elastic_strain(particles, particle);
     let history = particles.history(particle);
-    let own = |law: &dyn ConstitutiveModel| law.elastic_stiffness(&eps_e, &history).young();
-    particles.ask_law(particle, laws, own).ok()
+    let modulus = |law: &dyn ConstitutiveModel| law.elastic_stiffness(&eps_e, &history).young();
+    particles.ask_law(particle, laws, modulus).ok()
 }
 
-/// The strength that a particle carries after what it went through, that of `laws` at its ratios; none for soil without a limit.
+/// The strength that a particle carries after its history, that of `laws` at its ratios; none for soil without a limit.
 fn shear_strength<const D: usize>(
     particles: &Particles<D>,
     particle: usize,
@@ -147,8 +146,8 @@ fn shear_strength<const D: usize>(
 ) -> Option<ShearStrength> {
     laws.get(particles.law[particle])?;
     let history = particles.history(particle);
-    let own = |law: &dyn ConstitutiveModel| law.shear_strength_at(&history);
-    particles.ask_law(particle, laws, own).ok().flatten()
+    let strength = |law: &dyn ConstitutiveModel| law.shear_strength_at(&history);
+    particles.ask_law(particle, laws, strength).ok().flatten()
 }
 
 /// p = −tr σ/3.

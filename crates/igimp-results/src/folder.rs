@@ -1,5 +1,5 @@
-//! The results folder: its layout, and clearing what an earlier run left without touching anything
-//! else.
+//! The results folder: its layout, and clearing the files of an earlier run without touching
+//! others.
 //!
 //! | | |
 //! |---|---|
@@ -71,7 +71,7 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// Makes the folder, or clears what an earlier run of igimp left in it.
+    /// Makes the folder, or clears the files of an earlier run of igimp.
     ///
     /// Only files of our names go; `case.toml` stays until it is written anew, for it may be the
     /// user's own.
@@ -265,7 +265,7 @@ pub fn mesh_name(number: usize) -> String {
 
 /// Lays out the folder of a study of the mesh error, whose meshes have folders of their own in it.
 ///
-/// From the beginning, what an earlier run left is cleared as in [`Folder::afresh`], and so are the
+/// From the beginning, the files of an earlier run are cleared as in [`Folder::afresh`], and so are the
 /// folders of meshes.
 ///
 /// # Errors
@@ -283,7 +283,7 @@ pub fn of_study(root: &Path, claim: &Claim, afresh: bool) -> Result<(), ResultsE
 }
 
 /// Clears the folders of meshes that an earlier study left in a results folder: the files of our names,
-/// and what is empty then.
+/// and folders empty then.
 ///
 /// # Errors
 /// [`ResultsError::File`], [`ResultsError::Checkpoint`].
@@ -385,7 +385,7 @@ pub fn remove_picture(root: &Path, file: &str) -> Result<(), ResultsError> {
     let name = file.strip_prefix("figures/").unwrap_or(file);
     let files = [format!("{name}.svg"), format!("{name}.png")];
     remove_files(&root.join(FIGURES), |name| {
-        files.iter().any(|own| own == name)
+        files.iter().any(|file| file == name)
     })
 }
 

@@ -8,7 +8,7 @@
 //! | `rhs.npy` | f8, n | right-hand side: the out-of-balance force \[N/m\] |
 //! | `solution.npy` | f8, n | the correction that the run found \[m\] |
 //! | `places.npy` | i4, n × 4 | place of the unknown's node on the grid by axis, the third 0 in the plane, and the component: 0 for x, 1 for y, 2 for z |
-//! | `matrix.json` | | what system it is ([`About`]) |
+//! | `matrix.json` | | the kind of system ([`About`]) |
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ use super::npy::{Array, Values};
 use crate::atomic::{at, write_atomically};
 use crate::error::ResultsError;
 
-/// File that says what system it is; written last.
+/// File of the kind of system; written last.
 const ABOUT: &str = "matrix.json";
 const ARRAYS: [&str; 6] = [
     "col_ptr.npy",
@@ -139,7 +139,7 @@ impl LinearSystem {
         }
         let mut blocks: Vec<NodeBlock> = Vec::new();
         for (unknown, place) in self.places.iter().enumerate() {
-            let [x, y, z, component] = place.map(|own| own as usize);
+            let [x, y, z, component] = place.map(|index| index as usize);
             let place = [x, y, z];
             let component = 1_u8.checked_shl(component as u32).unwrap_or(0);
             match blocks.last_mut() {
@@ -160,13 +160,13 @@ impl LinearSystem {
             let rows = self.col_ptr[block.first] as usize..self.col_ptr[block.first + 1] as usize;
             let block_of =
                 |row: &i32| blocks.partition_point(|block| block.first <= *row as usize) - 1;
-            let mut own: Vec<u32> = self.row_idx[rows]
+            let mut neighbours: Vec<u32> = self.row_idx[rows]
                 .iter()
                 .map(|row| block_of(row) as u32)
                 .collect();
-            own.sort_unstable();
-            own.dedup();
-            coupled.extend(own);
+            neighbours.sort_unstable();
+            neighbours.dedup();
+            coupled.extend(neighbours);
             starts.push(coupled.len());
         }
         let pattern = Pattern::new(blocks, starts, coupled, self.about.reach);

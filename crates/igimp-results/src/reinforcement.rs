@@ -73,7 +73,7 @@ impl<const D: usize> Installed<'_, D> {
     /// Its line where it is, as seen from the front \[m\].
     fn line(&self) -> Vec<[f64; 2]> {
         let stations = self.member.stations.iter();
-        stations.map(|own| front(&own.position())).collect()
+        stations.map(|station| front(&station.position())).collect()
     }
 
     /// Its line, with its tension as a curve beside it: the `most` tension of all is `height` away \[m\].
@@ -108,19 +108,19 @@ impl<const D: usize> Installed<'_, D> {
 /// All members with their tension as curves beside them, and words for the largest of each. `size` is that of
 /// the model \[m\].
 pub fn outlines<const D: usize>(installed: &[Installed<'_, D>], size: f64) -> Vec<Outline> {
-    let most = installed.iter().map(|own| own.member.largest_force());
+    let most = installed.iter().map(|entry| entry.member.largest_force());
     let most = most.fold(0.0, f64::max);
     let all = installed.iter();
-    all.flat_map(|own| own.outlines(most, 0.04 * size))
+    all.flat_map(|entry| entry.outlines(most, 0.04 * size))
         .collect()
 }
 
 /// The largest tension of each member in words, beside its head.
 pub fn labels<const D: usize>(installed: &[Installed<'_, D>]) -> Vec<([f64; 2], String)> {
-    let label = |own: &Installed<'_, D>| {
-        let force = short(own.member.largest_force() / 1e3);
-        let text = format!("{} {force} kN/m", own.part.name);
-        (front(&own.member.stations[0].position()), text)
+    let label = |entry: &Installed<'_, D>| {
+        let force = short(entry.member.largest_force() / 1e3);
+        let text = format!("{} {force} kN/m", entry.part.name);
+        (front(&entry.member.stations[0].position()), text)
     };
     installed.iter().map(label).collect()
 }
@@ -131,17 +131,17 @@ pub fn lines<const D: usize>(installed: &[Installed<'_, D>]) -> UnstructuredGrid
     let mut connectivity = Vec::new();
     let (mut forces, mut limits, mut strains) = (Vec::new(), Vec::new(), Vec::new());
     let (mut members, mut at_limit) = (Vec::new(), Vec::new());
-    for own in installed {
+    for entry in installed {
         let first = points.len();
-        let stations = own.member.stations.iter();
-        points.extend(stations.map(|own| padded(&own.position())));
-        for (k, bar) in own.member.segments.iter().enumerate() {
+        let stations = entry.member.stations.iter();
+        points.extend(stations.map(|station| padded(&station.position())));
+        for (k, bar) in entry.member.segments.iter().enumerate() {
             connectivity.extend([first + k, first + k + 1]);
             forces.push(bar.state.force);
-            limits.push(bar.limit(own.reduction));
+            limits.push(bar.limit(entry.reduction));
             strains.push(bar.state.strain);
             at_limit.push(i32::from(bar.state.is_at_limit));
-            members.push(own.index as i32);
+            members.push(entry.index as i32);
         }
     }
     let unit = if D == 2 { "N/m" } else { "N" };

@@ -13,7 +13,7 @@ pub struct Standing<'a, const D: usize> {
     pub index: usize,
     /// The body as the case describes it.
     pub part: &'a RigidPart<D>,
-    /// Where it stands, and what contact has left behind.
+    /// Its place, and the state of its contact.
     pub body: &'a RigidBody<D>,
 }
 
@@ -31,7 +31,7 @@ const HEADER: [&str; 10] = [
     "slips_[-]",
 ];
 
-/// What soil covers: a length by the metre run, and the area of a whole body.
+/// Extent that soil covers: a length by the metre run, and the area of a whole body.
 const CONTACT: [&str; 2] = ["contact_[m]", "contact_[m2]"];
 
 /// A point of the outline of a body in space, with contact if it is a contact node.
@@ -39,7 +39,7 @@ struct Place<'a> {
     /// Side, from 0.
     side: usize,
     /// In the frame of the body \[m\].
-    own: [f64; 2],
+    local: [f64; 2],
     x: [f64; 2],
     /// Out of the body.
     normal: [f64; 2],
@@ -59,21 +59,21 @@ impl<'a> Standing<'a, 2> {
     /// How far along its side a place of the surface is, from the corner that the side begins with, or
     /// around a circle from the point that was rightmost at the start \[m\].
     fn distance(&self, place: &Place<'_>) -> f64 {
-        let own = place.own;
+        let local = place.local;
         match (self.part.shape.in_plane(), self.corner(place.side)) {
             (Some(RigidShape::Circle { radius, .. }), _) => {
-                radius * own[1].atan2(own[0]).rem_euclid(std::f64::consts::TAU)
+                radius * local[1].atan2(local[0]).rem_euclid(std::f64::consts::TAU)
             }
-            (_, Some(corner)) => (own[0] - corner[0]).hypot(own[1] - corner[1]),
+            (_, Some(corner)) => (local[0] - corner[0]).hypot(local[1] - corner[1]),
             (_, None) => f64::NAN,
         }
     }
 
     /// The normal of a side at a place, in the frame of the body.
-    fn normal(&self, side: usize, own: [f64; 2]) -> [f64; 2] {
+    fn normal(&self, side: usize, local: [f64; 2]) -> [f64; 2] {
         let (Some(from), Some(to)) = (self.corner(side), self.corner(side + 1)) else {
-            let length = own[0].hypot(own[1]).max(f64::MIN_POSITIVE);
-            return own.map(|x| x / length);
+            let length = local[0].hypot(local[1]).max(f64::MIN_POSITIVE);
+            return local.map(|x| x / length);
         };
         let along = [to[0] - from[0], to[1] - from[1]];
         let length = self.sense() * along[0].hypot(along[1]);
@@ -98,11 +98,11 @@ impl<'a> Standing<'a, 2> {
         let body = self.body;
         let nodes = body.surface.knots();
         std::iter::zip(nodes, &body.contact.knots)
-            .map(|((own, side), contact)| Place {
+            .map(|((local, side), contact)| Place {
                 side,
-                own,
-                x: body.pose.into_space(&own),
-                normal: body.pose.direction(&self.normal(side, own)),
+                local,
+                x: body.pose.into_space(&local),
+                normal: body.pose.direction(&self.normal(side, local)),
                 contact: Some(contact),
             })
             .collect()
@@ -113,10 +113,10 @@ impl<'a> Standing<'a, 2> {
         let mut outline: Vec<Place<'a>> = Vec::new();
         for node in self.contact_nodes() {
             if outline.last().is_none_or(|last| last.side != node.side) {
-                outline.extend(self.corner(node.side).map(|own| Place {
+                outline.extend(self.corner(node.side).map(|local| Place {
                     side: node.side,
-                    own,
-                    x: self.body.pose.into_space(&own),
+                    local,
+                    x: self.body.pose.into_space(&local),
                     normal: node.normal,
                     contact: None,
                 }));
@@ -128,9 +128,9 @@ impl<'a> Standing<'a, 2> {
 
     /// Contact at the nodes of its surface, side by side, as a table.
     fn table_of_sides(&self, name: String, is_whole: bool) -> Table {
-        let header = HEADER.map(|own| match own {
-            own if is_whole && own == CONTACT[0] => CONTACT[1],
-            own => own,
+        let header = HEADER.map(|column| match column {
+            column if is_whole && column == CONTACT[0] => CONTACT[1],
+            column => column,
         });
         let mut table = Table::new(name, &header);
         for place in self.contact_nodes() {
@@ -180,14 +180,14 @@ impl<'a, const D: usize> Standing<'a, D> {
 
     /// Contact at the nodes of its surface, side by side, as a table; of a `whole` body, not of a metre run.
     pub fn table(&self, name: String, is_whole: bool) -> Table {
-        if let Some(own) = self.in_plane() {
-            return own.table_of_sides(name, is_whole);
+        if let Some(body) = self.in_plane() {
+            return body.table_of_sides(name, is_whole);
         }
         let mut table = Table::new(name, &HEADER_IN_SPACE);
         let nodes = self.body.surface.knots();
-        for ((own, side), contact) in std::iter::zip(nodes, &self.body.contact.knots) {
+        for ((local, side), contact) in std::iter::zip(nodes, &self.body.contact.knots) {
             let mut row = vec![side as f64 + 1.0];
-            row.extend(self.body.pose.into_space(&own));
+            row.extend(self.body.pose.into_space(&local));
             row.extend([
                 contact.pressure,
                 contact.shear[0].hypot(contact.shear[1]),
@@ -213,15 +213,15 @@ pub fn cells<const D: usize>(standing: &[Standing<'_, D>]) -> UnstructuredGrid {
     let mut points = Vec::new();
     let mut contact: Vec<ContactNode> = Vec::new();
     let (mut bodies, mut sides) = (Vec::new(), Vec::new());
-    for own in standing {
-        let Some(body) = in_plane::<RigidBody<D>, RigidBody<3>>(own.body) else {
+    for rigid in standing {
+        let Some(body) = in_plane::<RigidBody<D>, RigidBody<3>>(rigid.body) else {
             continue;
         };
         for (corners, shares, side) in body.surface.facets() {
             for (corner, shares) in std::iter::zip(corners, shares) {
                 points.push(body.pose.into_space(&corner));
                 contact.push(at_corner(shares, &body.contact.knots));
-                bodies.push(own.index as i32);
+                bodies.push(rigid.index as i32);
                 sides.push(side as i32 + 1);
             }
         }
@@ -230,17 +230,17 @@ pub fn cells<const D: usize>(standing: &[Standing<'_, D>]) -> UnstructuredGrid {
         DataArray::scalars(name, contact.iter().map(of).collect())
     };
     let flags = |name: &str, of: &dyn Fn(&ContactNode) -> bool| {
-        DataArray::integers(name, contact.iter().map(|own| i32::from(of(own))).collect())
+        DataArray::integers(name, contact.iter().map(|c| i32::from(of(c))).collect())
     };
     UnstructuredGrid {
         kind: CellKind::Triangle,
         connectivity: (0..points.len()).collect(),
         point_data: vec![
-            scalars("contact pressure [Pa], compression +", &|own| own.pressure),
-            scalars("shear [Pa]", &|own| own.shear[0].hypot(own.shear[1])),
+            scalars("contact pressure [Pa], compression +", &|c| c.pressure),
+            scalars("shear [Pa]", &|c| c.shear[0].hypot(c.shear[1])),
             scalars("gap [m]", &gap),
-            flags("closed", &|own| own.is_closed),
-            flags("slips", &|own| own.slips),
+            flags("closed", &|c| c.is_closed),
+            flags("slips", &|c| c.slips),
             DataArray::integers("body", bodies),
             DataArray::integers("side", sides),
         ],
@@ -254,13 +254,13 @@ pub fn cells<const D: usize>(standing: &[Standing<'_, D>]) -> UnstructuredGrid {
 fn at_corner(shares: &[(usize, f64)], nodes: &[ContactNode]) -> ContactNode {
     let mut at = ContactNode::default();
     for &(node, share) in shares {
-        let own = &nodes[node];
-        at.pressure += share * own.pressure;
-        at.shear[0] += share * own.shear[0].hypot(own.shear[1]);
-        at.gap += share * own.gap;
-        at.area += share * own.area;
-        at.is_closed |= own.is_closed;
-        at.slips |= own.slips;
+        let contact = &nodes[node];
+        at.pressure += share * contact.pressure;
+        at.shear[0] += share * contact.shear[0].hypot(contact.shear[1]);
+        at.gap += share * contact.gap;
+        at.area += share * contact.area;
+        at.is_closed |= contact.is_closed;
+        at.slips |= contact.slips;
     }
     at
 }
@@ -279,10 +279,10 @@ fn outlines(standing: &[Standing<'_, 2>]) -> UnstructuredGrid {
     let mut connectivity = Vec::new();
     let mut places: Vec<(usize, Place<'_>)> = Vec::new();
     for body in standing {
-        let (first, own) = (places.len(), body.outline());
-        let count = own.len();
+        let (first, outline) = (places.len(), body.outline());
+        let count = outline.len();
         connectivity.extend((0..count).flat_map(|k| [first + k, first + (k + 1) % count]));
-        places.extend(own.into_iter().map(|place| (body.index, place)));
+        places.extend(outline.into_iter().map(|place| (body.index, place)));
     }
     let none = ContactNode::default();
     let contact = |place: &Place<'_>| *place.contact.unwrap_or(&none);
@@ -294,8 +294,8 @@ fn outlines(standing: &[Standing<'_, 2>]) -> UnstructuredGrid {
         all.map(|(body, place)| of(*body, place) as i32).collect()
     };
     let traction = |place: &Place<'_>| {
-        let ([x, y], own) = (place.normal, contact(place));
-        let (p, shear) = (own.pressure, own.shear[0]);
+        let ([x, y], node) = (place.normal, contact(place));
+        let (p, shear) = (node.pressure, node.shear[0]);
         [-p * x + shear * y, -p * y - shear * x]
     };
     let tractions: Vec<[f64; 2]> = places.iter().map(|(_, place)| traction(place)).collect();

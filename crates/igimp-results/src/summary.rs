@@ -205,7 +205,7 @@ pub struct StageSummary {
     /// The water that flowed out of soil, of a stage with consolidation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub consolidation: Option<ConsolidationSummary>,
-    /// What a sliding block does by the motion of the ground, where the stage asks for it.
+    /// Slide of a block by the motion of the ground, where the stage asks for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub newmark: Option<NewmarkSummary>,
     /// How its linear systems were solved, in space.
@@ -220,7 +220,7 @@ pub struct ConsolidationSummary {
     pub time: f64,
     /// Water that left at open faces, sides and drains \[m³/m; m³ in space\].
     pub outflow: f64,
-    /// What of the water of all steps does not close, by magnitude \[m³/m; m³ in space\].
+    /// Error of the balance of water of all steps, by magnitude \[m³/m; m³ in space\].
     pub missing: f64,
     /// Mean excess pore pressure, by magnitude, of the soil that water flows out of, at the end \[Pa\].
     pub excess: f64,
@@ -240,7 +240,7 @@ impl ConsolidationSummary {
 }
 
 impl StageSummary {
-    /// Whether the stage came to what its case asks of it: its end, or a condition that ends it there. One that found no
+    /// Whether the stage came to the goal of its case: its end, or a condition that ends it there. One that found no
     /// equilibrium on its way, that ran out of steps, or that tells no limit where one is sought, did not.
     pub fn came_to_its_end(&self) -> bool {
         let ran_short = [
@@ -256,7 +256,7 @@ impl StageSummary {
     }
 }
 
-/// Where the work of a stage that takes time went \[J/m; J in space\]. What is not a state adds up over the stage.
+/// Where the work of a stage that takes time went \[J/m; J in space\]. Other than states, they add up over the stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EnergySummary {
     /// Time that it took \[s\].
@@ -271,7 +271,7 @@ pub struct EnergySummary {
     pub elastic: f64,
     /// Plastic work.
     pub plastic: f64,
-    /// Friction on rigid bodies, and what their contact stores.
+    /// Friction on rigid bodies, and energy stored in contact.
     pub contact: f64,
     /// Work on reinforcement.
     pub reinforcement: f64,
@@ -286,11 +286,11 @@ pub struct EnergySummary {
     pub loads: f64,
     /// Work of the supports.
     pub supports: f64,
-    /// What the time integration took.
+    /// Loss to the time integration.
     pub scheme: f64,
-    /// What the map between particles and grid took.
+    /// Loss to the map between particles and grid.
     pub map: f64,
-    /// What integration of stress along the steps took, and the out-of-balance force that was left.
+    /// Loss to integration of stress along the steps, and to the out-of-balance force that was left.
     pub integration: f64,
 }
 
@@ -355,7 +355,7 @@ impl EnergySummary {
         text
     }
 
-    /// What the numerical method took, over the greatest of loads, supports and kinetic energy \[-\].
+    /// Loss to the numerical method, over the greatest of loads, supports and kinetic energy \[-\].
     pub fn numerical_share(&self) -> f64 {
         let scale = self
             .most_kinetic
@@ -368,13 +368,13 @@ impl EnergySummary {
         }
     }
 
-    /// What the numerical method took.
+    /// Loss to the numerical method.
     fn numerical(&self) -> f64 {
         self.scheme + self.map + self.integration
     }
 }
 
-/// What a rigid block does by Newmark's method on the ground that a stage moves.
+/// Motion of a rigid block by Newmark's method on the ground that a stage moves.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct NewmarkSummary {
     /// Yield coefficient k_c, as a force over the weight: positive to the right \[-\].
@@ -546,7 +546,7 @@ impl SafetySummary {
     }
 }
 
-/// A path of equilibria along which strength is reduced, and what it tells of its limit.
+/// A path of equilibria along which strength is reduced, and its limit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PathSummary {
     /// Why it ended.
@@ -587,11 +587,11 @@ pub struct StrengthShares {
 impl StrengthShares {
     /// Each strength, as the name of its material, its symbol, and the change of the factor with it \[-\].
     pub fn strengths(&self) -> impl Iterator<Item = (&str, &'static str, f64)> {
-        self.materials.iter().flat_map(|own| {
-            let friction = own.friction.map(|friction| ("tan φ", friction));
-            std::iter::once(("c", own.cohesion))
+        self.materials.iter().flat_map(|entry| {
+            let friction = entry.friction.map(|friction| ("tan φ", friction));
+            std::iter::once(("c", entry.cohesion))
                 .chain(friction)
-                .map(|(what, share)| (own.material.as_str(), what, share + 0.0))
+                .map(|(symbol, share)| (entry.material.as_str(), symbol, share + 0.0))
         })
     }
 }
@@ -676,7 +676,7 @@ pub struct CheckRow {
     pub check: Check,
     /// Whether the band is met.
     pub pass: bool,
-    /// What the value is worth.
+    /// Worth of the value.
     #[serde(default)]
     pub standing: Standing,
 }
@@ -725,7 +725,7 @@ impl CheckRow {
     }
 }
 
-/// What the value of a check is worth.
+/// Worth of the value of a check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Standing {
@@ -743,7 +743,7 @@ mod tests {
     use super::EnergySummary;
 
     /// GOAL: of soil that stands still, the method takes no share of nothing.
-    /// ORACLE: by hand: what it took in joule, and a hundredth of a motion.
+    /// ORACLE: by hand: the loss in joule, and a hundredth of a motion.
     #[test]
     fn soil_at_rest_loses_no_share() {
         let energy = |most_kinetic: f64| EnergySummary {

@@ -1,4 +1,4 @@
-//! Bodies whose outlines come from CSV files and drawings: what is read, what is refused and why, and that the completed
+//! Bodies whose outlines come from CSV files and drawings: reading, refusals with reasons, and that the completed
 //! file carries the points themselves.
 //!
 //! The drawings in `tests/data/drawings` were written by ezdxf 1.4 (R2000 and R12).

@@ -1,6 +1,6 @@
 //! GOAL: supports that hold nothing, gaps that cells bridge and walls that soil sticks to are told with place and remedy; ground
 //! that reaches its sides, gaps as wide as cells and faces that are held are not.
-//! ORACLE: the geometry, by hand. What they do to a factor of safety: 0.48 for 1.35, 1.35 for 1.06, 1.29 without failure of the wall.
+//! ORACLE: the geometry, by hand. Their effect on a factor of safety: 0.48 for 1.35, 1.35 for 1.06, 1.29 without failure of the wall.
 
 use igimp_input::CaseFile;
 
@@ -68,22 +68,22 @@ fn slope(left: f64, right: f64, more: &str) -> String {
 #[test]
 fn a_side_that_the_ground_does_not_reach_is_told() {
     assert!(!slope(0.0, 30.0, "").contains("touches no soil"));
-    let told = slope(-8.0, 30.0, "");
+    let text = slope(-8.0, 30.0, "");
     for part in [
         "left = \"roller\" touches no soil: the ground ends at x = 0 m, 8 m before this side",
         "upright face of 10 m",
         "let [grid] domain end at x = 0 m, or hold x there by [[boundaries.boxes]]",
         "left = \"free\" if the face is meant to be free",
     ] {
-        assert!(told.contains(part), "{told}");
+        assert!(text.contains(part), "{text}");
     }
-    assert!(!told.contains("right ="), "{told}");
-    let told = slope(0.0, 32.0, "");
+    assert!(!text.contains("right ="), "{text}");
+    let text = slope(0.0, 32.0, "");
     assert!(
-        told.contains("the ground ends at x = 30 m, 2 m before this side"),
-        "{told}"
+        text.contains("the ground ends at x = 30 m, 2 m before this side"),
+        "{text}"
     );
-    assert!(told.contains("upright face of 5 m"), "{told}");
+    assert!(text.contains("upright face of 5 m"), "{text}");
 }
 
 /// A face less than a cell before a side is held by it: half of a trench of 0.6 m and 1.2 m on cells of 1 m has F = 9.2 and 4.4 for 0.91.
@@ -102,23 +102,23 @@ fn a_gap_at_a_side_is_told() {
         warnings(&format!("{HEAD}{}{half}", grid(0.0, 30.0)))
     };
     for at in [29.7, 29.4, 29.1] {
-        let told = trench(at);
+        let text = trench(at);
         let held =
             "right = \"roller\" holds an upright face of 6 m across a gap narrower than a cell";
-        assert!(told.contains(held), "{at}: {told}");
-        assert!(!told.contains("left ="), "{told}");
+        assert!(text.contains(held), "{at}: {text}");
+        assert!(!text.contains("left ="), "{text}");
     }
     for at in [30.0, 29.0, 28.0] {
         assert!(!trench(at).contains("across a gap"), "{at}");
     }
     // All of the ground ends so.
     let block = body("block", "clay", &rectangle([0.3, 0.0], [30.0, 9.0]));
-    let told = warnings(&format!("{HEAD}{}{block}", grid(0.0, 30.0)));
+    let text = warnings(&format!("{HEAD}{}{block}", grid(0.0, 30.0)));
     assert!(
-        told.contains("left = \"roller\" holds an upright face of 9 m"),
-        "{told}"
+        text.contains("left = \"roller\" holds an upright face of 9 m"),
+        "{text}"
     );
-    assert!(!told.contains("touches no soil"), "{told}");
+    assert!(!text.contains("touches no soil"), "{text}");
     // A slope that comes down to the side, as steep as two to one.
     let corners = [
         [0.0, 0.0],
@@ -128,24 +128,24 @@ fn a_gap_at_a_side_is_told() {
         [0.0, 9.0],
     ];
     let steep = body("steep", "clay", &corners);
-    let told = warnings(&format!("{HEAD}{}{steep}", grid(0.0, 30.0)));
-    assert!(!told.contains("across a gap"), "{told}");
+    let text = warnings(&format!("{HEAD}{}{steep}", grid(0.0, 30.0)));
+    assert!(!text.contains("across a gap"), "{text}");
 }
 
-/// What stands on the soil beside a face does not hold it: the half of a footing had 3.1 for 5.6 of its resistance.
+/// Structures on the soil beside a face do not hold it: the half of a footing had 3.1 for 5.6 of its resistance.
 #[test]
 fn a_footing_beside_a_face_does_not_hold_it() {
     let ground = body("ground", "clay", &rectangle([0.0, 0.0], [30.0, 9.0]));
     let footing = "[[rigid]]\nname = \"footing\"\ntype = \"rectangle\"\nfrom = [\"-1 m\", \"9 m\"]\nto = [\"4 m\", \"11 m\"]\nfrom_start = true\n";
-    let told = warnings(&format!("{HEAD}{}{ground}{footing}", grid(-2.0, 30.0)));
-    assert!(told.contains("left = \"roller\" touches no soil"), "{told}");
+    let text = warnings(&format!("{HEAD}{}{ground}{footing}", grid(-2.0, 30.0)));
+    assert!(text.contains("left = \"roller\" touches no soil"), "{text}");
 }
 
 #[test]
 fn a_face_that_is_meant_or_held_is_not_told() {
     let quiet = |more: &str| {
-        let told = slope(-8.0, 30.0, more);
-        assert!(!told.contains("touches no soil"), "{told}");
+        let text = slope(-8.0, 30.0, more);
+        assert!(!text.contains("touches no soil"), "{text}");
     };
     quiet("[boundaries]\nleft = \"free\"\n");
     quiet(
@@ -164,20 +164,20 @@ fn a_face_that_is_meant_or_held_is_not_told() {
             [0.0, 10.0],
         ];
         let heap = body("heap", "clay", &corners);
-        let told = warnings(&format!("{HEAD}{}{heap}", grid(0.0, 40.0)));
-        assert!(!told.contains("touches no soil"), "{told}");
+        let text = warnings(&format!("{HEAD}{}{heap}", grid(0.0, 40.0)));
+        assert!(!text.contains("touches no soil"), "{text}");
     }
     // A structure beside which there is room.
     let block = body("block", "concrete", &rectangle([0.0, 0.0], [4.0, 9.0]));
     let search = "[[stages]]\nname = \"safety\"\ntype = \"strength-reduction\"\n";
     let head = HEAD.replace(search, "");
-    let told = warnings(&format!("{head}{}{block}", grid(0.0, 10.0)));
-    assert!(!told.contains("touches no soil"), "{told}");
+    let text = warnings(&format!("{head}{}{block}", grid(0.0, 10.0)));
+    assert!(!text.contains("touches no soil"), "{text}");
 }
 
 #[test]
 fn the_same_in_space() {
-    let told = |back: f64, more: &str| {
+    let warnings_of = |back: f64, more: &str| {
         let text = format!(
             "{HEAD}[grid]\ncell = \"1 m\"\ndomain = {{ x = [\"0 m\", \"12 m\"], y = [\"0 m\", \"{back} m\"], z = [\"0 m\", \"9 m\"] }}\n\
              [[bodies]]\nname = \"slope\"\nmaterial = \"clay\"\nacross = [\"0 m\", \"5 m\"]\n\
@@ -185,8 +185,8 @@ fn the_same_in_space() {
         );
         warnings(&text.replace("title =", "analysis = \"3d\"\ntitle ="))
     };
-    assert!(!told(5.0, "").contains("touches no soil"));
-    let text = told(7.0, "");
+    assert!(!warnings_of(5.0, "").contains("touches no soil"));
+    let text = warnings_of(7.0, "");
     assert!(
         text.contains(
             "back = \"roller\" touches no soil: the ground ends at y = 5 m, 2 m before this side"
@@ -195,7 +195,7 @@ fn the_same_in_space() {
     );
     // The mean height of the face: 12 by 4 m and a half of 8 by 4 m, over 12 m.
     assert!(text.contains("upright face of 6 m"), "{text}");
-    let text = told(7.0, "[boundaries]\nback = \"free\"\n");
+    let text = warnings_of(7.0, "[boundaries]\nback = \"free\"\n");
     assert!(!text.contains("touches no soil"), "{text}");
 }
 
@@ -218,16 +218,16 @@ fn notched(width: f64) -> String {
 
 #[test]
 fn a_notch_narrower_than_a_cell_is_told() {
-    let told = notched(0.3);
+    let text = notched(0.3);
     assert!(
-        told.contains(
+        text.contains(
             "a gap of 0.3 m, narrower than a cell, cuts into body `ground` at (12.35 m, 7 m)"
         ),
-        "{told}"
+        "{text}"
     );
     assert!(
-        told.contains("make it as wide as a cell, or cells as small as the gap"),
-        "{told}"
+        text.contains("make it as wide as a cell, or cells as small as the gap"),
+        "{text}"
     );
     assert!(!notched(1.0).contains("a gap of"), "{}", notched(1.0));
     assert!(!notched(1.5).contains("a gap of"));
@@ -251,10 +251,10 @@ fn a_body_that_is_taken_away_leaves_a_gap() {
             parts.concat()
         ))
     };
-    let told = dig(0.4, true);
+    let text = dig(0.4, true);
     assert!(
-        told.contains("a gap of 0.4 m parts body `right` from body `left` at (10.2 m, "),
-        "{told}"
+        text.contains("a gap of 0.4 m parts body `right` from body `left` at (10.2 m, "),
+        "{text}"
     );
     assert!(!dig(0.4, false).contains("a gap of"));
     assert!(!dig(1.0, true).contains("a gap of"));
@@ -262,7 +262,7 @@ fn a_body_that_is_taken_away_leaves_a_gap() {
 
 #[test]
 fn a_gap_in_space_is_told() {
-    let told = |far: f64| {
+    let warnings_of = |far: f64| {
         let text = format!(
             "{HEAD}[grid]\ncell = \"1 m\"\ndomain = {{ x = [\"0 m\", \"8 m\"], y = [\"0 m\", \"5 m\"], z = [\"0 m\", \"6 m\"] }}\n\
              [[bodies]]\nname = \"a\"\nmaterial = \"clay\"\nbox = {{ from = [\"0 m\", \"0 m\", \"0 m\"], to = [\"8 m\", \"2.4 m\", \"5 m\"] }}\n\
@@ -270,13 +270,13 @@ fn a_gap_in_space_is_told() {
         );
         warnings(&text.replace("title =", "analysis = \"3d\"\ntitle ="))
     };
-    let text = told(2.7);
+    let text = warnings_of(2.7);
     assert!(
         text.contains("a gap of 0.3 m parts body `b` from body `a` at ("),
         "{text}"
     );
-    assert!(!told(2.4).contains("a gap of"));
-    assert!(!told(3.4).contains("a gap of"));
+    assert!(!warnings_of(2.4).contains("a gap of"));
+    assert!(!warnings_of(3.4).contains("a gap of"));
 }
 
 #[test]
@@ -291,17 +291,17 @@ fn a_thin_wall_in_soil_is_told() {
         ];
         warnings(&format!("{HEAD}{}{}", grid(0.0, 30.0), parts.concat()))
     };
-    let told = wall(1.0, "concrete", 5.0);
+    let text = wall(1.0, "concrete", 5.0);
     assert!(
-        told.contains("body `wall` is 1 cell thick with soil on both sides, and hardly yields"),
-        "{told}"
+        text.contains("body `wall` is 1 cell thick with soil on both sides, and hardly yields"),
+        "{text}"
     );
     assert!(
-        told.contains("a wall that soil slides along is a [[rigid]] body"),
-        "{told}"
+        text.contains("a wall that soil slides along is a [[rigid]] body"),
+        "{text}"
     );
-    let told = wall(0.2, "concrete", 5.0);
-    assert!(told.contains("body `wall` is 0.2 cells thick"), "{told}");
+    let text = wall(0.2, "concrete", 5.0);
+    assert!(text.contains("body `wall` is 0.2 cells thick"), "{text}");
     for quiet in [wall(4.0, "concrete", 5.0), wall(1.0, "clay", 5.0)] {
         assert!(!quiet.contains("hardly yields"), "{quiet}");
     }

@@ -207,9 +207,9 @@ fn on_a_slanting_seam(thickness: f64) -> CaseFile {
 /// infinite slope at its base, F = c/(γ H sin β cos β) + tan φ/tan β = 1.26.
 #[test]
 fn slanting_seams_are_measured_across() {
-    for (thickness, told) in [(1.5, Some("2.819")), (2.0, Some("3.759")), (2.2, None)] {
+    for (thickness, cells) in [(1.5, Some("2.819")), (2.0, Some("3.759")), (2.2, None)] {
         let warnings = on_a_slanting_seam(thickness).warnings();
-        match told {
+        match cells {
             Some(cells) => assert!(
                 warnings.contains(&format!(
                     "body `seam` is {cells} cells thick, across its slope, where four are needed"

@@ -64,9 +64,9 @@ fn the_sides_of_a_body_keep_their_place() {
     assert_eq!(refinements(&mid_cell), [1, 3, 5]);
     assert!(differences(&mid_cell).is_empty());
     assert!(differences(&with("0.1 m", "0.5 m")).is_empty());
-    let told = differences(&with("0.1 m", "0.475 m"));
-    assert_eq!(told.len(), 1);
-    assert!(told[0].contains("`footing` at x = 0.475 m"), "{}", told[0]);
+    let diff = differences(&with("0.1 m", "0.475 m"));
+    assert_eq!(diff.len(), 1);
+    assert!(diff[0].contains("`footing` at x = 0.475 m"), "{}", diff[0]);
 }
 
 #[test]

@@ -98,11 +98,11 @@ fn a_step_is_a_material_for_each_layer() {
         let varied = with(soil, key, &step(low, high));
         let one = run(&text((&varied, &varied), LOADED));
         let [apart, one] = [&apart, &one].map(|run| {
-            let own = &run.body.particles;
+            let particles = &run.body.particles;
             (
-                own.sigma.clone(),
-                own.displacement.clone(),
-                own.internal.clone(),
+                particles.sigma.clone(),
+                particles.displacement.clone(),
+                particles.internal.clone(),
             )
         });
         assert!(apart == one, "{key} of {}", soil.lines().next().unwrap());
@@ -122,7 +122,7 @@ fn a_stage_makes_soil_of_parameters_that_vary() {
     let weight = "unit_weight = \"20 kN/m3\"";
     let treated = SOIL.replace("10 kPa", "14 kPa");
     let [first, second] =
-        ["2", "9"].map(|own| with(&treated, "dilation", &format!("\"{own} deg\"")));
+        ["2", "9"].map(|angle| with(&treated, "dilation", &format!("\"{angle} deg\"")));
     let varied = with(&treated, "dilation", &step("\"2 deg\"", "\"9 deg\""));
     let materials = format!(
         "[materials.first]\n{weight}\n{first}[materials.second]\n{weight}\n{second}[materials.varied]\n{weight}\n{varied}"
@@ -222,10 +222,10 @@ fn particles_have_the_law_of_their_place() {
             1.5 * (4.0 - y)
         };
         let mut parameters = material.strength.parameters().into_iter();
-        let value = parameters.find(|own| own.key == key).unwrap().value;
+        let value = parameters.find(|entry| entry.key == key).unwrap().value;
         let found = match value {
-            igimp_model::ParameterValue::Angle(own) => own.to_degrees(),
-            igimp_model::ParameterValue::Number(own) => own,
+            igimp_model::ParameterValue::Angle(angle) => angle.to_degrees(),
+            igimp_model::ParameterValue::Number(value) => value,
             other => panic!("{other:?}"),
         };
         assert!((found - expected).abs() < 1e-12, "{found} for {expected}");
@@ -233,7 +233,7 @@ fn particles_have_the_law_of_their_place() {
         assert_eq!(format!("{law:?}"), format!("{:?}", model.laws[number]));
     }
     let tables = setup::tables(&case);
-    let materials = tables.iter().find(|own| own.title == "Materials").unwrap();
+    let materials = tables.iter().find(|t| t.title == "Materials").unwrap();
     insta::assert_snapshot!(
         materials
             .rows
@@ -273,7 +273,7 @@ fn laws_of_places_are_made_anew_when_a_run_goes_on() {
     );
 }
 
-/// Soil, a key and a value that makes no sense of it, with what stands beside.
+/// Soil, a key and a value that makes no sense of it, with the text beside.
 const WRONG: [(&str, &str, &str, &str); 17] = [
     (
         SOIL,
@@ -408,8 +408,8 @@ fn a_place_without_a_law_is_named() {
         "{ depths = [\"0 m\", \"4 m\"], values = [4, 1] }",
     );
     let mut case: Case<2> = file(&text((&clay, &clay), LOADED)).case().clone();
-    let own = &mut case.materials[0].profiles.parameters[0];
-    own.1 = own.1.clone().scaled(|value| 0.6 * value);
+    let entry = &mut case.materials[0].profiles.parameters[0];
+    entry.1 = entry.1.clone().scaled(|value| 0.6 * value);
     let error = Model::new(&case).unwrap_err().to_string();
     assert!(error.contains("`low`") && error.contains("at ("), "{error}");
 }

@@ -1,5 +1,5 @@
-//! Materials whose strength, stiffness and weight vary with the level: what is refused and why, and what
-//! particles are given.
+//! Materials whose strength, stiffness and weight vary with the level: refusals with reasons, and
+//! values of particles.
 
 use std::fmt::Write;
 
@@ -101,7 +101,7 @@ const COHESIONS: [&str; 27] = [
     "[\"1 kPa\", \"2 kPa\"]",
 ];
 
-/// Edits of other values to such profiles.
+/// Edits of other values to profiles.
 const EDITS: [(&str, &str); 3] = [
     ("gradient = \"1.5 MPa/m\"", "gradient = \"-1.5 MPa/m\""),
     (
@@ -114,7 +114,7 @@ const EDITS: [(&str, &str); 3] = [
     ),
 ];
 
-/// Profiles of the friction that make no sense, with what stands beside them.
+/// Profiles of the friction that make no sense, with the text beside them.
 const FRICTIONS: [(&str, &str); 5] = [
     ("{ at_top = \"20 deg\", gradient = \"1 kPa/m\" }", ""),
     (

@@ -1,4 +1,4 @@
-//! Properties of materials by points in the plane: what is read, what particles are given, and what is refused and why.
+//! Properties of materials by points in the plane: reading, values of particles, refusals.
 
 use std::fmt::Write as _;
 
@@ -36,7 +36,7 @@ name = "weight"
 type = "gravity"
 "#;
 
-/// What is put over the plane \[kPa\]: bilinear.
+/// Strength over the plane \[kPa\]: bilinear.
 fn exact([x, y]: [f64; 2]) -> f64 {
     20.0 + 3.0 * x - 4.0 * y + 2.0 * x * y
 }
@@ -107,8 +107,8 @@ fn particles_have_what_the_raster_has() {
         assert!(!explained.contains(".csv"), "{explained}");
         let again = CaseFile::parse("again.toml", &explained, &[]).unwrap();
         assert_eq!(again.case().materials, case.materials);
-        let told = format!("{:?}", setup::tables(case));
-        assert!(told.contains("12 kPa to 40 kPa by a raster of"), "{told}");
+        let rows = format!("{:?}", setup::tables(case));
+        assert!(rows.contains("12 kPa to 40 kPa by a raster of"), "{rows}");
     }
 }
 
@@ -191,7 +191,7 @@ fn numbers_and_angles_come_from_rasters() {
     ];
     let folder = Folder::new(
         "raster-numbers",
-        &files.each_ref().map(|own| (own.0, own.1.as_str())),
+        &files.each_ref().map(|file| (file.0, file.1.as_str())),
     );
     let soil = "model = \"mohr-coulomb\"\ncohesion = \"5 kPa\"\nfriction = \"30 deg\"\ndilation = DILATION";
     let text = TEXT.replace("model = \"tresca\"\ncu = CU", soil);

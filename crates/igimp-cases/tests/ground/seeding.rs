@@ -124,11 +124,11 @@ fn check(sample: &Sample) -> Result<(), TestCaseError> {
         let mut part = [0; 2];
         for d in 0..2 {
             // The domain is a whole part of its cell: parts of equal size, each at its place.
-            let own = size[d] / *per_direction as f64;
-            prop_assert!((2.0 * seed.half_length[d] - own).abs() <= 1e-14 * size[d]);
-            let place = (seed.x[d] - corner[d]) / own - 0.5;
+            let edge = size[d] / *per_direction as f64;
+            prop_assert!((2.0 * seed.half_length[d] - edge).abs() <= 1e-14 * size[d]);
+            let place = (seed.x[d] - corner[d]) / edge - 0.5;
             prop_assert!(
-                (place - place.round()).abs() <= 1e-13 * far / own,
+                (place - place.round()).abs() <= 1e-13 * far / edge,
                 "{place}"
             );
             prop_assert!(place.round() >= 0.0 && place.round() < *per_direction as f64);

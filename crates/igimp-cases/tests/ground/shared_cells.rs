@@ -5,7 +5,7 @@ use igimp_cases::run::{Model, in_memory};
 use igimp_input::CaseFile;
 
 fn case(text: &str, set: &[&str]) -> CaseFile {
-    let set: Vec<String> = set.iter().map(|&own| own.to_owned()).collect();
+    let set: Vec<String> = set.iter().map(|&entry| entry.to_owned()).collect();
     CaseFile::parse("case.toml", text, &set).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -148,8 +148,8 @@ fn a_boundary_that_slopes_does_not_lock() {
     let [none, some, associated] =
         ["0", "8", "25"].map(|angle| factor(&format!("materials.soil.dilation=\"{angle} deg\"")));
     println!("{none} {some} {associated}");
-    for own in [some, associated] {
-        assert!((own / none - 1.0).abs() < 0.02, "{none} {own}");
+    for found in [some, associated] {
+        assert!((found / none - 1.0).abs() < 0.02, "{none} {found}");
     }
 }
 
@@ -226,11 +226,11 @@ fn laws_of_places_are_shared_alike() {
         let constant = case(&strip(2.125, 5.0), &[mixed]);
         let varied = case(&strip(2.125, 5.0), &[mixed, dilation, poisson]);
         let [(constant, one), (varied, other)] =
-            [&constant, &varied].map(|own| Model::new(own.case()).unwrap());
+            [&constant, &varied].map(|file| Model::new(file.case()).unwrap());
         let [one, other] = [&one.body.particles, &other.body.particles];
         assert!(one.ratios == other.ratios && varied.laws.len() > constant.laws.len());
         for (&a, &b) in std::iter::zip(&one.law, &other.law) {
-            let [a, b] = [&constant.laws[a], &varied.laws[b]].map(|own| format!("{own:?}"));
+            let [a, b] = [&constant.laws[a], &varied.laws[b]].map(|law| format!("{law:?}"));
             assert_eq!(a, b);
         }
     }

@@ -75,7 +75,7 @@ fn parsed(friction: &str, residual: f64, overrides: &[&str]) -> Result<CaseFile,
     let text = TEXT
         .replace("FRICTION", friction)
         .replace("RESIDUAL", &residual.to_string());
-    let overrides: Vec<String> = overrides.iter().map(|&own| own.to_owned()).collect();
+    let overrides: Vec<String> = overrides.iter().map(|&entry| entry.to_owned()).collect();
     CaseFile::parse("block.toml", &text, &overrides).map_err(|error| error.to_string())
 }
 
@@ -146,12 +146,12 @@ fn friction_that_softens_and_varies_is_told() {
     assert_eq!(refused("\"35 deg\""), None);
     assert_eq!(refused(&from(32.0)), None);
     let message = refused(&from(0.0)).unwrap();
-    let (_, told) = message
+    let (_, rest) = message
         .split_once("is not possible where its friction is ")
         .unwrap();
-    let angle: f64 = told.split(' ').next().unwrap().parse().unwrap();
+    let angle: f64 = rest.split(' ').next().unwrap().parse().unwrap();
     assert!(
-        (5.0..30.0).contains(&angle) && told.contains("stress snaps back"),
+        (5.0..30.0).contains(&angle) && rest.contains("stress snaps back"),
         "{message}"
     );
 }

@@ -1,4 +1,4 @@
-//! Bodies in space from case files: what their keys make, what files they take, and what is refused and why.
+//! Bodies in space from case files: shapes by key, files, and refusals with reasons.
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -91,8 +91,8 @@ fn raster(hole: Option<&str>) -> String {
     for row in 0..4 {
         for column in 0..5 {
             let height = format!("{}", 2.0 + 0.5 * f64::from(column));
-            let own = hole.filter(|_| row == 1 && column == 3).unwrap_or(&height);
-            write!(text, "{own} ").unwrap();
+            let entry = hole.filter(|_| row == 1 && column == 3).unwrap_or(&height);
+            write!(text, "{entry} ").unwrap();
         }
         text.push('\n');
     }

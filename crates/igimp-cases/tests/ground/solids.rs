@@ -29,7 +29,7 @@ fn grid() -> Grid<3> {
     ])
 }
 
-/// The sum of the parts of a region in the cells of a grid; what is said to be whole or nothing is.
+/// The sum of the parts of a region in the cells of a grid; parts stated whole or empty are so.
 fn sum(region: &dyn Region<3>, grid: &Grid<3>, round_off: f64) -> Part<3> {
     let (mut volume, mut moment) = (0.0, [0.0; 3]);
     for cell in 0..grid.cell_count() {
@@ -157,17 +157,17 @@ fn assert_columns_are_boxes(region: &dyn Region<3>, per_direction: usize) {
     }
 }
 
-/// Volume and centroid of what triangles enclose: tetrahedra from the origin.
+/// Volume and centroid within triangles: tetrahedra from the origin.
 fn enclosed(triangles: &[[Point; 3]]) -> Part<3> {
     let (mut volume, mut moment) = (0.0, [0.0; 3]);
     for [a, b, c] in triangles {
-        let own = (a[0] * (b[1] * c[2] - b[2] * c[1])
+        let piece = (a[0] * (b[1] * c[2] - b[2] * c[1])
             + a[1] * (b[2] * c[0] - b[0] * c[2])
             + a[2] * (b[0] * c[1] - b[1] * c[0]))
             / 6.0;
-        volume += own;
+        volume += piece;
         for axis in 0..3 {
-            moment[axis] += own * (a[axis] + b[axis] + c[axis]) / 4.0;
+            moment[axis] += piece * (a[axis] + b[axis] + c[axis]) / 4.0;
         }
     }
     Part {
@@ -529,10 +529,10 @@ fn hull(points: &[Point]) -> Vec<[Point; 3]> {
                     u[0] * v[1] - u[1] * v[0],
                 ];
                 let side = |x: Point| -> f64 { (0..3).map(|d| normal[d] * (x[d] - a[d])).sum() };
-                let others = || (0..points.len()).filter(|own| ![i, j, k].contains(own));
-                if others().all(|own| side(points[own]) < 0.0) {
+                let others = || (0..points.len()).filter(|other| ![i, j, k].contains(other));
+                if others().all(|other| side(points[other]) < 0.0) {
                     faces.push([a, b, c]);
-                } else if others().all(|own| side(points[own]) > 0.0) {
+                } else if others().all(|other| side(points[other]) > 0.0) {
                     faces.push([a, c, b]);
                 }
             }

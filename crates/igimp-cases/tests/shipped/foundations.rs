@@ -84,7 +84,7 @@ fn anisotropic_footing_carries_what_slip_lines_give() {
         assert!({ stages }.all(|stage| stage.consolidation.is_none()));
         ran.end_of("load-settlement")
     };
-    let [own, plain] = [end(&[]), end(&isotropic)];
+    let [shipped, plain] = [end(&[]), end(&isotropic)];
     let exact = |shear: f64, passive: f64| {
         let level = 0.5 * (1.0 + passive);
         let upright = shear * level / passive.sqrt();
@@ -94,16 +94,16 @@ fn anisotropic_footing_carries_what_slip_lines_give() {
             let (sine, cosine) = ((f64::from(k) + 0.5) * width).sin_cos();
             (level * sine).hypot(upright * cosine) * width
         };
-        1.0 + passive + (0..arcs).map(arc).fold(0.0, |sum, own| sum + own)
+        1.0 + passive + (0..arcs).map(arc).fold(0.0, |sum, part| sum + part)
     };
     assert!((exact(1.0, 1.0) / (2.0 + std::f64::consts::PI) - 1.0).abs() < 1e-6);
     let share = exact(0.75, 0.5) / exact(1.0, 1.0);
     println!(
-        "N {own:.4} of {plain:.4}: {:.4}, exact {share:.4}",
-        own / plain
+        "N {shipped:.4} of {plain:.4}: {:.4}, exact {share:.4}",
+        shipped / plain
     );
     between(plain, 4.9, 5.7);
-    between(own / plain / share, 0.96, 1.01);
+    between(shipped / plain / share, 0.96, 1.01);
     let fast = |duration: &str| {
         let rate = "materials.clay.rate={ per_log_cycle = 0.1, reference = \"1 %/h\" }";
         let time = format!("stages.0.consolidation={{ duration = \"{duration}\" }}");
@@ -127,7 +127,7 @@ fn dense_sand_footing_remembers_and_scales() {
         assert!(ran.run.failure.is_none());
         ran.curve("load-settlement")
     };
-    let own = pressures(&[]);
+    let curve = pressures(&[]);
     let at = |settlement: f64, points: &[[f64; 2]]| {
         let pair = points.windows(2).find(|pair| {
             let [from, to] = [pair[0][0], pair[1][0]];
@@ -136,11 +136,11 @@ fn dense_sand_footing_remembers_and_scales() {
         let [from, to] = *pair.unwrap().as_array::<2>().unwrap();
         from[1] + (to[1] - from[1]) * (settlement - from[0]) / (to[0] - from[0])
     };
-    let turned = own
+    let turned = curve
         .iter()
         .position(|point| (point[0] - 50.0).abs() < 1e-9)
         .unwrap();
-    let (pushed, after) = own.split_at(turned + 1);
+    let (pushed, after) = curve.split_at(turned + 1);
     let lowest = after
         .iter()
         .position(|point| (point[0] - 45.0).abs() < 1e-9)
@@ -153,7 +153,7 @@ fn dense_sand_footing_remembers_and_scales() {
         "stages.3.bodies=[{ body = 'footing', y = '-1 mm' }]",
         "stages.4.bodies=[{ body = 'footing', y = '-49 mm' }]",
     ]);
-    let same = own.last().unwrap()[1] / straight.last().unwrap()[1];
+    let same = curve.last().unwrap()[1] / straight.last().unwrap()[1];
     println!(
         "relieved {stiffer:.3} times as stiff, {returned:.4} of the load back, {same:.4} of it at the end"
     );
@@ -169,11 +169,11 @@ fn dense_sand_footing_remembers_and_scales() {
         "materials.sand.reference_pressure=200 kPa",
         "loads.0.pressure=34 kPa",
     ]);
-    for (heavy, own) in heavy.iter().zip(&own) {
-        assert_eq!(heavy[0].to_bits(), own[0].to_bits());
+    for (heavy, point) in heavy.iter().zip(&curve) {
+        assert_eq!(heavy[0].to_bits(), point[0].to_bits());
         assert!(
-            (heavy[1] - 2.0 * own[1]).abs() <= 1e-6 * 2000.0,
-            "{heavy:?} {own:?}"
+            (heavy[1] - 2.0 * point[1]).abs() <= 1e-6 * 2000.0,
+            "{heavy:?} {point:?}"
         );
     }
 }
@@ -207,7 +207,7 @@ fn circular_footing_resumes_on_other_threads() {
     let most = particles
         .hoop_strain
         .iter()
-        .fold(0.0, |most: f64, own| most.max(own.abs()));
+        .fold(0.0, |most: f64, strain| most.max(strain.abs()));
     assert!(most > 0.01, "{most}");
     let volume = |of: &dyn Fn(usize) -> f64| (0..particles.len()).map(of).sum::<f64>();
     let ratio = volume(&|k| particles.volume(k)) / volume(&|k| particles.volume0[k]);

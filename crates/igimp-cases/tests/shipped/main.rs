@@ -73,7 +73,7 @@ impl<const D: usize> Ran<D> {
         self.curve(name).last().unwrap()[1]
     }
 
-    /// What a check measured.
+    /// The value that a check measured.
     fn measured(&self, quantity: &str) -> f64 {
         let rows = &self.run.summary.checks;
         let row = rows.iter().find(|row| row.check.quantity == quantity);

@@ -42,14 +42,14 @@ fn a_boulder_falls_freely_and_digs_itself_in() {
     let way = ran.curve("settlement");
     let falling: Vec<_> = way
         .iter()
-        .filter(|own| own[0] > 0.1 && own[1] < 0.45)
+        .filter(|point| point[0] > 0.1 && point[1] < 0.45)
         .collect();
     assert!(falling.len() > 3);
-    for own in falling {
-        between(own[1] / (0.5 * 9.81 * own[0] * own[0]), 0.999, 1.001);
+    for [time, fall] in falling {
+        between(fall / (0.5 * 9.81 * time * time), 0.999, 1.001);
     }
     let energy = ran.curve("energy");
-    let fastest = energy.iter().map(|own| own[1]).fold(0.0, f64::max);
+    let fastest = energy.iter().map(|point| point[1]).fold(0.0, f64::max);
     // Of 20 kN/m over 0.5 m.
     between(fastest, 9.5e3, 10.6e3);
     // The work of the load that limit analysis gives a pipe at every depth (Merifield, White and Randolph 2009: 5.3 (w/D)^0.25 D c_u
@@ -83,7 +83,7 @@ fn a_block_that_falls_flat_is_not_thrown_back() {
             let energy = ran.run.summary.stages[1].energy.unwrap();
             assert!(energy.contact > 0.0, "{energy:?}");
             let way = ran.curve("settlement");
-            way.iter().map(|own| own[1]).fold(0.0, f64::max) - drop
+            way.iter().map(|point| point[1]).fold(0.0, f64::max) - drop
         });
         println!("a block that falls by {drop} m digs itself in by {dug:?}");
         between(dug[0] / dug[1], 0.97, 1.03);
@@ -125,7 +125,7 @@ fn a_column_of_sand_collapses_until_it_rests() {
     let fastest = ran
         .curve("kinetic-energy")
         .iter()
-        .map(|own| own[1])
+        .map(|point| point[1])
         .fold(0.0, f64::max);
     between(ran.end_of("kinetic-energy") / fastest, 0.0, 1e-4);
 }

@@ -24,17 +24,17 @@ fn numbers(text: &str) -> Vec<(f64, f64)> {
     words.filter_map(number).collect()
 }
 
-/// Holds what the row of a case tells as computed.
+/// Holds the computed numbers in the row of a case.
 fn hold(name: &str, found: &[f64]) {
     let begin = format!("| [`{name}`]");
     let page = page();
     let row = page.lines().find(|line| line.starts_with(&begin)).unwrap();
-    let told = numbers(row.split('|').nth(4).unwrap());
-    assert_eq!(told.len(), found.len(), "{name}: {row}");
-    for (&(told, half), found) in std::iter::zip(&told, found) {
+    let printed = numbers(row.split('|').nth(4).unwrap());
+    assert_eq!(printed.len(), found.len(), "{name}: {row}");
+    for (&(value, half), found) in std::iter::zip(&printed, found) {
         assert!(
-            (found - told).abs() <= half * (1.0 + 1e-9),
-            "{name}: {told} on the page, {found} computed"
+            (found - value).abs() <= half * (1.0 + 1e-9),
+            "{name}: {value} on the page, {found} computed"
         );
     }
 }
@@ -73,66 +73,66 @@ impl<const D: usize> Ran<D> {
 
 /// A test each, so that they run side by side.
 macro_rules! held {
-    ($($name:ident, $run:ident, $own:ident: $found:expr;)*) => {
+    ($($name:ident, $run:ident, $case:ident: $found:expr;)*) => {
         const HELD: &[&str] = &[$(stringify!($name)),*];
         $(#[test]
         fn $name() {
-            let $own = $run(stringify!($name), &[]);
+            let $case = $run(stringify!($name), &[]);
             hold(stringify!($name), &$found);
         })*
     };
 }
 
 held! {
-    column, ran, own: [own.measured("height over initial height")];
-    von_mises_slope, ran, own: [own.measured("largest displacement")];
-    mohr_coulomb_slope, ran, own: own.factor_of_safety(0);
-    slope, ran, own: own.factor_of_safety(1);
-    layered_slope, ran, own: own.factor_of_safety(1);
-    undrained_slope, ran, own: [own.measured("load-displacement at 0.05")];
-    sensitive_slope, ran, own: [own.measured("factor of safety")];
-    rock_slope, ran, own: own.factor_of_safety(1);
-    vertical_cut, ran, own: [own.measured("load-displacement at 0.02")];
-    nailed_cut, ran, own: [own.measured("factor of safety")];
-    bearing_capacity, ran, own: [own.measured("load-settlement, end")];
-    circular_footing, ran, own: [own.measured("load-settlement, end")];
-    anisotropic_footing, ran, own: [own.measured("load-settlement, end")];
-    dense_sand_footing, ran, own: [1e-3 * own.end_of("load-settlement")];
-    two_layer_footing, ran, own: [own.measured("q over cu of the crust")];
-    strip_load, ran, own: [own.measured("load-settlement, end")];
-    embankment, ran, own: [own.measured("vertical stress in the clay below the axis")];
-    k0_ground, ran, own: own.exact();
-    soft_clay_fill, ran, own: [own.measured("settlement")];
-    cantilever, ran, own: [own.measured("small deflection in mm"), own.measured("deflection at 1")];
-    earthquake_slope, ran, own: [own.slid(), own.displaced()];
-    column_collapse, ran, own: [own.rested()];
-    landslide_dynamic, ran, own: [own.displaced()];
-    impact, ran, own: [own.deepest("settlement") - 0.5];
-    block, ran, own: [own.measured("height on the axis at rest")];
-    contact_footing, ran, own: [
-        own.measured("resistance N at a fifth of the width"),
-        own.measured("resistance N after it was pulled"),
+    column, ran, case: [case.measured("height over initial height")];
+    von_mises_slope, ran, case: [case.measured("largest displacement")];
+    mohr_coulomb_slope, ran, case: case.factor_of_safety(0);
+    slope, ran, case: case.factor_of_safety(1);
+    layered_slope, ran, case: case.factor_of_safety(1);
+    undrained_slope, ran, case: [case.measured("load-displacement at 0.05")];
+    sensitive_slope, ran, case: [case.measured("factor of safety")];
+    rock_slope, ran, case: case.factor_of_safety(1);
+    vertical_cut, ran, case: [case.measured("load-displacement at 0.02")];
+    nailed_cut, ran, case: [case.measured("factor of safety")];
+    bearing_capacity, ran, case: [case.measured("load-settlement, end")];
+    circular_footing, ran, case: [case.measured("load-settlement, end")];
+    anisotropic_footing, ran, case: [case.measured("load-settlement, end")];
+    dense_sand_footing, ran, case: [1e-3 * case.end_of("load-settlement")];
+    two_layer_footing, ran, case: [case.measured("q over cu of the crust")];
+    strip_load, ran, case: [case.measured("load-settlement, end")];
+    embankment, ran, case: [case.measured("vertical stress in the clay below the axis")];
+    k0_ground, ran, case: case.exact();
+    soft_clay_fill, ran, case: [case.measured("settlement")];
+    cantilever, ran, case: [case.measured("small deflection in mm"), case.measured("deflection at 1")];
+    earthquake_slope, ran, case: [case.slid(), case.displaced()];
+    column_collapse, ran, case: [case.rested()];
+    landslide_dynamic, ran, case: [case.displaced()];
+    impact, ran, case: [case.deepest("settlement") - 0.5];
+    block, ran, case: [case.measured("height on the axis at rest")];
+    contact_footing, ran, case: [
+        case.measured("resistance N at a fifth of the width"),
+        case.measured("resistance N after it was pulled"),
     ];
-    eccentric_footing, ran, own: [own.measured("resistance N")];
-    wall, ran, own: [own.measured("active pressure"), own.measured("passive pressure")];
-    plate_anchor, ran, own: [own.measured("break-out factor")];
-    wedge, ran, own: [own.measured("resistance P over depth and strength")];
-    dam_drawdown, ran, own: [
-        own.measured("factor of safety dry"),
-        own.measured("factor of safety with a full pool"),
+    eccentric_footing, ran, case: [case.measured("resistance N")];
+    wall, ran, case: [case.measured("active pressure"), case.measured("passive pressure")];
+    plate_anchor, ran, case: [case.measured("break-out factor")];
+    wedge, ran, case: [case.measured("resistance P over depth and strength")];
+    dam_drawdown, ran, case: [
+        case.measured("factor of safety dry"),
+        case.measured("factor of safety with a full pool"),
     ];
-    dam_seepage, ran, own: [own.measured("factor of safety")];
-    consolidation, ran, own: [own.measured("degree after one year"), own.measured("degree after ten years")];
-    vertical_drain, ran, own: [own.measured("degree after 20 days"), own.measured("degree after 100 days")];
-    well, ran, own: [1e3 * own.measured("discharge")];
-    excavation, ran, own: [
-        own.measured("effective vertical stress at rest"),
-        own.measured("effective vertical stress below the pit"),
+    dam_seepage, ran, case: [case.measured("factor of safety")];
+    consolidation, ran, case: [case.measured("degree after one year"), case.measured("degree after ten years")];
+    vertical_drain, ran, case: [case.measured("degree after 20 days"), case.measured("degree after 100 days")];
+    well, ran, case: [1e3 * case.measured("discharge")];
+    excavation, ran, case: [
+        case.measured("effective vertical stress at rest"),
+        case.measured("effective vertical stress below the pit"),
     ];
-    embankment_lifts, ran, own: [own.measured("factor of safety")];
-    footing_3d, ran_in_space, own: [own.measured("bearing capacity factor")];
-    slope_3d, ran_in_space, own: [own.measured("stability number")];
-    landslide_3d, ran_in_space, own: [own.measured("factor of safety")];
+    embankment_lifts, ran, case: [case.measured("factor of safety")];
+    footing_3d, ran_in_space, case: [case.measured("bearing capacity factor")];
+    slope_3d, ran_in_space, case: [case.measured("stability number")];
+    landslide_3d, ran_in_space, case: [case.measured("factor of safety")];
 }
 
 #[test]

@@ -58,9 +58,9 @@ fn layered_slope_is_safer_when_one_layer_alone_weakens() {
 /// ORACLE: the envelope is concave: a tangent lies above it, and the chord from no normal stress to that of the height below it.
 #[test]
 fn rock_slope_lies_between_chord_and_tangent() {
-    let own = ran("rock_slope", &[]);
-    assert_eq!(own.outcomes(), [Completed, Completed]);
-    let rock = own.factor_of_safety(1);
+    let ran = ran("rock_slope", &[]);
+    assert_eq!(ran.outcomes(), [Completed, Completed]);
+    let rock = ran.factor_of_safety(1);
     let file = file("rock_slope", &[]);
     let Strength::HoekBrown(hoek) = file.case().materials[0].strength else {
         panic!("no rock")
@@ -138,7 +138,7 @@ fn nails_hold_a_cut_that_would_fall() {
     let overrides = ["grid.cell=0.5 m", "stages.0.steps=3"];
     let held = ran("nailed_cut", &overrides);
     assert_eq!(held.outcomes(), [Completed, Completed]);
-    // Circles through the nails, and what the mesh adds.
+    // Circles through the nails, and the share of the mesh.
     between(held.factor_of_safety(1)[0], 1.15, 1.35);
     let most = held.end_of("force in the middle nails");
     between(most, 10e3, 30e3);

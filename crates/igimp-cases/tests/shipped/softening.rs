@@ -141,7 +141,7 @@ fn sensitive_slope_has_one_factor_with_a_length() {
         assert_eq!(ran.outcomes(), [Completed, Completed]);
         let [stands, fails] = ran.factor_of_safety(1);
         let remembered = ran.run.body.particles.internal.iter();
-        let spread = remembered.fold(0.0, |most: f64, own| most.max(own[1]));
+        let spread = remembered.fold(0.0, |most: f64, state| most.max(state[1]));
         assert_eq!(spread > 0.0, !length.is_empty());
         0.5 * (stands + fails)
     };

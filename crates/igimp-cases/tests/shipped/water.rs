@@ -46,7 +46,7 @@ fn water_seeps_through_a_dam() {
     between(ran.measured("factor of safety"), 1.06, 1.13);
     let discharges = &ran.run.summary.setup;
     let title = "Seepage: discharges";
-    let discharges = discharges.iter().find(|own| own.title == title).unwrap();
+    let discharges = discharges.iter().find(|t| t.title == title).unwrap();
     let of = |place: &str| {
         let row = discharges.rows.iter().find(|row| row[1].starts_with(place));
         row.unwrap()[2].parse::<f64>().unwrap()
@@ -68,9 +68,9 @@ fn a_dam_recovers_from_a_rapid_drawdown() {
     assert_eq!(ran.outcomes(), [Completed; 10]);
     let factor = |name: &str| {
         let mut stages = ran.run.summary.stages.iter();
-        let own = stages.find(|own| own.name == name).unwrap();
-        let own = own.safety.as_ref().unwrap();
-        0.5 * (own.stable.unwrap() + own.failed.unwrap())
+        let stage = stages.find(|stage| stage.name == name).unwrap();
+        let safety = stage.safety.as_ref().unwrap();
+        0.5 * (safety.stable.unwrap() + safety.failed.unwrap())
     };
     let names = [
         "full pool",
@@ -118,11 +118,11 @@ fn consolidates(name: &str, alone: &Ran<2>) {
     assert!(run.summary.checks.iter().all(|check| check.pass));
     let stages = run.summary.stages.iter();
     let flowed: Vec<_> = stages
-        .filter_map(|own| own.consolidation.as_ref())
+        .filter_map(|stage| stage.consolidation.as_ref())
         .collect();
     assert_eq!(flowed.len(), 2);
-    for own in flowed {
-        assert!(own.missing < 1e-8 * own.outflow, "{own:?}");
+    for flow in flowed {
+        assert!(flow.missing < 1e-8 * flow.outflow, "{flow:?}");
     }
     run_into((&file, file.case()), &stopped, Start::Afresh, Some(20));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build();
@@ -152,7 +152,7 @@ fn settled(time: f64, least: f64) -> f64 {
         let (mut upper, mut reduced) = (vec![0.0; cells], vec![0.0; cells]);
         for k in 0..cells {
             let [below, above] = [if k == 0 { 0.0 } else { between(k - 1) }, between(k)];
-            let [below, above] = [below, above].map(|own| by_step * own);
+            let [below, above] = [below, above].map(|rate| by_step * rate);
             let [before, value] = if k == 0 {
                 [0.0; 2]
             } else {
@@ -199,8 +199,8 @@ fn an_embankment_on_soft_clay_gains_strength_with_time() {
     let ran = ran("embankment_time", &["grid.cell=1.5 m", "output.figures=[]"]);
     assert_eq!(ran.outcomes(), [Completed; 9]);
     let stages = ran.run.summary.stages.iter();
-    let safety = stages.filter_map(|own| own.safety.as_ref());
-    let factors: Vec<f64> = safety.map(|own| own.stable.unwrap()).collect();
+    let safety = stages.filter_map(|stage| stage.safety.as_ref());
+    let factors: Vec<f64> = safety.map(|search| search.stable.unwrap()).collect();
     println!("factors of safety {factors:.3?}");
     assert!(factors[0] > 1.0 && factors[1] > 1.1 * factors[0] && factors[2] > factors[1]);
 }
@@ -212,7 +212,7 @@ fn a_slower_push_carries_more() {
     let ran = ran("penetration_rate", &["output.figures=[]"]);
     assert_eq!(ran.outcomes(), [Completed; 6]);
     let stages = ran.run.summary.stages.iter();
-    let peaks: Vec<f64> = stages.filter_map(|own| own.peak_resistance).collect();
+    let peaks: Vec<f64> = stages.filter_map(|stage| stage.peak_resistance).collect();
     println!("undrained, a minute, half a year, fifty years, drained: {peaks:.0?} N/m");
     let [undrained, minute, half, years, drained] = peaks[..] else {
         panic!("five pushes");
@@ -227,7 +227,7 @@ fn a_slower_push_carries_more() {
 fn drains_without_thickness_and_two_ways_of_water_are_refused() {
     let refused = |settings: &[&str]| {
         let text = find("consolidation").unwrap().text;
-        let settings: Vec<String> = settings.iter().map(|&own| own.to_owned()).collect();
+        let settings: Vec<String> = settings.iter().map(|&entry| entry.to_owned()).collect();
         CaseFile::parse("consolidation", text, &settings)
             .unwrap_err()
             .to_string()

@@ -34,7 +34,7 @@ fn sand_presses_on_a_wall_alike_wherever_its_face_is() {
         let file = find("wall").unwrap().case_file(overrides(place)).unwrap();
         let run = in_memory(file.case()).unwrap();
         assert!(run.failure.is_none(), "{place}: {:?}", run.failure);
-        let curve = |name: &str| run.curves.iter().find(|own| own.name == name).unwrap();
+        let curve = |name: &str| run.curves.iter().find(|curve| curve.name == name).unwrap();
         let force = curve("active").points(0, 1).last().unwrap()[1];
         assert!((force / rankine - 1.0).abs() < 0.01, "{place}: {force}");
     }

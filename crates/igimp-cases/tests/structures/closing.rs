@@ -10,7 +10,7 @@ fn parsed(text: &str) -> CaseFile {
     file.unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The last point of the curve of a run that reached its end, and what was warned of.
+/// The last point of the curve of a run that reached its end, and its warnings.
 fn end_of<const D: usize>(run: &Run<D>) -> (Vec<f64>, String) {
     assert!(run.failure.is_none(), "{:?}", run.failure);
     let end = run.curves[0].rows.last().unwrap().clone();
@@ -23,7 +23,7 @@ fn ended(text: &str) -> (Vec<f64>, String) {
 }
 
 /// The force under a plate that starts a gap above a slab 2 m high and goes down by a way \[m\] in so many steps, per metre run \[N/m\],
-/// and what was warned of.
+/// and the warnings.
 fn pressed([gap, way]: [f64; 2], geometry: &str, steps: usize) -> (f64, String) {
     let text = format!(
         r#"
@@ -73,10 +73,10 @@ figures = []
 /// GOAL: a body that no soil is near on a geometry that stays as it is drawn is told of, with the gap; one that is near, or moves, is not.
 #[test]
 fn a_gap_that_never_closes_is_told() {
-    let told = "\"plate\" stands 0.2 m off all soil";
+    let remark = "\"plate\" stands 0.2 m off all soil";
     let (force, warned) = pressed([0.2, 0.205], "given", 10);
     assert!(
-        force.abs() < 1e-6 && warned.contains(told),
+        force.abs() < 1e-6 && warned.contains(remark),
         "{force} {warned}"
     );
     for (gap, geometry) in [(0.2, "moving"), (0.02, "given"), (0.0, "given")] {

@@ -92,10 +92,10 @@ fn resistance_holds_across_lines_of_the_grid() {
     let plane = in_memory(text(&PLANE).case()).unwrap().curves[0].points(0, 1);
     let slice = in_memory(text(&SLICE).case_in_space()).unwrap().curves[0].points(0, 1);
     let (last, steps) = (plane[plane.len() - 1][1], plane.len());
-    for (name, own, thickness) in [("plane", &plane, 1.0), ("slice", &slice, 0.25)] {
-        assert_eq!(own.len(), steps, "{name}");
+    for (name, curve, thickness) in [("plane", &plane, 1.0), ("slice", &slice, 0.25)] {
+        assert_eq!(curve.len(), steps, "{name}");
         let mut most = 0.0_f64;
-        for [_, resistance] in own.iter().copied() {
+        for [_, resistance] in curve.iter().copied() {
             let carried = resistance / thickness;
             assert!(
                 most - carried < 0.04 * last,
@@ -103,7 +103,7 @@ fn resistance_holds_across_lines_of_the_grid() {
             );
             most = most.max(carried);
         }
-        let off = own[steps - 1][1] / thickness / last - 1.0;
+        let off = curve[steps - 1][1] / thickness / last - 1.0;
         assert!(off.abs() < 0.02, "{name}: {off}");
     }
 }

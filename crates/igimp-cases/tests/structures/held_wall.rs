@@ -108,7 +108,7 @@ fn soil_at_rest_presses_on_a_held_wall_wherever_its_face_is() {
         for (points, steps) in [(4, 2), (4, 10), (9, 3)] {
             let found = forces(&text(place, (points, steps), k % 2 == 1, ""));
             let label = format!("{place}, {points} points, {steps} steps: {found:?}");
-            assert!(found.iter().all(|own| (own - 1.0).abs() < 0.02), "{label}");
+            assert!(found.iter().all(|x| (x - 1.0).abs() < 0.02), "{label}");
             assert!((found[1] / found[0] - 1.0).abs() < 1e-4, "{label}");
         }
     }
@@ -127,10 +127,10 @@ fn stress_beside_a_held_wall_is_that_of_all_the_soil() {
         let face = 1.0 + 0.25 * place;
         let level = |particle: usize| (particles.x[particle][1] / 0.125) as usize;
         let stress = |from: f64, to: f64, at: usize| -> f64 {
-            let own = (0..particles.len())
+            let row = (0..particles.len())
                 .filter(|&k| (from..to).contains(&(particles.x[k][0] - face)) && level(k) == at);
-            let own: Vec<f64> = own.map(|k| particles.sigma[k][0][0]).collect();
-            own.iter().sum::<f64>() / own.len() as f64
+            let stresses: Vec<f64> = row.map(|k| particles.sigma[k][0][0]).collect();
+            stresses.iter().sum::<f64>() / stresses.len() as f64
         };
         // In the cell at the surface stress is a tenth of a kPa or two too small where the face cuts it, for a cause that is not known.
         for at in 1..14 {

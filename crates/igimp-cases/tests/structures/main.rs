@@ -23,7 +23,7 @@ use igimp_input::CaseFile;
 
 use crate::edits::{Edits, edited};
 
-/// What is said of a file, its name and its text, after each edit on its own.
+/// Messages on a file, its name and its text, after each edit on its own.
 fn messages_of_each(file: (&str, &str), edits: Edits<'_>) -> String {
     let each: Vec<Edits<'_>> = edits.chunks(1).collect();
     messages::messages(file, &each)

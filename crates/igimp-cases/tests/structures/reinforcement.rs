@@ -1,5 +1,5 @@
-//! Reinforcement in case files and runs: what is refused and why, what stages do with it, and what a run
-//! writes of it.
+//! Reinforcement in case files and runs: refusals with reasons, changes by stages, and
+//! results.
 
 use std::fs;
 use std::path::PathBuf;
@@ -85,13 +85,13 @@ fn an_anchor_is_stressed_and_locked_off() {
         assert!((force / expected - 1.0).abs() < 1e-12, "{forces:?}");
     }
     assert!(forces[10] > 12e3, "{forces:?}");
-    let told: Vec<usize> = run
+    let counts: Vec<usize> = run
         .summary
         .stages
         .iter()
-        .map(|own| own.reinforcement.len())
+        .map(|stage| stage.reinforcement.len())
         .collect();
-    assert_eq!(told, [1, 2, 3, 3]);
+    assert_eq!(counts, [1, 2, 3, 3]);
     let [.., loaded, _] = &run.summary.stages[..] else {
         panic!("there are four stages");
     };
@@ -141,9 +141,9 @@ fn frames_pictures_and_report_show_the_members() {
     let (folder, _) = written();
     let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
     let soil = read("paraview/particles.pvd");
-    let own = read("paraview/reinforcement.pvd");
-    assert_eq!(soil.replace("particles_", "reinforcement_"), own);
-    let last = own.matches("<DataSet").count();
+    let frames = read("paraview/reinforcement.pvd");
+    assert_eq!(soil.replace("particles_", "reinforcement_"), frames);
+    let last = frames.matches("<DataSet").count();
     let frame = read(&format!("paraview/reinforcement_{last:04}.vtu"));
     for name in ["force [N/m], tension +", "limit [N/m]", "strain"] {
         assert!(frame.contains(&format!("Name=\"{name}\"")), "{name}");
@@ -171,7 +171,7 @@ fn bits_do_not_depend_on_threads() {
         let case = parsed(&[]).into_case();
         let run = pool.build().unwrap().install(|| in_memory(&case).unwrap());
         let members = run.body.reinforcement.iter();
-        let bars = members.flat_map(|own| own.segments.iter().map(|bar| bar.state.force.to_bits()));
+        let bars = members.flat_map(|m| m.segments.iter().map(|bar| bar.state.force.to_bits()));
         let soil = run.body.particles.x.iter().flatten().map(|x| x.to_bits());
         bars.chain(soil).collect()
     };
@@ -211,14 +211,14 @@ fn a_prestress_is_not_locked_off_in_part_unsaid() {
     case.checks.clear();
     case.stages[1].stop_when.displacement = Some(1e-9);
     let run = in_memory(&case).unwrap();
-    let told = run
+    let lines = run
         .summary
         .warnings
         .iter()
         .filter(|text| text.contains("locked off"));
-    let told: Vec<&String> = told.collect();
-    assert_eq!(told.len(), 1, "{:?}", run.summary.warnings);
-    assert!(told[0].contains("\"anchor\" at 4 of 12 kN/m"), "{told:?}");
+    let lines: Vec<&String> = lines.collect();
+    assert_eq!(lines.len(), 1, "{:?}", run.summary.warnings);
+    assert!(lines[0].contains("\"anchor\" at 4 of 12 kN/m"), "{lines:?}");
 }
 
 // GOAL: members in soil that is dug, or that comes later, are refused as the file is read: the run would end there.

@@ -1,4 +1,4 @@
-//! Rigid bodies in case files and runs: what is refused and why, and that bodies do what stages say.
+//! Rigid bodies in case files and runs: refusals with reasons, and that bodies do what stages say.
 
 use igimp_cases::run::{Run, in_memory};
 use igimp_input::CaseFile;
@@ -188,11 +188,11 @@ fn bodies_end_where_their_stages_say() {
     near(end("pipe.settlement"), 50e-3);
     assert!(end("footing.rotation") > 0.0 && end("pipe.resistance") > 0.0);
     assert!((0.0..0.1).contains(&end("pipe.penetration")));
-    let told = &run.summary.warnings;
-    assert_eq!(told.len(), 2, "{told:?}");
+    let warnings = &run.summary.warnings;
+    assert_eq!(warnings.len(), 2, "{warnings:?}");
     assert!(
-        told.iter().all(|text| text.contains("was set down by")),
-        "{told:?}"
+        warnings.iter().all(|text| text.contains("was set down by")),
+        "{warnings:?}"
     );
     // It was pressed in at once: the gap that settlement left was closed.
     let table = run
@@ -530,7 +530,7 @@ figures = []
         let file = CaseFile::parse("block.toml", text, &changes).unwrap();
         let run = in_memory(file.case()).unwrap();
         assert!(run.failure.is_none(), "{:?}", run.failure);
-        let curve = run.curves.iter().find(|own| own.name == "push").unwrap();
+        let curve = run.curves.iter().find(|c| c.name == "push").unwrap();
         let levers: Vec<f64> = (curve.points(0, 1).into_iter().skip(2))
             .map(|[rotation, force]| {
                 let (sin, cos) = (-rotation).sin_cos();

@@ -1,4 +1,4 @@
-//! What a run writes of rigid bodies: contact along their sides, frames, pictures, the report.
+//! Results of rigid bodies: contact along their sides, frames, pictures, the report.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,7 @@ fn table(path: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
     let row = |row: csv::StringRecord| row.iter().map(|cell| cell.parse().unwrap()).collect();
     (
         header,
-        reader.records().map(|own| row(own.unwrap())).collect(),
+        reader.records().map(|line| row(line.unwrap())).collect(),
     )
 }
 
@@ -124,11 +124,11 @@ fn a_body_of_revolution_has_no_force_across_its_axis() {
     assert!((carried / 100e3 - 1.0).abs() < 1e-6, "{carried}");
     let (header, history) = table(&folder.join("rigid/disc.csv"));
     let last = |name: &str| {
-        let column = header.iter().position(|own| own == name).unwrap();
+        let column = header.iter().position(|entry| entry == name).unwrap();
         history.last().unwrap()[column]
     };
     let across = [last("force_x_[N]"), last("moment_[N m]")];
-    assert!(across.iter().all(|own| own.abs() < 1e-15), "{across:?}");
+    assert!(across.iter().all(|x| x.abs() < 1e-15), "{across:?}");
     assert!(last("force_y_[N]").abs() < 1e-6 * 100e3);
 }
 

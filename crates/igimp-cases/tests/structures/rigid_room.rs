@@ -60,7 +60,7 @@ fn run(text: &str, edits: Edits<'_>) -> Run<2> {
     in_memory(file.case()).unwrap()
 }
 
-fn told<'r>(run: &'r Run<2>, words: &str) -> Vec<&'r String> {
+fn warnings<'r>(run: &'r Run<2>, words: &str) -> Vec<&'r String> {
     let all = run.summary.warnings.iter();
     all.filter(|text| text.contains(words)).collect()
 }
@@ -98,14 +98,14 @@ fn bodies_that_overlap_as_drawn_are_refused() {
 fn bodies_that_meet_on_their_way_are_told_of_once() {
     // A gap of 100 mm, closed in steps of 50 mm: the third step brings them 50 mm into each other.
     let run = run(TWO, &[]);
-    let told = told(&run, "have met");
-    assert_eq!(told.len(), 1, "{:?}", run.summary.warnings);
+    let found = warnings(&run, "have met");
+    assert_eq!(found.len(), 1, "{:?}", run.summary.warnings);
     assert!(
-        told[0].contains("\"r\" and \"s\"") && told[0].contains("overlap by 0.05 m"),
-        "{told:?}"
+        found[0].contains("\"r\" and \"s\"") && found[0].contains("overlap by 0.05 m"),
+        "{found:?}"
     );
     let apart = self::run(TWO, &[("x = \"200 mm\"", "x = \"90 mm\"")]);
-    assert!(self::told(&apart, "have met").is_empty());
+    assert!(warnings(&apart, "have met").is_empty());
 }
 
 const ONE: &str = r#"
@@ -178,13 +178,13 @@ fn a_body_on_ground_that_settled_unevenly_is_held() {
     assert!(
         case.failure.is_none(),
         "{:?}",
-        case.failure.map(|own| own.error)
+        case.failure.map(|failure| failure.error)
     );
     let force = case.curves[0].rows.last().unwrap()[1];
     assert!((force / -12e3 - 1.0).abs() < 1e-9, "{force}");
     // 50 mm are most of the half-length of a particle, 62.5 mm: soil would be moved there without strain.
-    let told = told(&case, "without strain");
-    assert_eq!(told.len(), 1, "{:?}", case.summary.warnings);
+    let found = warnings(&case, "without strain");
+    assert_eq!(found.len(), 1, "{:?}", case.summary.warnings);
     let stays = run(ONE, &[("x = \"50 mm\"", "x = \"1 mm\"")]);
-    assert!(self::told(&stays, "without strain").is_empty());
+    assert!(warnings(&stays, "without strain").is_empty());
 }

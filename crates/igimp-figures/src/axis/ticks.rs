@@ -1,4 +1,4 @@
-//! Where an axis carries ticks, and what they say.
+//! Places of the ticks of an axis, and their labels.
 //!
 //! Linear axes step by 1, 2 or 5 times a power of ten; very large or small numbers share one factor
 //! that is written at the end of the axis. Logarithmic axes mark decades, or 1-2-5 within them when

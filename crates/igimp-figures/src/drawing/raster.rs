@@ -52,8 +52,8 @@ pub(crate) fn rgb(drawing: &Drawing, width: u32) -> Result<Rgb, FigureError> {
     )]
     let height = (drawing.height * scale).ceil() as u32;
     let pixmap = painted(drawing, (width, height), scale)?;
-    let own = pixmap.data().as_chunks::<4>().0;
-    let rgb = own.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
+    let rgba = pixmap.data().as_chunks::<4>().0;
+    let rgb = rgba.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
     Ok(Rgb {
         width,
         height,
@@ -80,7 +80,7 @@ fn painted(
     Ok(pixmap)
 }
 
-/// An image whose area begins at a whole point, over what is there.
+/// An image whose area begins at a whole point, over the image there.
 fn draw_image(pixmap: &mut Pixmap, image: &Image, scale: f64) {
     let (left, top) = (pixels(image.area.left), pixels(image.area.top));
     let Some(mut shown) = Pixmap::new(image.width, image.height) else {

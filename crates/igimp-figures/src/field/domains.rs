@@ -45,9 +45,9 @@ impl Tally {
 
     /// A note about missing domains.
     pub(crate) fn note(&self) -> Option<String> {
-        let part = |count: usize, what: &str| {
+        let part = |count: usize, reason: &str| {
             let (count, all) = (grouped(count), grouped(self.domains));
-            format!("{what}: {count} of {all} domains")
+            format!("{reason}: {count} of {all} domains")
         };
         let value = (self.without_value > 0).then(|| part(self.without_value, "no value (grey)"));
         let place =

@@ -130,12 +130,12 @@ fn water_mark(drawing: &mut Drawing, lines: &[Vec<Point>]) {
     };
     let mut left = MARK_AT * length(line);
     for pair in line.windows(2) {
-        let own = length(pair);
-        if left > own {
-            left -= own;
+        let span = length(pair);
+        if left > span {
+            left -= span;
             continue;
         }
-        let t = left / own.max(f64::MIN_POSITIVE);
+        let t = left / span.max(f64::MIN_POSITIVE);
         let [x, y] = [0, 1].map(|k| pair[0][k] + t * (pair[1][k] - pair[0][k]));
         let (wide, high) = MARK;
         drawing.items.push(Item::Shape(Shape {

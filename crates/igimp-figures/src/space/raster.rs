@@ -165,10 +165,10 @@ impl<'a> Painter<'a> {
                 if self.depth[place] == f32::NEG_INFINITY {
                     self.depth[place] = f32::MIN;
                 }
-                for (own, grey) in self.rgb[place].iter_mut().zip(grey) {
+                for (tone, grey) in self.rgb[place].iter_mut().zip(grey) {
                     let mixed =
-                        OPACITY * light * f64::from(grey) + (1.0 - OPACITY) * f64::from(*own);
-                    *own = mixed.round().min(255.0) as u8;
+                        OPACITY * light * f64::from(grey) + (1.0 - OPACITY) * f64::from(*tone);
+                    *tone = mixed.round().min(255.0) as u8;
                 }
             },
         );
@@ -186,8 +186,8 @@ impl<'a> Painter<'a> {
                 let (mut sum, mut count) = ([0_usize; 3], 0);
                 for place in samples {
                     count += 1;
-                    for (sum, own) in sum.iter_mut().zip(self.rgb[place]) {
-                        *sum += usize::from(own);
+                    for (sum, tone) in sum.iter_mut().zip(self.rgb[place]) {
+                        *sum += usize::from(tone);
                     }
                 }
                 rgba.extend(sum.map(|sum| (sum / count.max(1)) as u8));
@@ -243,7 +243,7 @@ impl Placed {
             let ends = [0.0, u[axis], v[axis], u[axis] + v[axis]];
             let low = ends.iter().fold(f64::MAX, |a, &b| a.min(b)) + self.at[axis] - 1.0;
             let high = ends.iter().fold(f64::MIN, |a, &b| a.max(b)) + self.at[axis] + 1.0;
-            // Casts take what is negative to zero.
+            // Casts take negative numbers to zero.
             (low.floor() as usize).min(most)..(high.ceil() as usize).min(most)
         };
         let inside = |share: f64, more: f64| share >= -more && share <= 1.0 + more;

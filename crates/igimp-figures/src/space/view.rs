@@ -50,7 +50,7 @@ pub(crate) struct Projection {
     pub(crate) right: [f64; 3],
     pub(crate) up: [f64; 3],
     pub(crate) eye: [f64; 3],
-    /// Least and largest corner of what is seen.
+    /// Least and largest corner of the view.
     pub(crate) extent: [[f64; 3]; 2],
     centre: [f64; 3],
     /// Points by metre.

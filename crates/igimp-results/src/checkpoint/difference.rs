@@ -6,7 +6,7 @@ use igimp_text::on_a_line;
 
 use super::CheckpointError;
 
-/// Tables that say nothing of what is computed.
+/// Tables that say nothing of the computation.
 const BESIDE: [&str; 1] = ["output"];
 
 /// Keys of `[case]` and `[solver]` that say nothing of it.
@@ -23,7 +23,7 @@ const BESIDE_KEYS: [&str; 6] = [
 const SHOWN: usize = 60;
 
 /// The same error with the first key that differs between the completed case in a results folder and another one, if there is
-/// such a file and such a key.
+/// a file and a key.
 pub fn named(error: CheckpointError, kept: &Path, completed: &str) -> CheckpointError {
     match error {
         CheckpointError::OtherCase { path, .. } => {
@@ -40,11 +40,11 @@ fn first(before: &str, now: &str) -> Option<String> {
     let (before, now) = (keys(before), keys(now));
     let of = |all: &[(String, String)], key: &str| -> Option<String> {
         let mut all = all.iter();
-        all.find(|own| own.0 == key).map(|own| own.1.clone())
+        all.find(|pair| pair.0 == key).map(|pair| pair.1.clone())
     };
     let shown =
         |value: Option<String>| value.map_or_else(|| "not set".to_owned(), |value| clipped(&value));
-    let mut all = before.iter().chain(&now).map(|own| &own.0);
+    let mut all = before.iter().chain(&now).map(|pair| &pair.0);
     let key = all.find(|key| of(&before, key) != of(&now, key))?;
     Some(format!(
         "{} was {} and is {}",
@@ -54,7 +54,7 @@ fn first(before: &str, now: &str) -> Option<String> {
     ))
 }
 
-/// The keys of a completed case in its order, each with the text of its value; lists of tables count from 1. What stands in
+/// The keys of a completed case in its order, each with the text of its value; lists of tables count from 1. A value in
 /// several lines is one text.
 fn keys(text: &str) -> Vec<(String, String)> {
     let mut found: Vec<(String, String)> = Vec::new();
@@ -68,9 +68,9 @@ fn keys(text: &str) -> Vec<(String, String)> {
         }
         if let Some(name) = trimmed
             .strip_prefix("[[")
-            .and_then(|own| own.strip_suffix("]]"))
+            .and_then(|rest| rest.strip_suffix("]]"))
         {
-            let known = lists.iter().position(|own| own.0 == name);
+            let known = lists.iter().position(|list| list.0 == name);
             let place = known.unwrap_or_else(|| {
                 lists.push((name.to_owned(), 0));
                 lists.len() - 1
@@ -79,7 +79,7 @@ fn keys(text: &str) -> Vec<(String, String)> {
             table = format!("{name}.{}", lists[place].1);
         } else if let Some(name) = trimmed
             .strip_prefix('[')
-            .and_then(|own| own.strip_suffix(']'))
+            .and_then(|rest| rest.strip_suffix(']'))
             && !line.starts_with(' ')
         {
             name.clone_into(&mut table);
@@ -101,7 +101,7 @@ fn keys(text: &str) -> Vec<(String, String)> {
         let table = key.split('.').next().unwrap_or_default();
         BESIDE.contains(&table) || BESIDE_KEYS.contains(&key)
     };
-    found.retain(|own| !is_beside(&own.0));
+    found.retain(|pair| !is_beside(&pair.0));
     found
 }
 
@@ -144,29 +144,29 @@ mod tests {
     #[test]
     fn the_first_key_that_differs_is_named() {
         let with = |from: &str, to: &str| first(CASE, &CASE.replace(from, to));
-        let told = |text: &str| Some(text.to_owned());
+        let words = |text: &str| Some(text.to_owned());
         assert_eq!(first(CASE, CASE), None);
         assert_eq!(
             with("10 kPa", "12 kPa"),
-            told("materials.soil.cohesion was \"10 kPa\" and is \"12 kPa\"")
+            words("materials.soil.cohesion was \"10 kPa\" and is \"12 kPa\"")
         );
         assert_eq!(
             with("# tension_cutoff is not set", "tension_cutoff = \"0 kPa\""),
-            told("materials.soil.tension_cutoff was not set and is \"0 kPa\"")
+            words("materials.soil.tension_cutoff was not set and is \"0 kPa\"")
         );
         assert_eq!(
             with("two", "three"),
-            told("bodies.2.name was \"two\" and is \"three\"")
+            words("bodies.2.name was \"two\" and is \"three\"")
         );
         assert_eq!(
             with("[\"1 m\", \"0 m\"],", "[\"2 m\", \"0 m\"],"),
-            told(
+            words(
                 "bodies.1.polygon was [ [\"0 m\", \"0 m\"], [\"1 m\", \"0 m\"], ] and is [ [\"0 m\", \"0 m\"], [\"2 m\", \"0 m\"], ]"
             )
         );
         assert_eq!(
             with("a # b", "a # c"),
-            told("case.title was \"a # b\" and is \"a # c\"")
+            words("case.title was \"a # b\" and is \"a # c\"")
         );
         assert_eq!(with("author = \"A\"", "author = \"B\""), None);
         assert_eq!(with("folder = \"a\"", "folder = \"b\""), None);

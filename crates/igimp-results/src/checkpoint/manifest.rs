@@ -1,4 +1,4 @@
-//! `meta.json`: what a checkpoint is, whose it is, and what its arrays must look like.
+//! `meta.json`: kind, owner and arrays of a checkpoint.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -82,7 +82,7 @@ pub fn seal(manifest: &str) -> String {
     }
 }
 
-/// Whether a manifest says what was sealed, its sum being these digits.
+/// Whether a manifest is as it was sealed, its sum being these digits.
 fn is_sealed(manifest: &str, sum: &str) -> bool {
     manifest
         .rsplit_once(sum)
@@ -225,7 +225,7 @@ impl StateEntry {
         }
     }
 
-    /// Remembers what an array looks like.
+    /// Remembers the size and the sum of an array.
     pub(super) fn note(&mut self, array: &str, bytes: &[u8]) {
         let entry = FileEntry {
             bytes: bytes.len() as u64,

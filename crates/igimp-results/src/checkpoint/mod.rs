@@ -3,7 +3,7 @@
 //! A checkpoint is a folder: `meta.json`, and for each named state (a [`Body`]) a folder of `.npy`
 //! arrays. `meta.json` holds the format version, the program, the fingerprint of the case, a value
 //! of the caller, for each array its length in bytes and its SHA-256, and its own SHA-256
-//! ([`seal`]); whoever changes an array in numpy writes all three anew.
+//! ([`seal`]); a change of an array in numpy writes all three anew.
 //!
 //! | array | shape | |
 //! |---|---|---|
@@ -152,7 +152,7 @@ fn write_to_last<const D: usize>(
 /// The checkpoint that was written last and is whole; none in a folder without checkpoints.
 ///
 /// # Errors
-/// If there are checkpoints and none can be read, what is wrong with the one written last;
+/// If there are checkpoints and none can be read, the error of the one written last;
 /// [`CheckpointError::File`].
 pub fn newest(folder: &Path) -> Result<Option<PathBuf>, CheckpointError> {
     let mut found = list(folder)?;
@@ -160,7 +160,7 @@ pub fn newest(folder: &Path) -> Result<Option<PathBuf>, CheckpointError> {
     first_whole(found)
 }
 
-/// What is wrong with the checkpoints that were written after the given one, or whose time of writing
+/// Errors of the checkpoints that were written after the given one, or whose time of writing
 /// cannot be read: [`newest`] passes over them.
 ///
 /// # Errors
@@ -182,7 +182,7 @@ pub fn passed_over(path: &Path) -> Result<Vec<CheckpointError>, CheckpointError>
 /// was killed; none if there is neither.
 ///
 /// # Errors
-/// If there is one and it cannot be read, what is wrong with it; [`CheckpointError::File`].
+/// If there is one and it cannot be read, its error; [`CheckpointError::File`].
 pub fn named(folder: &Path, name: &str) -> Result<Option<PathBuf>, CheckpointError> {
     check_name(name)?;
     let mut found = list(folder)?;
@@ -308,7 +308,7 @@ fn list(folder: &Path) -> Result<Vec<Found>, CheckpointError> {
     Ok(found)
 }
 
-/// The first that can be read; or what is wrong with the first.
+/// The first that can be read; or the error of the first.
 fn first_whole(found: Vec<Found>) -> Result<Option<PathBuf>, CheckpointError> {
     let mut first_error = None;
     for Found { path, manifest } in found {
@@ -320,7 +320,7 @@ fn first_whole(found: Vec<Found>) -> Result<Option<PathBuf>, CheckpointError> {
     first_error.map_or(Ok(None), Err)
 }
 
-/// Whether a checkpoint can be read; or what is wrong with it.
+/// Whether a checkpoint can be read; or its error.
 fn is_whole(path: &Path, manifest: Manifest) -> Result<(), CheckpointError> {
     let in_space = manifest.states.iter().any(|entry| entry.dimensions == 3);
     if in_space {

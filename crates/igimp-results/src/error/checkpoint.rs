@@ -51,7 +51,7 @@ pub enum CheckpointError {
         /// The program that wrote it.
         found: String,
     },
-    /// The checkpoint is not what was written.
+    /// The checkpoint differs from the one written.
     #[error("the checkpoint in {} is damaged: {file}: {why}", path.display())]
     Damaged {
         /// The folder.
@@ -80,7 +80,7 @@ pub enum CheckpointError {
     },
 }
 
-/// Adds a path to what the system said.
+/// Adds a path to an error of the system.
 pub(crate) fn at(path: &Path) -> impl FnOnce(io::Error) -> CheckpointError {
     let path = path.to_path_buf();
     move |source| CheckpointError::File { path, source }
@@ -92,6 +92,6 @@ pub const FORMAT_VERSION: u64 = 5;
 /// The program and its version, as written into checkpoints.
 pub const PROGRAM: &str = concat!("igimp ", env!("CARGO_PKG_VERSION"));
 
-fn in_parentheses(what: Option<&str>) -> String {
-    what.map_or_else(String::new, |what| format!(" ({what})"))
+fn in_parentheses(text: Option<&str>) -> String {
+    text.map_or_else(String::new, |text| format!(" ({text})"))
 }

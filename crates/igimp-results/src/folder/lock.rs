@@ -28,7 +28,7 @@ impl Lock {
         Self::take(folder, File::try_lock)
     }
 
-    /// Shares a folder, which is made, with those who share it too, and keeps out who wants it alone.
+    /// Shares a folder, which is made, with others that share it, and keeps out [`Lock::alone`].
     ///
     /// # Errors
     /// As [`Lock::alone`].

@@ -60,15 +60,15 @@ pub fn admit(root: &Path, claim: &Claim, replace: Replace) -> Result<(), Results
 /// # Errors
 /// [`ResultsError::Link`].
 pub fn refuse_links(root: &Path) -> Result<(), ResultsError> {
-    let own = TABLES
+    let names = TABLES
         .into_iter()
         .chain([FIGURES, PARAVIEW, CHECKPOINT, LAST_CONVERGED]);
-    let own: Vec<&str> = own.collect();
+    let names: Vec<&str> = names.collect();
     for (number, folder) in with_meshes(root).enumerate() {
         if number > 0 {
             refuse_link(&folder)?;
         }
-        for name in &own {
+        for name in &names {
             refuse_link(&folder.join(name))?;
         }
     }
@@ -99,21 +99,21 @@ mod tests {
     fn another_case_and_a_stopped_run_are_not_cleared_unasked() {
         let scratch = Scratch::new();
         let root = scratch.path().join("results");
-        let own = claim_of("a.toml");
-        let folder = Folder::afresh(&root, &own).unwrap();
+        let original = claim_of("a.toml");
+        let folder = Folder::afresh(&root, &original).unwrap();
         everything(&folder);
         let (other, edited) = (
             claim_of("b.toml"),
             Claim {
                 input: "edited".into(),
-                ..own.clone()
+                ..original.clone()
             },
         );
         let refused = |claim: &Claim, replace: Replace| {
             scratch.hide(&admit(&root, claim, replace).unwrap_err())
         };
         insta::assert_snapshot!(
-            refused(&own, Replace::Finished),
+            refused(&original, Replace::Finished),
             @"DIR/results holds a run that was stopped and can go on: --resume goes on with it, --overwrite begins afresh, --out chooses another folder"
         );
         insta::assert_snapshot!(
@@ -130,19 +130,19 @@ mod tests {
         }
         admit(&root, &edited, Replace::Stopped).unwrap();
         admit(&root, &other, Replace::Everything).unwrap();
-        mark(&root, &own, true).unwrap();
-        admit(&root, &own, Replace::Finished).unwrap();
+        mark(&root, &original, true).unwrap();
+        admit(&root, &original, Replace::Finished).unwrap();
         admit(&root, &edited, Replace::Finished).unwrap();
         assert!(admit(&root, &other, Replace::Finished).is_err());
         let moved = Claim {
             origin: Origin::Text("moved.toml".into()),
-            ..own.clone()
+            ..original.clone()
         };
         admit(&root, &moved, Replace::Finished).unwrap();
-        // Who owns it is not known.
+        // Its owner is not known.
         fs::remove_file(root.join(".igimp")).unwrap();
         insta::assert_snapshot!(
-            refused(&own, Replace::Finished),
+            refused(&original, Replace::Finished),
             @"DIR/results holds results of an input that is not known: --out chooses another folder, --overwrite replaces them"
         );
     }
@@ -150,10 +150,10 @@ mod tests {
     #[test]
     fn a_run_that_left_nothing_to_go_on_from_is_begun_again() {
         let scratch = Scratch::new();
-        let own = claim_of("a.toml");
-        let folder = Folder::afresh(scratch.path(), &own).unwrap();
+        let claim = claim_of("a.toml");
+        let folder = Folder::afresh(scratch.path(), &claim).unwrap();
         fs::write(folder.convergence(), "stage\n").unwrap();
-        admit(scratch.path(), &own, Replace::Finished).unwrap();
+        admit(scratch.path(), &claim, Replace::Finished).unwrap();
         assert!(admit(scratch.path(), &claim_of("b.toml"), Replace::Finished).is_err());
     }
 

@@ -34,15 +34,15 @@ fn relative(path: &Path, folder: &Path) -> String {
     let (Ok(path), Ok(folder)) = (path.canonicalize(), folder.canonicalize()) else {
         return path.display().to_string();
     };
-    let (own, from) = (
+    let (to, from) = (
         path.components().collect::<Vec<_>>(),
         folder.components().collect::<Vec<_>>(),
     );
-    let common = std::iter::zip(&own, &from)
+    let common = std::iter::zip(&to, &from)
         .take_while(|(a, b)| a == b)
         .count();
     let up = from[common..].iter().map(|_| Component::ParentDir);
-    let way: PathBuf = up.chain(own[common..].iter().copied()).collect();
+    let way: PathBuf = up.chain(to[common..].iter().copied()).collect();
     way.display().to_string()
 }
 
@@ -119,9 +119,9 @@ mod tests {
             std::fs::write(at(case), "").unwrap();
         }
         let seen = |case: &str, folder: &str| Origin::File(at(case)).seen_from(&at(folder));
-        let own = seen("a/slope.toml", "a/results/slope");
-        assert_eq!(own, "../../slope.toml");
-        assert_eq!(seen("b/slope.toml", "b/results/slope"), own);
+        let path = seen("a/slope.toml", "a/results/slope");
+        assert_eq!(path, "../../slope.toml");
+        assert_eq!(seen("b/slope.toml", "b/results/slope"), path);
         assert_eq!(
             seen("b/slope.toml", "a/results/slope"),
             "../../../b/slope.toml"

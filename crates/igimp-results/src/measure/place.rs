@@ -1,6 +1,6 @@
 //! Fields at a place that is no particle (theory, eqs. 40h and 40i). Motion: the nearest particle's value, and from there on along
-//! the plane that fits it and the particles around it best. What follows from strain: the same of means over cells of the grid,
-//! for it is nearly constant in a cell. Fields that are linear are exact either way.
+//! the plane that fits it and the particles around it best. Functions of strain: the same of means over cells of the grid,
+//! for they are nearly constant in a cell. Fields that are linear are exact either way.
 
 use igimp_assembly::{Particles, SharedLaw};
 use igimp_model::Field;
@@ -53,14 +53,14 @@ impl Place {
     ) -> Self {
         let distance = |other: usize| {
             let way = way(&particles.x[other], point);
-            way.iter().map(|own| own * own).sum::<f64>().sqrt()
+            way.iter().map(|x| x * x).sum::<f64>().sqrt()
         };
-        let own = distance(particle);
+        let least = distance(particle);
         let half_length = particles.half_length[particle].iter().copied();
         let apart = TIED * half_length.fold(0.0, f64::max);
         let is_tied = |&other: &usize| {
             particles.law[other] % soils == particles.law[particle] % soils
-                && (distance(other) - own).abs() <= apart
+                && (distance(other) - least).abs() <= apart
         };
         Self {
             nearest: particles.number[particle],
@@ -81,13 +81,13 @@ impl Place {
         laws: &[SharedLaw],
         grid: &Grid<D>,
     ) -> f64 {
-        let own = |p: usize| value(field, particles, p, laws);
+        let values = |p: usize| value(field, particles, p, laws);
         let vector = |vectors: &[[f64; D]]| {
             let component = |axis: usize| self.value(particles, |p| vectors[p][axis]);
             length::<D>(&std::array::from_fn(component))
         };
         let read = |field| self.field(field, particles, laws, grid);
-        // The sum of what is read of each.
+        // The sum of the readings of each.
         let total = |effective| read(effective) + read(Field::U);
         match field {
             Field::Displacement => vector(&particles.displacement),
@@ -104,7 +104,7 @@ impl Place {
             | Field::VelocityZ
             | Field::AccelerationX
             | Field::AccelerationY
-            | Field::AccelerationZ => self.value(particles, own),
+            | Field::AccelerationZ => self.value(particles, values),
             Field::SigmaXx => total(Field::SigmaEffXx),
             Field::SigmaYy => total(Field::SigmaEffYy),
             Field::SigmaZz => total(Field::SigmaEffZz),
@@ -114,7 +114,7 @@ impl Place {
                 let excess = self.by_cells(particles, grid, field, |p| particles.excess[p]);
                 self.value(particles, |p| particles.pore_pressure[p]) + excess
             }
-            _ => self.by_cells(particles, grid, field, own),
+            _ => self.by_cells(particles, grid, field, values),
         }
     }
 
@@ -125,10 +125,10 @@ impl Place {
         particles: &Particles<D>,
         grid: &Grid<D>,
         field: Field,
-        own: impl Fn(usize) -> f64,
+        values: impl Fn(usize) -> f64,
     ) -> f64 {
         let read = |anchor: &Anchor| {
-            let (value, range) = anchor.by_cells(particles, grid, self.soils, &own)?;
+            let (value, range) = anchor.by_cells(particles, grid, self.soils, &values)?;
             Some(kept(field, value, range))
         };
         mean(self.anchors.iter().filter_map(read))
@@ -146,7 +146,7 @@ impl Place {
     }
 }
 
-/// A value that was carried on, kept to what its field can be (theory, eq. 40i). Accumulated strain and shares of strength stay
+/// A value that was carried on, kept to the range of its field (theory, eq. 40i). Accumulated strain and shares of strength stay
 /// in the range of the particles that they were read from. Deviatoric stress does where it would be negative: where it grows
 /// with the depth a line is right.
 fn kept(field: Field, value: f64, [least, most]: [f64; 2]) -> f64 {
@@ -159,7 +159,7 @@ fn kept(field: Field, value: f64, [least, most]: [f64; 2]) -> f64 {
 
 /// The mean of values; not a number without any.
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), own| (sum + own, count + 1.0));
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), x| (sum + x, count + 1.0));
     sum / count
 }
 
@@ -200,15 +200,15 @@ impl Anchor {
         particles: &Particles<D>,
         field: impl Fn(usize) -> f64,
     ) -> Option<f64> {
-        let own = field(particles.place_of(self.number)?);
+        let value = field(particles.place_of(self.number)?);
         if self.offset.iter().all(|&offset| offset == 0.0) {
-            return Some(own);
+            return Some(value);
         }
         let changes = self.around.iter().filter_map(|(number, way)| {
-            let change = field(particles.place_of(*number)?) - own;
+            let change = field(particles.place_of(*number)?) - value;
             change.is_finite().then_some((*way, change, 1.0))
         });
-        Some(own + along_plane(&self.offset, 1.0, &changes.collect::<Vec<_>>()))
+        Some(value + along_plane(&self.offset, 1.0, &changes.collect::<Vec<_>>()))
     }
 
     /// The value at the place by the means of the particle's cell and of those around it, and the range of the particles there;
@@ -221,27 +221,27 @@ impl Anchor {
         field: impl Fn(usize) -> f64,
     ) -> Option<(f64, [f64; 2])> {
         let particle = particles.place_of(self.number)?;
-        let Some(own_cell) = grid.cell_at(&particles.x[particle]) else {
-            let own = field(particle);
-            return Some((own, [own; 2]));
+        let Some(centre) = grid.cell_at(&particles.x[particle]) else {
+            let value = field(particle);
+            return Some((value, [value; 2]));
         };
-        let mut cells = means_around((particles, soils), grid, (particle, own_cell), field);
-        let ranges = cells.iter().map(|(_, own)| own.range);
-        let range = ranges.fold(NO_RANGE, |all, own| {
-            [all[0].min(own[0]), all[1].max(own[1])]
+        let mut cells = means_around((particles, soils), grid, (particle, centre), field);
+        let ranges = cells.iter().map(|(_, mean)| mean.range);
+        let range = ranges.fold(NO_RANGE, |all, range| {
+            [all[0].min(range[0]), all[1].max(range[1])]
         });
-        let Some(own) = cells.iter().position(|(cell, _)| *cell == own_cell) else {
+        let Some(index) = cells.iter().position(|(cell, _)| *cell == centre) else {
             return Some((f64::NAN, range));
         };
-        let own = cells.swap_remove(own).1.finished();
-        let offset = std::array::from_fn(|axis| self.offset[axis] - own.place[axis]);
+        let mean = cells.swap_remove(index).1.finished();
+        let offset = std::array::from_fn(|axis| self.offset[axis] - mean.place[axis]);
         let changes = cells.into_iter().map(|(_, other)| {
             let other = other.finished();
-            let way = std::array::from_fn(|axis| other.place[axis] - own.place[axis]);
-            (way, other.value - own.value, other.volume)
+            let way = std::array::from_fn(|axis| other.place[axis] - mean.place[axis]);
+            (way, other.value - mean.value, other.volume)
         });
-        let change = along_plane(&offset, own.volume, &changes.collect::<Vec<_>>());
-        Some((own.value + change, range))
+        let change = along_plane(&offset, mean.volume, &changes.collect::<Vec<_>>());
+        Some((mean.value + change, range))
     }
 }
 
@@ -249,10 +249,10 @@ impl Anchor {
 fn means_around<const D: usize>(
     (particles, soils): (&Particles<D>, usize),
     grid: &Grid<D>,
-    (particle, own_cell): (usize, [usize; D]),
+    (particle, centre): (usize, [usize; D]),
     field: impl Fn(usize) -> f64,
 ) -> Vec<([usize; D], CellMean)> {
-    let is_around = |cell: &[usize; D]| (0..D).all(|axis| cell[axis].abs_diff(own_cell[axis]) <= 1);
+    let is_around = |cell: &[usize; D]| (0..D).all(|axis| cell[axis].abs_diff(centre[axis]) <= 1);
     let mut cells: Vec<([usize; D], CellMean)> = Vec::new();
     for other in 0..particles.len() {
         if particles.law[other] % soils != particles.law[particle] % soils {
@@ -261,8 +261,8 @@ fn means_around<const D: usize>(
         let Some(cell) = grid.cell_at(&particles.x[other]).filter(is_around) else {
             continue;
         };
-        let own = field(other);
-        if !own.is_finite() {
+        let value = field(other);
+        if !value.is_finite() {
             continue;
         }
         let found = cells.iter().position(|(known, _)| *known == cell);
@@ -271,7 +271,7 @@ fn means_around<const D: usize>(
             cells.len() - 1
         });
         let place = way(&particles.x[particle], &particles.x[other]);
-        cells[found].1.add(particles.volume(other), place, own);
+        cells[found].1.add(particles.volume(other), place, value);
     }
     cells
 }
@@ -335,22 +335,22 @@ fn way<const D: usize>(from: &[f64; D], to: &[f64; D]) -> [f64; 3] {
 /// has have no slope.
 fn along_plane(offset: &[f64; 3], weight: f64, changes: &[([f64; 3], f64, f64)]) -> f64 {
     // The start is one of the points, without way and change.
-    let weights = changes.iter().map(|(.., own)| own);
-    let total = weights.fold(weight, |sum, own| sum + own);
+    let weights = changes.iter().map(|(.., factor)| factor);
+    let total = weights.fold(weight, |sum, factor| sum + factor);
     let (mut middle, mut mean) = ([0.0; 3], 0.0);
-    for (way, change, own) in changes {
-        mean += own * change / total;
+    for (way, change, factor) in changes {
+        mean += factor * change / total;
         for axis in 0..3 {
-            middle[axis] += own * way[axis] / total;
+            middle[axis] += factor * way[axis] / total;
         }
     }
     let (mut squares, mut products) = ([[0.0; 3]; 3], [0.0; 3]);
-    for (way, change, own) in changes.iter().chain(&[([0.0; 3], 0.0, weight)]) {
+    for (way, change, factor) in changes.iter().chain(&[([0.0; 3], 0.0, weight)]) {
         let from_middle: [f64; 3] = std::array::from_fn(|axis| way[axis] - middle[axis]);
         for row in 0..3 {
-            products[row] += own * from_middle[row] * (change - mean);
+            products[row] += factor * from_middle[row] * (change - mean);
             for column in 0..3 {
-                squares[row][column] += own * from_middle[row] * from_middle[column];
+                squares[row][column] += factor * from_middle[row] * from_middle[column];
             }
         }
     }
@@ -465,8 +465,8 @@ mod tests {
                 let place = place(&particles, &[x, y]).unwrap();
                 place.value(&particles, by_cell)
             });
-            let apart = values.map(|own| (own - values[4]).abs());
-            assert!(apart.iter().all(|own| *own < 1e-9), "{y}: {values:?}");
+            let apart = values.map(|value| (value - values[4]).abs());
+            assert!(apart.iter().all(|change| *change < 1e-9), "{y}: {values:?}");
         }
     }
 
@@ -481,10 +481,10 @@ mod tests {
                 let place = place(&particles, &[x, point[1]]).unwrap();
                 place.value(&particles, field)
             };
-            let [own, image] = [value(point[0], &field), value(3.0 - point[0], &mirrored)];
+            let [original, image] = [value(point[0], &field), value(3.0 - point[0], &mirrored)];
             assert!(
-                (own / image - 1.0).abs() < 1e-12,
-                "{point:?}: {own} {image}"
+                (original / image - 1.0).abs() < 1e-12,
+                "{point:?}: {original} {image}"
             );
         }
     }

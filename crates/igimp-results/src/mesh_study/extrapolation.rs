@@ -59,7 +59,7 @@ pub fn estimate(values: &[Computed], known: Convergence) -> Option<Estimate> {
         [a, b, c] => of_three([a, b, c], known),
         _ => of_two(&coarse, &fine, known),
     };
-    // What is left of the change between the last two meshes, as a share of it.
+    // The rest of the change between the last two meshes, as a share of it.
     let share = |p| share(coarse.h, fine.h, p);
     let (value, uncertainty) = match order.used() {
         None => (

@@ -147,13 +147,13 @@ fn a_negative_limit_load_is_the_mirror_image_of_a_positive_one() {
         &[1.50, 1.505, 1.51],
     ] {
         let negative: Vec<f64> = meshes.iter().map(|value| -value).collect();
-        let (own, other) = (
+        let (positive, other) = (
             of_soil(&values(meshes, 0.001)),
             of_soil(&values(&negative, 0.001)),
         );
-        assert_eq!(own.order, other.order);
-        assert!((own.value + other.value).abs() < 1e-12);
-        assert!((own.uncertainty - other.uncertainty).abs() < 1e-12);
+        assert_eq!(positive.order, other.order);
+        assert!((positive.value + other.value).abs() < 1e-12);
+        assert!((positive.uncertainty - other.uncertainty).abs() < 1e-12);
     }
     let lowered = Convergence::SOIL.of_lowered_load();
     let found = estimate(&values(&[0.50, 0.55], 0.0), lowered).unwrap();

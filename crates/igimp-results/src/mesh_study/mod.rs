@@ -129,12 +129,12 @@ pub struct StudyResult {
     /// By mesh: half the width of the interval in which a search left the value; 0 where nothing was
     /// searched for.
     pub half_widths: Vec<f64>,
-    /// By mesh: whether the run ended before it came to what the value stands for; such values are not extrapolated.
+    /// By mesh: whether the run ended before it came to the state of the value; these values are not extrapolated.
     #[serde(default)]
     pub early: Vec<bool>,
     /// The extrapolation; `None` for fewer than two values.
     pub estimate: Option<Estimate>,
-    /// Of a check the unit in which the case states what is accepted; numbers here are in SI units all the same.
+    /// Of a check the unit in which the case states its band; numbers here are in SI units all the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<ToldUnit>,
 }
@@ -146,14 +146,14 @@ impl StudyResult {
         let Some(unit) = &self.unit else {
             return self.clone();
         };
-        let told = |value: f64| value / unit.in_si;
+        let scaled = |value: f64| value / unit.in_si;
         Self {
             name: format!("{} [{}]", self.name, unit.name),
-            values: self.values.iter().map(|own| own.map(told)).collect(),
-            half_widths: self.half_widths.iter().copied().map(told).collect(),
+            values: self.values.iter().map(|value| value.map(scaled)).collect(),
+            half_widths: self.half_widths.iter().copied().map(scaled).collect(),
             estimate: self.estimate.map(|found| Estimate {
-                value: told(found.value),
-                uncertainty: told(found.uncertainty),
+                value: scaled(found.value),
+                uncertainty: scaled(found.uncertainty),
                 ..found
             }),
             unit: None,
@@ -217,11 +217,11 @@ impl Estimate {
         }
         let digits = 1.0 - uncertainty.log10().floor();
         let unit = 10.0_f64.powf(-digits);
-        // What is a round number stays one.
+        // A round number stays one.
         unit * (uncertainty / unit - 1e-9).ceil()
     }
 
-    /// Whether the value is another one than that of the finest mesh, in words: what stands before it.
+    /// Whether the value is another one than that of the finest mesh, in words before it.
     pub fn lead(&self) -> &'static str {
         match self.order.used() {
             Some(_) => "extrapolated",

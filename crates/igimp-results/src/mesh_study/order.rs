@@ -83,7 +83,7 @@ pub enum Order {
     },
     /// Observed on three meshes, and used.
     Observed(f64),
-    /// Observed below or above what is thought possible (0 and less would not be observed), and not believed.
+    /// Observed outside the orders thought possible (0 and less would not be observed), and not believed.
     Limited {
         /// The observed order \[-\].
         observed: f64,

@@ -41,7 +41,7 @@ pub struct Step<'a, const D: usize> {
 impl<const D: usize> Step<'_, D> {
     /// The root of the mean square of the displacement \[m\]; the largest one may be that of a node that hardly touches soil.
     fn moved(&self) -> f64 {
-        let squares = self.u.iter().flatten().map(|own| own * own);
+        let squares = self.u.iter().flatten().map(|u| u * u);
         (squares.sum::<f64>() / self.u.len() as f64).sqrt()
     }
 }
@@ -75,7 +75,7 @@ impl Film {
         } else {
             Some(step.number)
         };
-        let is_every = |every: usize| counted.is_some_and(|own| own.is_multiple_of(every.max(1)));
+        let is_every = |every: usize| counted.is_some_and(|n| n.is_multiple_of(every.max(1)));
         match every {
             Every::Never | Every::Stage => false,
             Every::Steps(every) => is_every(every),

@@ -104,12 +104,12 @@ impl Frames {
         Ok(all)
     }
 
-    /// What a stage that moves in time has of frames that are kept; its collections lose the others.
+    /// The kept frames of a stage that moves in time; its collections lose the others.
     fn take_up_motion(&mut self, stage: usize) -> Result<(), ResultsError> {
         let kept = self.particles.frames();
-        let place = |own: &Frame| kept.iter().position(|frame| frame.file == own.file);
+        let place = |frame: &Frame| kept.iter().position(|other| other.file == frame.file);
         let timed = pvd::motion(&self.folder, stage).into_iter();
-        let timed = timed.filter_map(|own| Some((place(&own)?, own.time)));
+        let timed = timed.filter_map(|frame| Some((place(&frame)?, frame.time)));
         self.motion.push((stage, timed.collect()));
         self.write_motion(self.motion.len() - 1)
     }
@@ -128,24 +128,24 @@ impl Frames {
         let from = from.map(on_a_line);
         let mut frames = self.particles.frames().iter();
         let found = frames.rposition(|frame| from.as_deref() == Some(frame.stage.as_str()));
-        let Some(own) = self.motion.iter().position(|(number, _)| *number == stage) else {
+        let Some(index) = self.motion.iter().position(|(number, _)| *number == stage) else {
             return Ok(found.is_some());
         };
-        self.motion[own].1 = found.map(|place| (place, seconds)).into_iter().collect();
-        self.write_motion(own)?;
+        self.motion[index].1 = found.map(|place| (place, seconds)).into_iter().collect();
+        self.write_motion(index)?;
         Ok(found.is_some())
     }
 
     /// Whether the last frame of a stage, by its number from 0, is that of a time \[s\]; never of a stage that takes no time.
     pub fn is_at(&self, stage: usize, seconds: f64) -> bool {
-        let own = self.motion.iter().find(|(number, _)| *number == stage);
-        let last = own.and_then(|(_, timed)| timed.last());
+        let motion = self.motion.iter().find(|(number, _)| *number == stage);
+        let last = motion.and_then(|(_, timed)| timed.last());
         last.is_some_and(|(_, time)| *time >= seconds)
     }
 
     /// The collections of a stage that moves in time, whose times are seconds: a viewer plays them as they were.
-    fn write_motion(&self, own: usize) -> Result<(), ResultsError> {
-        let (stage, timed) = &self.motion[own];
+    fn write_motion(&self, index: usize) -> Result<(), ResultsError> {
+        let (stage, timed) = &self.motion[index];
         let parts = [
             (Some(&self.particles), ""),
             (self.rigid.as_ref(), pvd::OF_BODIES),
@@ -193,13 +193,13 @@ impl Frames {
             let lines = reinforcement::lines(&structures.reinforcement);
             collection.add(time, stage, &lines)?;
         }
-        let own = self.motion.iter().position(|(own, _)| *own == number);
-        let Some(own) = own else {
+        let index = self.motion.iter().position(|(known, _)| *known == number);
+        let Some(index) = index else {
             return Ok(());
         };
         let place = self.len() - 1;
-        self.motion[own].1.push((place, seconds));
-        self.write_motion(own)
+        self.motion[index].1.push((place, seconds));
+        self.write_motion(index)
     }
 
     /// Writes particles beside the frames, as `NAME.vtu`, rigid bodies as `NAME-rigid.vtu`, and

@@ -41,7 +41,7 @@ pub struct Extras<'a> {
 /// acceleration.
 ///
 /// # Panics
-/// If the utilisation, or what particles carry, is not given for every particle.
+/// If the utilisation, or a property, is not given for every particle.
 pub fn of_particles<const D: usize>(
     particles: &Particles<D>,
     extras: &Extras<'_>,

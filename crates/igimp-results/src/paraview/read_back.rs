@@ -1,4 +1,4 @@
-//! Frames of particles read back as fields, in the printed sign: for pictures of what a run left.
+//! Frames of particles read back as fields, in the printed sign: for pictures of a run.
 
 use igimp_model::Field;
 use igimp_schema::field::InFrames;
@@ -39,12 +39,12 @@ impl<const D: usize> FrameParticles<D> {
         }
         let count = kind.corners().len();
         let corners = frame.corners(count)?;
-        let middle = |own: &[[f64; 3]]| -> [f64; D] {
-            std::array::from_fn(|a| 0.5 * (own[0][a] + own[opposite][a]))
+        let middle = |cell: &[[f64; 3]]| -> [f64; D] {
+            std::array::from_fn(|a| 0.5 * (cell[0][a] + cell[opposite][a]))
         };
         let gradients = array(frame, "deformation gradient [-]", 9)?;
-        let gradient = |own: &[f64; 9]| -> [[f64; D]; D] {
-            std::array::from_fn(|i| std::array::from_fn(|j| own[3 * i + j]))
+        let gradient = |entries: &[f64; 9]| -> [[f64; D]; D] {
+            std::array::from_fn(|i| std::array::from_fn(|j| entries[3 * i + j]))
         };
         let number = |&number: &f64| (number >= 0.0).then_some(number as usize);
         let numbers = array(frame, "particle", 1)?;
@@ -59,8 +59,8 @@ impl<const D: usize> FrameParticles<D> {
 /// The numbers of an array of a frame.
 fn array(frame: &Frame<'_>, name: &str, components: usize) -> Option<Vec<f64>> {
     let arrays = frame.arrays("CellData");
-    let own = arrays.iter().find(|own| own.name == name)?;
-    (own.components == components).then(|| own.numbers(frame.cells))?
+    let array = arrays.iter().find(|array| array.name == name)?;
+    (array.components == components).then(|| array.numbers(frame.cells))?
 }
 
 /// A component of an array, times a factor; zero stays without a sign.
@@ -71,8 +71,8 @@ fn component(
     sign: f64,
 ) -> Option<Vec<f64>> {
     let numbers = array(frame, name, components)?;
-    let own = numbers.iter().skip(component).step_by(components);
-    Some(own.map(|value| 0.0 + sign * value).collect())
+    let values = numbers.iter().skip(component).step_by(components);
+    Some(values.map(|value| 0.0 + sign * value).collect())
 }
 
 /// The values of a field by particle, as [`fields::values`](crate::fields::values) gives them in SI units, compression
@@ -147,9 +147,9 @@ mod tests {
                 Field::Strength | Field::Friction | Field::Young => assert_eq!(read, None),
                 Field::Utilisation => assert_eq!(read.as_deref(), Some(&share[..])),
                 _ => {
-                    let own = fields::values(field, &particles, &[]);
+                    let expected = fields::values(field, &particles, &[]);
                     let read = read.unwrap_or_else(|| panic!("no {field:?}"));
-                    for (a, b) in std::iter::zip(read, own) {
+                    for (a, b) in std::iter::zip(read, expected) {
                         assert!(
                             (a - b).abs() <= 1e-12 * b.abs().max(1e-9),
                             "{field:?}: {a} {b}"

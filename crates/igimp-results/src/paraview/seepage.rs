@@ -13,8 +13,8 @@ pub fn seepage_grid<const D: usize>(flow: &Seepage<D>, unit_weight: f64) -> Unst
     let cells: Vec<usize> = (0..flow.filled.len())
         .filter(|&cell| flow.filled[cell] > 0.0)
         .collect();
-    let own = std::iter::zip(all, &flow.filled).filter(|(_, filled)| **filled > 0.0);
-    grid.connectivity = own.flat_map(|(nodes, _)| nodes.to_vec()).collect();
+    let soil = std::iter::zip(all, &flow.filled).filter(|(_, filled)| **filled > 0.0);
+    grid.connectivity = soil.flat_map(|(nodes, _)| nodes.to_vec()).collect();
     let pressures = (0..flow.heads.len()).map(|node| {
         let level = flow.grid.node_position(node)[D - 1];
         unit_weight * (flow.heads[node] - level)

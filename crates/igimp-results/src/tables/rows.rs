@@ -21,7 +21,7 @@ pub struct RowWriter {
 }
 
 impl RowWriter {
-    /// An empty table with its header; what the file held before is gone.
+    /// An empty table with its header; earlier contents are gone.
     ///
     /// # Errors
     /// [`ResultsError::File`].
@@ -37,10 +37,10 @@ impl RowWriter {
         })
     }
 
-    /// Goes on after the first `rows` rows of a file; what follows them is cut off, also a line
+    /// Goes on after the first `rows` rows of a file; the rest is cut off, also a line
     /// that was written in part.
     ///
-    /// The rows are kept in a new file: whoever holds a link to the old one keeps what it was. Without
+    /// The rows are kept in a new file: links to the old one keep its contents. Without
     /// rows to keep the file is made anew.
     ///
     /// # Errors

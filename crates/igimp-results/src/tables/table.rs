@@ -75,7 +75,7 @@ impl Table {
             writer.write_record(self.header.iter().map(|column| cell(column).into_owned()))?;
             for row in &self.rows {
                 let entries = std::iter::zip(&self.header, row);
-                writer.write_record(entries.map(|(own, value)| number(own, *value)))?;
+                writer.write_record(entries.map(|(column, value)| number(column, *value)))?;
             }
             Ok(writer.flush()?)
         };

@@ -11,7 +11,7 @@ pub struct DataArray {
     values: Values,
 }
 
-/// How many numbers stand together, and what they are called in ParaView.
+/// How many numbers stand together, and their names in ParaView.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tuple {
     /// One number.

@@ -52,8 +52,8 @@ impl<'a> Frame<'a> {
 
     /// The arrays of a part of the frame, such as `CellData`.
     pub fn arrays(&self, part: &str) -> Vec<Stored<'a>> {
-        let own = between(self.text, &format!("<{part}>"), &format!("</{part}>"));
-        let mut rest = own.unwrap_or_default();
+        let section = between(self.text, &format!("<{part}>"), &format!("</{part}>"));
+        let mut rest = section.unwrap_or_default();
         let mut arrays = Vec::new();
         while let Some(next) = between(rest, "<DataArray ", "</DataArray>") {
             arrays.extend(stored(next));
@@ -105,8 +105,8 @@ impl Stored<'_> {
         let bytes = self.bytes(count.checked_mul(self.size()?)?)?;
         let numbers: Vec<f64> = match self.kind {
             "Float64" => each(&bytes, f64::from_le_bytes),
-            "Int64" | "UInt64" => each(&bytes, |own| i64::from_le_bytes(own) as f64),
-            "Int32" => each(&bytes, |own| f64::from(i32::from_le_bytes(own))),
+            "Int64" | "UInt64" => each(&bytes, |raw| i64::from_le_bytes(raw) as f64),
+            "Int32" => each(&bytes, |raw| f64::from(i32::from_le_bytes(raw))),
             _ => bytes.iter().map(|&byte| f64::from(byte)).collect(),
         };
         Some(numbers)
@@ -158,23 +158,23 @@ impl Stored<'_> {
 }
 
 fn each<const N: usize, T>(bytes: &[u8], read: impl Fn([u8; N]) -> T) -> Vec<T> {
-    bytes.as_chunks().0.iter().map(|own| read(*own)).collect()
+    bytes.as_chunks().0.iter().map(|raw| read(*raw)).collect()
 }
 
 fn stored(text: &str) -> Option<Stored<'_>> {
     let (head, body) = text.split_once('>')?;
-    let own = |name: &str| attribute(head, name);
-    let components = own("NumberOfComponents").map_or(Some(1), |number| number.parse().ok())?;
+    let value = |name: &str| attribute(head, name);
+    let components = value("NumberOfComponents").map_or(Some(1), |number| number.parse().ok())?;
     if !(1..=MOST_COMPONENTS).contains(&components) {
         return None;
     }
-    let names = (0..components).map_while(|k| own(&format!("ComponentName{k}")).map(unescaped));
+    let names = (0..components).map_while(|k| value(&format!("ComponentName{k}")).map(unescaped));
     Some(Stored {
-        name: unescaped(own("Name")?),
+        name: unescaped(value("Name")?),
         components,
         component_names: names.collect(),
-        kind: own("type")?,
-        format: own("format")?,
+        kind: value("type")?,
+        format: value("format")?,
         body,
     })
 }
