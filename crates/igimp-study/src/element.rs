@@ -96,10 +96,10 @@ pub enum TestError {
     #[error(transparent)]
     Element(#[from] ElementError),
     /// A value that no test can have.
-    #[error("{what} is {value}: {bounds}")]
+    #[error("{quantity} is {value}: {bounds}")]
     Value {
         /// Whose value.
-        what: &'static str,
+        quantity: &'static str,
         /// The value in SI units.
         value: f64,
         /// What it may be.
@@ -253,8 +253,8 @@ impl Request {
             ),
         ];
         match values.into_iter().find(|(.., holds, _)| !holds) {
-            Some((what, value, _, bounds)) => Err(TestError::Value {
-                what,
+            Some((quantity, value, _, bounds)) => Err(TestError::Value {
+                quantity,
                 value,
                 bounds,
             }),
@@ -391,7 +391,7 @@ mod tests {
     /// GOAL: where a formula is told, the test ends on it: 0.1 %, with natural and with linear strain. ORACLE: eq. 92 and the closed
     /// forms of perfectly plastic soil.
     #[test]
-    fn tests_end_on_the_formulas_that_are_told() {
+    fn tests_end_on_the_formulas_that_are_printed() {
         let materials = MaterialsFile::parse("soils.toml", SOILS, &[])
             .unwrap()
             .materials;
@@ -486,7 +486,7 @@ mod tests {
     /// GOAL: a duration without effect is count, and one with effect is not; so is strength that snaps back where a test ends early.
     /// ORACLE: the laws; soil with these curves is followed where all strains but one are driven.
     #[test]
-    fn a_duration_without_effect_and_brittle_soil_are_told() {
+    fn a_duration_without_effect_and_brittle_soil_are_printed() {
         let clay = "igimp = 1\n[materials.clay]\nmodel = \"tresca\"\nunit_weight = \"18 kN/m3\"\nyoung = \"30 MPa\"\n\
             poisson = 0.49\ncu = \"50 kPa\"\n";
         let rate = format!("{clay}rate = {{ per_log_cycle = 0.1, reference = \"1 %/h\" }}\n");
@@ -528,7 +528,7 @@ mod tests {
     /// GOAL: of a law that takes the place of that of the file its name and its words are told, and no formula of the other.
     /// CASE: sand that is given the law of the clay with c_u = 50 kPa. ORACLE: q = 2 c_u of Tresca.
     #[test]
-    fn a_law_that_was_given_is_told_of() {
+    fn a_given_law_is_named() {
         let all = soils();
         let law = all[2].law().unwrap();
         let sand = Material {

@@ -64,12 +64,12 @@ impl Stations {
 
     /// The state of a way.
     pub(super) fn state_at(&self, way: f64) -> usize {
-        let next = self.ways.partition_point(|own| *own < way);
+        let next = self.ways.partition_point(|at| *at < way);
         let before = next.saturating_sub(1);
         let off = |k: usize| {
             self.ways
                 .get(k)
-                .map_or(f64::INFINITY, |own| (own - way).abs())
+                .map_or(f64::INFINITY, |at| (at - way).abs())
         };
         if off(before) < off(next) {
             before

@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn an_array_has_no_number_beyond_what_slurm_takes() {
+    fn an_array_has_no_number_beyond_those_of_slurm() {
         let tasks = [999, 1000, 1001, 1003, 2500].map(task);
         let tasks: Vec<&Task> = tasks.iter().collect();
         assert_eq!(
