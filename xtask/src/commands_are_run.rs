@@ -149,7 +149,7 @@ fn every_command_that_is_printed_is_run() {
 }
 
 #[test]
-fn what_is_said_to_run_a_command_does() {
+fn the_stated_lines_run_their_commands() {
     for Printed {
         command,
         run_by,

@@ -48,7 +48,7 @@ fn missing() -> Option<&'static str> {
     ];
     let mut lacks = needed.into_iter();
     let lacks = lacks.find(|(_, name, words)| output(program(*name).args(*words)).is_err());
-    lacks.map(|(what, ..)| what)
+    lacks.map(|(need, ..)| need)
 }
 
 #[cfg(test)]

@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_became_worse_is_named() {
+    fn worse_rows_are_named() {
         let earlier = [
             example("a", "slower", 1, "ns/particle", 100.0),
             example("a", "rate", 1, "GFlop/s", 40.0),

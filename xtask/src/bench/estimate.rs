@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_is_named() {
+    fn missing_entries_are_named() {
         let without = BENCHMARK.replace("Elements", "Bytes");
         assert_eq!(
             parse(&without, ESTIMATES).unwrap_err(),

@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn links_that_lead_nowhere_are_told() {
+    fn dead_links_are_reported() {
         for page in [
             "<a href=\"b.html\"></a>",
             "<a href=\"../b.html#none\"></a>",

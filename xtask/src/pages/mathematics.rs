@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_read_is_told() {
+    fn unreadable_formulas_are_reported() {
         for page in [
             "$<code>\\frac{1}</code>$",
             "$<code>\\nosuch</code>$",

@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn gaps_and_unknown_and_idle_numbers_are_told() {
+    fn gaps_and_unknown_and_idle_numbers_are_reported() {
         let number = |number: usize| (number, String::new());
         let cited = |numbers: &[usize]| -> BTreeMap<Number, String> {
             numbers
