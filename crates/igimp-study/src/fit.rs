@@ -306,21 +306,16 @@ impl Fitted {
         ]
         .map(str::to_owned);
         let mut rows = RowWriter::create(&folder.join("fit.csv"), &header)?;
-        for parameter in &self.parameters {
-            rows.push_text(&said::row(parameter))?;
+        for found in &self.parameters {
+            rows.push_text(&said::row(found))?;
         }
-        let keys = self
-            .parameters
-            .iter()
-            .map(|parameter| parameter.key.clone());
+        let keys = self.parameters.iter().map(|found| found.key.clone());
         let header: Vec<String> = ["parameter".to_owned()].into_iter().chain(keys).collect();
         let mut rows = RowWriter::create(&folder.join("correlation.csv"), &header)?;
-        for (parameter, correlations) in self.parameters.iter().zip(&self.correlation) {
-            let cells = correlations
-                .iter()
-                .map(|value| said::correlation(*value, 9));
+        for (found, correlations) in self.parameters.iter().zip(&self.correlation) {
+            let cells = correlations.iter().map(|r| said::correlation(*r, 9));
             rows.push_text(
-                &[parameter.key.clone()]
+                &[found.key.clone()]
                     .into_iter()
                     .chain(cells)
                     .collect::<Vec<_>>(),

@@ -288,21 +288,18 @@ mod tests {
     /// GOAL: a factor that no strength decides is no number to state, and others are. ORACLE: by hand.
     #[test]
     fn ground_that_needs_no_strength_has_no_number() {
-        let printed = |stable, failed| {
+        let text = |stable, failed| {
             interval(&SafetySummary {
                 stable,
                 failed,
                 ..SafetySummary::default()
             })
         };
-        assert_eq!(printed(Some(1.25), Some(1.5)), "1.250 <= F < 1.500");
-        assert_eq!(printed(Some(900.0), None), "F >= 900.000");
-        assert_eq!(
-            printed(Some(1.31792), Some(1.31826)),
-            "1.3179 <= F < 1.3183"
-        );
+        assert_eq!(text(Some(1.25), Some(1.5)), "1.250 <= F < 1.500");
+        assert_eq!(text(Some(900.0), None), "F >= 900.000");
+        assert_eq!(text(Some(1.31792), Some(1.31826)), "1.3179 <= F < 1.3183");
         for failed in [None, Some(2e8)] {
-            let text = printed(Some(166_822_053.789), failed);
+            let text = text(Some(166_822_053.789), failed);
             assert!(
                 text.starts_with("F > 1000: nothing of this ground can fail"),
                 "{text}"
