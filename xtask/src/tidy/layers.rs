@@ -119,9 +119,8 @@ fn check_member(member: &Package, members: &[&str]) -> Vec<String> {
         )];
     };
     let of_project = |name: &&String| members.contains(&name.as_str());
-    let asked = member.asks_for.iter().filter(of_project);
-    asked
-        .filter(|name| !allowed.contains(&name.as_str()))
+    let asks = member.asks_for.iter().filter(of_project);
+    asks.filter(|name| !allowed.contains(&name.as_str()))
         .map(|name| format!("{} must not depend on {name}", member.name))
         .collect()
 }

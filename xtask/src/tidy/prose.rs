@@ -176,10 +176,7 @@ mod tests {
                 .into_iter()
                 .map(|(_, problem)| problem)
                 .collect();
-            let sentences = long
-                .iter()
-                .filter(|problem| problem.contains("words"))
-                .count();
+            let sentences = long.iter().filter(|note| note.contains("words")).count();
             assert_eq!(sentences, usize::from(found), "{text}: {long:?}");
         }
         assert!(long(&"x".repeat(CHARACTERS)).is_empty());
