@@ -70,7 +70,7 @@ fn press(stiffness: f64) -> Result<Pressed, CaseError> {
     let stresses = body.particles.sigma.iter().map(|sigma| sigma[1][1]);
     let stress = stresses.clone().sum::<f64>() / body.particles.len() as f64;
     let uneven = stresses
-        .map(|own| (own / stress - 1.0).abs())
+        .map(|sigma| (sigma / stress - 1.0).abs())
         .fold(0.0, f64::max);
     let touching = closed(&body.rigid);
     Ok(Pressed {

@@ -126,18 +126,18 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             Computed::new(CaseFile::parse(pipe.name, &text, &[])?.into_case())
         })
         .collect::<Result<Vec<_>, CaseError>>()?;
-    for ((pipe, place), own) in std::iter::zip(all, &computed) {
+    for ((pipe, place), run) in std::iter::zip(all, &computed) {
         let variant = format!("{}, middle at {place} m", pipe.name);
-        let last = study.run_to_end(RunRecord::new(variant.clone(), &own.report, own.elapsed));
-        let points = own.curve("load").points(0, 1);
+        let last = study.run_to_end(RunRecord::new(variant.clone(), &run.report, run.elapsed));
+        let points = run.curve("load").points(0, 1);
         let deepest = points.iter().map(|[w, _]| *w).fold(0.0, f64::max);
         let push = points.iter().take_while(|[w, _]| *w < deepest);
         let push: Vec<[f64; 2]> = push.copied().collect();
-        let mut told = Vec::new();
+        let mut loads = Vec::new();
         for depth in DEPTHS {
             let load = load_at(&push, depth);
             let fit = pipe.fit[0] * depth.powf(pipe.fit[1]);
-            told.push(format!("{load:.2} ({:+.1} %)", 100.0 * (load / fit - 1.0)));
+            loads.push(format!("{load:.2} ({:+.1} %)", 100.0 * (load / fit - 1.0)));
             if pipe.is_claimed {
                 let quantity = format!("V/(D s_u) at w/D = {depth} [-]");
                 let band = Band::Between((1.0 - BAND) * fit, (1.0 + BAND) * fit);
@@ -147,7 +147,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         study.notes.push(format!(
             "{}: {variant}, at w/D = 0.1 to 0.7: {}",
             study.case,
-            told.join(", ")
+            loads.join(", ")
         ));
     }
     Ok(study)

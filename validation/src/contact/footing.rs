@@ -84,7 +84,7 @@ fn mean(curve: &[[f64; 2]], sequential: &[[f64; 2]], depth: f64) -> [f64; 2] {
     let near: Vec<[f64; 2]> = near
         .map(|point| [point[1], interpolate(sequential, point[0])])
         .collect();
-    [0, 1].map(|k| near.iter().map(|own| own[k]).sum::<f64>() / near.len() as f64)
+    [0, 1].map(|k| near.iter().map(|pair| pair[k]).sum::<f64>() / near.len() as f64)
 }
 
 /// The distance between N and its mean over a cell of penetration, over that mean, beyond a depth of
@@ -96,8 +96,8 @@ fn wiggle(curve: &[[f64; 2]], cell: f64) -> f64 {
     let off = deep.map(|point| {
         let near = curve
             .iter()
-            .filter(|own| (own[0] - point[0]).abs() <= 0.5 * cell);
-        let near: Vec<f64> = near.map(|own| own[1]).collect();
+            .filter(|other| (other[0] - point[0]).abs() <= 0.5 * cell);
+        let near: Vec<f64> = near.map(|other| other[1]).collect();
         let mean = near.iter().sum::<f64>() / near.len() as f64;
         (point[1] / mean - 1.0).powi(2)
     });

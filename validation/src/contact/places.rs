@@ -466,11 +466,11 @@ fn add(
     let name = question.name;
     let mut loads = Vec::new();
     let mut last = 0;
-    for (place, own) in std::iter::zip(places, &computed) {
+    for (place, run) in std::iter::zip(places, &computed) {
         let place = question.kind.place_label(*place, fit);
         let variant = format!("{name}, {place}");
-        last = study.run_to_end(RunRecord::new(variant, &own.report, own.elapsed));
-        let load = own.curve("load").points(0, 1);
+        last = study.run_to_end(RunRecord::new(variant, &run.report, run.elapsed));
+        let load = run.curve("load").points(0, 1);
         let load = load.last().map_or(f64::NAN, |[_, load]| load.abs());
         let [lower, upper] = question.bounds;
         let band = Band::Between((1.0 - BEYOND) * lower, (1.0 + BEYOND) * upper);
@@ -501,7 +501,7 @@ fn add(
 /// Runs the study of bodies on lines that are not fitted to them.
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("contact-places", ABOUT, out)?;
-    for question in questions().iter().filter(|own| own.level <= level) {
+    for question in questions().iter().filter(|q| q.level <= level) {
         if let Some(claim) = question.claim {
             let places = question.kind.places();
             add(&mut study, question, (Fit::None, &places), claim)?;
@@ -513,7 +513,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
 /// Runs the study of bodies on lines that are fitted to them.
 pub(crate) fn fitted(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("contact-fitted", ABOUT_FITTED, out)?;
-    for question in questions().iter().filter(|own| own.level <= level) {
+    for question in questions().iter().filter(|q| q.level <= level) {
         add(&mut study, question, (Fit::Bodies, &FITTED), Claim::Both)?;
     }
     Ok(study)

@@ -146,8 +146,8 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
                 format!("pressure_{eccentricity}_{cells}"),
                 &["x_over_B_[-]", "p_over_E_[-]"],
             );
-            for own in &found.profile {
-                profile.push(own.to_vec());
+            for row in &found.profile {
+                profile.push(row.to_vec());
             }
             study.table(profile)?;
         }

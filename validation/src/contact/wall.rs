@@ -47,13 +47,13 @@ fn wedge(friction: f64, cohesion: f64, sign: f64) -> f64 {
     let (weight, height) = (WEIGHT, 1.0);
     let forces = (1..9000).filter_map(|hundredths| {
         let slope = (0.01 * f64::from(hundredths)).to_radians();
-        let (own, slip) = (
+        let (load, slip) = (
             0.5 * weight * height / slope.tan(),
             cohesion * height / slope.sin(),
         );
         let turned = slope + sign * phi;
         let lever = (turned + sign * delta).cos();
-        let force = (own * turned.sin() + sign * slip * phi.cos()) / lever;
+        let force = (load * turned.sin() + sign * slip * phi.cos()) / lever;
         (turned > 0.0 && lever > 0.0).then_some(force * delta.cos() / (0.5 * weight * height))
     });
     let best = |one: f64, other: f64| {
@@ -248,13 +248,13 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
                 // Without a bond it does not follow a wall that moves away.
                 Soil::ClayWithAdhesion if way == 0 => continue,
                 Soil::ClayWithAdhesion => {
-                    let own = 0.5 * std::f64::consts::PI;
-                    let share = 2.0 * (1.0 + own) * 5.0 / WEIGHT;
+                    let fan = 0.5 * std::f64::consts::PI;
+                    let share = 2.0 * (1.0 + fan) * 5.0 / WEIGHT;
                     (ADHESION.says(1.0 + share), CLOSE)
                 }
             };
-            let what = format!("{name}: E/(γ H²/2) [-]");
-            study.check(run, what, expected, band, forces[way]);
+            let quantity = format!("{name}: E/(γ H²/2) [-]");
+            study.check(run, quantity, expected, band, forces[way]);
         }
     }
     Ok(study)

@@ -165,14 +165,14 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         .collect::<Result<Vec<_>, CaseError>>()?;
     let means: Vec<f64> = computed
         .iter()
-        .map(|own| mean(&own.curve("resistance").points(0, 1)))
+        .map(|result| mean(&result.curve("resistance").points(0, 1)))
         .collect();
-    for ((loss, own), found) in clays.iter().zip(&computed).zip(&means) {
+    for ((loss, result), found) in clays.iter().zip(&computed).zip(&means) {
         let variant = match loss {
             None => "strength that stays".to_owned(),
             Some(Loss { left, strain }) => format!("δ = {left}, ξ_95 = {strain}"),
         };
-        let run = study.run_to_end(RunRecord::new(variant, &own.report, own.elapsed));
+        let run = study.run_to_end(RunRecord::new(variant, &result.report, result.elapsed));
         let band = Band::Relative(BAND);
         match loss {
             None => study.check(run, "V/(D s_u) [-]", DEEP.says(PI + 6.0), band, *found),

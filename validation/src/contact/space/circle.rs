@@ -134,7 +134,7 @@ impl Footing {
             weightless(&quarter.grid, &constraints, &law, motion)
         };
         let name = self.name().replace(' ', "_");
-        let (of, told) = if place.total_cmp(&PLACE).is_eq() {
+        let (of, label) = if place.total_cmp(&PLACE).is_eq() {
             (String::new(), String::new())
         } else {
             (
@@ -154,7 +154,7 @@ impl Footing {
         let mut method = Method::shared_strain();
         method.geometry = Geometry::Given;
         let (run, _) = run(
-            format!("{}, B/h = {cells}{told}", self.name()),
+            format!("{}, B/h = {cells}{label}", self.name()),
             &mut body,
             &method,
             &MarchSettings::steps(STEPS),
