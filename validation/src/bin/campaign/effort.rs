@@ -180,12 +180,12 @@ impl<'c> Follower<'c> {
         let all = after.rigid.len() == self.outlines.len();
         let there = std::iter::zip(&self.case.rigid, &self.outlines);
         let there = there.filter(|(part, _)| all || part.from_start);
-        let own: Vec<&Outline> = there.map(|(_, outline)| outline).collect();
+        let outlines: Vec<&Outline> = there.map(|(_, outline)| outline).collect();
         let before = self.before.as_ref();
         // Bodies that came in with this step have no way behind them.
         let before = before.filter(|before| before.rigid.len() == after.rigid.len());
         let before = before.map(|before| (&before.particles, &before.rigid[..]));
-        let found = reach(&own, before, (&after.particles, &after.rigid));
+        let found = reach(&outlines, before, (&after.particles, &after.rigid));
         let effort = &mut self.effort;
         effort.nearest = match (effort.nearest, found.nearest) {
             (Some(a), Some(b)) => Some(a.min(b)),

@@ -127,8 +127,8 @@ fn of_soil(
             let g = solved(&delta, support.grad);
             let g_bar = solved(&delta_bar, support.grad_bar);
             for a in 0..2 {
-                let own = sigma[a][0] * g[0] + sigma[a][1] * g[1];
-                out.internal[support.node][a] += volume * (own + mean * (g_bar[a] - g[a]));
+                let force = sigma[a][0] * g[0] + sigma[a][1] * g[1];
+                out.internal[support.node][a] += volume * (force + mean * (g_bar[a] - g[a]));
                 out.external[support.node][a] +=
                     before.mass[particle] * support.value * conditions.loads.gravity[a];
                 slopes += support.grad[a] * support.grad[a];

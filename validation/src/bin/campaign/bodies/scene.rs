@@ -166,8 +166,8 @@ fn part(
     };
     if random.chance(0.5) {
         let side = random.integer(1, sides);
-        let own = interface(random);
-        let _ = writeln!(text, "sides = [{{ side = {side}, interface = {own} }}]");
+        let keys = interface(random);
+        let _ = writeln!(text, "sides = [{{ side = {side}, interface = {keys} }}]");
     }
     if random.chance(0.3) {
         let weight = STRENGTH * shape.width() * random.uniform(0.1, 0.5);
