@@ -353,9 +353,9 @@ fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
         harness::matrix::write(&studies, all_cases)?;
     }
     let drift = harness::matrix::drift(&studies, level, all_cases)?;
-    missed.extend(drift.into_iter().map(|told| Difference {
+    missed.extend(drift.into_iter().map(|change| Difference {
         name: "verification matrix".to_owned(),
-        told,
+        change,
     }));
     let code = print_report(&studies, &missed, arguments, clock.elapsed().as_secs_f64());
     for error in &errors {

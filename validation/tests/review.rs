@@ -190,7 +190,7 @@ fn differences(output: &Output) -> Vec<String> {
 }
 
 /// A run after the change: exit code, lines, pictures and files.
-fn told_and_drawn(walk: &Walk) {
+fn reported_and_drawn(walk: &Walk) {
     assert!(!walk.folder.join("results").exists());
     let run = walk.run(&[]);
     assert_eq!(run.status.code(), Some(1), "{}", said(&run));
@@ -228,13 +228,13 @@ fn told_and_drawn(walk: &Walk) {
 }
 
 #[test]
-fn a_changed_number_is_told_drawn_and_accepted() {
+fn a_changed_number_is_reported_drawn_and_accepted() {
     let walk = Walk::new("review");
     let before = walk.accepted();
     walk.is_clean(&walk.run(&[]));
     fs::remove_dir_all(walk.folder.join("results")).unwrap();
     walk.change();
-    told_and_drawn(&walk);
+    reported_and_drawn(&walk);
 
     let accepting = walk.validate(&["--accept-left"]);
     assert_eq!(accepting.status.code(), Some(0));
@@ -272,7 +272,7 @@ fn agree(now: &BTreeMap<&str, Vec<String>>, before: &BTreeMap<&str, Vec<String>>
 }
 
 #[test]
-fn cargo_insta_takes_what_was_left_in_a_clone() {
+fn cargo_insta_takes_pending_snapshots_in_a_clone() {
     let Some(programs) = std::env::var_os("IGIMP_CARGO_INSTA") else {
         println!(
             "skipped: IGIMP_CARGO_INSTA names no folder (cargo install cargo-insta --root FOLDER, and FOLDER/bin)"
@@ -283,7 +283,7 @@ fn cargo_insta_takes_what_was_left_in_a_clone() {
     let before = walk.accepted();
     let insta = |command: &str| Insta::new(&programs, &walk, command);
     walk.change();
-    told_and_drawn(&walk);
+    reported_and_drawn(&walk);
     let pending = said(&insta("pending-snapshots").output());
     for name in ALL {
         assert!(
@@ -302,7 +302,7 @@ fn cargo_insta_takes_what_was_left_in_a_clone() {
     }
     fs::remove_dir_all(walk.folder.join("results")).unwrap();
     walk.change();
-    told_and_drawn(&walk);
+    reported_and_drawn(&walk);
     insta("review").answered("A");
     walk.is_clean(&walk.run(&[]));
     agree(&walk.accepted(), &before);

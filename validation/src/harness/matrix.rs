@@ -130,17 +130,17 @@ fn with_sections(matrix: &str, studies: &[Study]) -> String {
     let mut sections: Vec<String> = parts.map(|part| format!("### {part}")).collect();
     let place_of = |sections: &[String], case: &str| {
         let title = format!("### {case}\n");
-        sections.iter().position(|own| own.starts_with(&title))
+        sections.iter().position(|text| text.starts_with(&title))
     };
     let mut behind = None;
     for study in studies.iter().filter(|study| !study.rows.is_empty()) {
-        let own = section(study);
+        let text = section(study);
         let place = if let Some(place) = place_of(&sections, study.case) {
-            sections[place] = own;
+            sections[place] = text;
             place
         } else {
             let place = behind.map_or(0, |last: usize| last + 1);
-            sections.insert(place, own);
+            sections.insert(place, text);
             place
         };
         behind = Some(place);

@@ -35,8 +35,8 @@ pub(crate) fn compare(
     let compared = |study| compare_study(study, folder);
     let missed: Vec<_> = studies.iter().flat_map(compared).collect();
     std::panic::set_hook(hook);
-    let told = |(name, text): &(String, String)| review::difference(folder, name, text, pictures);
-    missed.iter().map(told).collect()
+    let diff = |(name, text): &(String, String)| review::difference(folder, name, text, pictures);
+    missed.iter().map(diff).collect()
 }
 
 /// The names and texts that differ from the snapshots of a folder.

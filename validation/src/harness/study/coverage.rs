@@ -123,25 +123,25 @@ pub(crate) fn note(studies: &[Study]) -> Option<String> {
     let mut text = "mesh error: known answers within the uncertainty, median width of it [%]; the same with orders from \
          3/4, 2/3, 1/2, 1/3 on\n"
         .to_owned();
-    let told = |(count, covered, width): (usize, usize, f64)| {
+    let share = |(count, covered, width): (usize, usize, f64)| {
         format!("{covered} of {count}, {:.2}", 100.0 * width)
     };
     let mut line = |name: &str, of: &[&Extrapolated]| {
         let others = OTHERS.map(|slowest| {
             let found: Vec<_> = (of.iter())
-                .filter_map(|own| own.with_slowest(slowest))
+                .filter_map(|result| result.with_slowest(slowest))
                 .collect();
-            told(counted(found.iter()))
+            share(counted(found.iter()))
         });
-        let own = told(counted(of.iter().copied()));
-        let _ = writeln!(text, "  {name}: {own}; {}", others.join("; "));
+        let usual = share(counted(of.iter().copied()));
+        let _ = writeln!(text, "  {name}: {usual}; {}", others.join("; "));
     };
     for (name, convergence) in kinds {
-        let own: Vec<_> = all()
+        let of_kind: Vec<_> = all()
             .filter(|result| result.known.convergence == convergence)
             .collect();
-        if !own.is_empty() {
-            line(name, &own);
+        if !of_kind.is_empty() {
+            line(name, &of_kind);
         }
     }
     line("all", &all().collect::<Vec<_>>());
