@@ -156,7 +156,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         .flat_map(|&angle| {
             DIRECTIONS[..directions]
                 .iter()
-                .map(move |own| (angle, *own))
+                .map(move |shares| (angle, *shares))
         })
         .collect();
     let slopes: Vec<Slope> = (problems.par_iter())

@@ -173,12 +173,12 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         .collect::<Result<Vec<_>, CaseError>>()?;
     let curves: Vec<_> = computed
         .iter()
-        .map(|own| own.curve("resistance").points(0, 1))
+        .map(|result| result.curve("resistance").points(0, 1))
         .collect();
     let runs: Vec<usize> = std::iter::zip(&clays, &computed)
-        .map(|((cells, clay), own)| {
+        .map(|((cells, clay), result)| {
             let variant = format!("{}, l/h = {cells}", clay.name());
-            study.run_to_end(RunRecord::new(variant, &own.report, own.elapsed))
+            study.run_to_end(RunRecord::new(variant, &result.report, result.elapsed))
         })
         .collect();
     let intact = at(&curves[0], None);

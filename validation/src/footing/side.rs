@@ -217,7 +217,7 @@ pub(crate) fn push(
                 .map(|(volume, _)| volume)
                 .sum::<f64>();
             body.particles = match beside {
-                Beside::BearsNothing(_) => body.particles.keeping(|own| !leaving[own])?,
+                Beside::BearsNothing(_) => body.particles.keeping(|k| !leaving[k])?,
                 _ => Particles::from_fields(with_law(fields, &leaving, weak_law))?,
             };
         }
@@ -237,9 +237,9 @@ pub(crate) fn push(
 /// The particles with another law where marked.
 fn with_law(fields: &ParticleFields<2>, marked: &[bool], law: usize) -> ParticleFields<2> {
     let mut fields = fields.clone();
-    for (own, marked) in fields.law.iter_mut().zip(marked) {
+    for (current, marked) in fields.law.iter_mut().zip(marked) {
         if *marked {
-            *own = law;
+            *current = law;
         }
     }
     fields

@@ -112,10 +112,10 @@ impl Ground {
             let exact = UNIT_WEIGHTS[1] * (top - y.max(level)).max(0.0)
                 + UNIT_WEIGHTS[0] * (level - y).max(0.0);
             let error = (-particles.sigma[particle][1][1] - exact) / above;
-            let own = &mut errors[particles.law[particle] % 2];
+            let worst = &mut errors[particles.law[particle] % 2];
             // The first of those that are equal but for round-off.
-            if error.abs() > own.abs() + 1e-6 {
-                *own = error;
+            if error.abs() > worst.abs() + 1e-6 {
+                *worst = error;
             }
         }
         Ok((run, errors))
@@ -130,6 +130,6 @@ impl Ground {
         };
         let mean = lower * self.stiffness + (1.0 - lower);
         let is_cut = lower > 0.0;
-        [self.stiffness, 1.0].map(|own| if is_cut { own / mean - 1.0 } else { 0.0 })
+        [self.stiffness, 1.0].map(|young| if is_cut { young / mean - 1.0 } else { 0.0 })
     }
 }

@@ -32,7 +32,7 @@ fn resistance(drive: &str, others: &[&str]) -> Result<(f64, RunRecord), CaseErro
     overrides.push(format!(
         "stages.load.bodies=[{{ body = \"footing\", {drive} }}]"
     ));
-    overrides.extend(others.iter().map(|&own| own.to_owned()));
+    overrides.extend(others.iter().map(|&text| text.to_owned()));
     let computed = Computed::new(shipped_case("eccentric_footing", overrides)?)?;
     let summary = &computed.run.summary;
     let measured = summary

@@ -147,7 +147,7 @@ fn of_slope(
 ) -> String {
     let name = record.variant.clone();
     let run = study.run(record);
-    let told: Vec<String> = (found.values.iter().enumerate())
+    let printed: Vec<String> = (found.values.iter().enumerate())
         .map(|(mesh, value)| {
             let early = if found.ended_early(mesh) {
                 " (early)"
@@ -192,7 +192,7 @@ fn of_slope(
     format!(
         "  {}: {lower:.3} … {upper:.3}; {}; {}\n",
         problem.section.name,
-        told.join(", "),
+        printed.join(", "),
         says.unwrap_or_else(|| "nothing is said".to_owned())
     )
 }

@@ -42,8 +42,8 @@ fn disc(cell: f64) -> Result<Body<2>, CaseError> {
 }
 
 fn angular_momentum(body: &Body<2>) -> f64 {
-    let own = std::iter::zip(&body.particles.x, &body.particles.velocity);
-    own.zip(&body.particles.mass)
+    let both = std::iter::zip(&body.particles.x, &body.particles.velocity);
+    both.zip(&body.particles.mass)
         .map(|((x, v), m)| m * ((x[0] - 2.0) * v[1] - (x[1] - 2.0) * v[0]))
         .sum()
 }

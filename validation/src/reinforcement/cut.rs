@@ -120,15 +120,15 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     ];
     let mut table = Table::new("factors_of_safety", &header);
     let meshes = cells.len();
-    for (own, computed) in std::iter::zip(searches.chunks(meshes), results.chunks(meshes)) {
+    for (group, computed) in std::iter::zip(searches.chunks(meshes), results.chunks(meshes)) {
         let mut before: Option<[f64; 2]> = None;
-        for (search, result) in std::iter::zip(own, computed) {
+        for (search, result) in std::iter::zip(group, computed) {
             let nails = search.nails();
             let name = format!("{nails}, h = {} m", search.cell);
             let run = study.run(trials(name, result));
             let found = result
                 .safety()
-                .and_then(|own| Some((own.stable?, own.failed?)));
+                .and_then(|safety| Some((safety.stable?, safety.failed?)));
             let found = found.map_or(f64::NAN, |(stable, failed)| 0.5 * (stable + failed));
             let (low, high, oracle) = search.bounds(upper);
             table.push(vec![

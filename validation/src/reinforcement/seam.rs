@@ -141,7 +141,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("reinforcement-seam", ABOUT, out)?;
     let blocks: Vec<Block> = blocks()
         .into_iter()
-        .filter(|own| own.level <= level)
+        .filter(|block| block.level <= level)
         .collect();
     let results = blocks
         .par_iter()
@@ -162,7 +162,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         ));
         let found = computed
             .safety()
-            .and_then(|own| Some((own.stable?, own.failed?)));
+            .and_then(|safety| Some((safety.stable?, safety.failed?)));
         let found = found.map_or(f64::NAN, |(stable, failed)| 0.5 * (stable + failed));
         if block.tie == Tie::None {
             strength = found * block.push;

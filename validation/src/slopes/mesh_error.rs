@@ -134,7 +134,7 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
     let mut runs = Vec::new();
     let mut covered = 0_usize;
     let with_bounds = (slopes.problems.iter().enumerate())
-        .filter(|(_, own)| own.oracle.kind == OracleKind::LimitAnalysis && own.known.is_some());
+        .filter(|(_, p)| p.oracle.kind == OracleKind::LimitAnalysis && p.known.is_some());
     let pairs = with_bounds
         .flat_map(|(place, _)| [true, false].map(|associated| Pair::of(slopes, place, associated)));
     for pair in pairs.flatten() {

@@ -248,10 +248,10 @@ pub(super) fn check_pair(
     let record = RunRecord::new(format!("{name}, plane"), &plane.report, plane.elapsed);
     study.run_to_end(record);
     let run = study.run_to_end(RunRecord::new(name, &space.report, space.elapsed));
-    for (what, found) in found {
+    for (field, found) in found {
         study.check(
             run,
-            format!("difference of {what} from the plane [-]"),
+            format!("difference of {field} from the plane [-]"),
             PLANE_STRAIN.says(0.0),
             Band::AtMost(1e-9),
             *found,

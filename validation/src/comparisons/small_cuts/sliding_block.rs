@@ -68,7 +68,7 @@ pub(crate) fn settling(study: &mut Study) -> Result<(), CaseError> {
         let mut table = Table::new(format!("small_cuts_block_{name}"), &header);
         for (k, &offset) in OFFSETS.iter().enumerate() {
             let mut row = vec![offset];
-            row.extend(by_remedy.iter().map(|own| of(&own[k])));
+            row.extend(by_remedy.iter().map(|blocks| of(&blocks[k])));
             table.push(row);
         }
         // Without a remedy the others hang on round-off.
@@ -83,8 +83,8 @@ pub(crate) fn settling(study: &mut Study) -> Result<(), CaseError> {
         let lines = remedies.iter().zip(&by_remedy);
         lines
             .filter(|((name, ..), _)| drawn.contains(name))
-            .map(|((name, ..), own)| {
-                let points = OFFSETS.iter().zip(*own).skip(1);
+            .map(|((name, ..), blocks)| {
+                let points = OFFSETS.iter().zip(*blocks).skip(1);
                 let points = points.map(|(&offset, one)| [offset, of(one)]).collect();
                 Series::new(*name, points, SeriesStyle::LineAndMarkers(LineStyle::Solid))
             })
