@@ -29,18 +29,18 @@ use problem::{Lost, Problem, Solved};
 pub use statistics::Known;
 use statistics::{Statistics, statistics};
 
-/// Correlations above are told.
+/// Correlations above are printed.
 const CORRELATED: f64 = 0.9;
 
-/// Where a material comes from: what is asked again at every trial.
+/// Where a material comes from: the source is asked again at every trial.
 pub trait Source {
     /// The material with values of some of its keys, written as in the file.
     ///
     /// # Errors
-    /// [`InputError`] of what the file does not allow.
+    /// [`InputError`] of values that the file does not allow.
     fn material(&self, values: &[(String, String)]) -> Result<Material, InputError>;
 
-    /// What is written of a key in the file: a quantity as text, or a number.
+    /// The value of a key as written in the file: a quantity as text, or a number.
     fn written(&self, key: &str) -> Option<String>;
 }
 
@@ -70,7 +70,7 @@ impl Source for FileSource {
     }
 }
 
-/// What is fitted to what.
+/// Parameters, and the data that they are fitted to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitRequest {
     /// The parameters.
@@ -292,7 +292,7 @@ impl Fitted {
     /// its own, and all of it as `report.html`; their names.
     ///
     /// # Errors
-    /// [`ReportError`] of what cannot be written.
+    /// [`ReportError`] of a file that cannot be written.
     pub fn write(&self, folder: &Path) -> Result<Vec<String>, ReportError> {
         let header = [
             "parameter",

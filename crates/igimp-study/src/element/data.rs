@@ -16,7 +16,7 @@ const NOT_MEASURED: [&str; 2] = ["plastic strain", "regime"];
 pub struct Data {
     /// The file.
     pub name: String,
-    /// What was measured, beside the place on the way.
+    /// The measured quantities, beside the place on the way.
     pub columns: Vec<Measure>,
     /// The measurements.
     pub rows: Vec<Row>,

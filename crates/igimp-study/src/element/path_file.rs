@@ -36,7 +36,7 @@ pub enum PathFileError {
 }
 
 impl PathFileError {
-    /// What to write instead.
+    /// Help with the file.
     pub fn help(&self) -> &'static str {
         match self {
             Self::File(_) => "numbers with a decimal point, separated by commas",

@@ -100,7 +100,7 @@ fn the_report_tells_all_of_a_fit() {
     assert!(lines[1].starts_with("cohesion,1.000000000,-0."), "{table}");
 }
 
-/// GOAL: a reader of the report is told what the data do not say. ORACLE: one cell pressure does not tell c from φ.
+/// GOAL: the report states which parameters the data do not determine. ORACLE: one cell pressure does not tell c from φ.
 #[test]
 fn the_report_holds_back_undetermined_parameters() {
     let fitted = fitted(&[100e3]);

@@ -39,10 +39,10 @@ pub(super) struct Problem<'a> {
     source: &'a dyn Source,
     parameters: &'a [Parameter],
     tests: &'a [Request],
-    /// What a residual is divided by: of each column of each test, in SI.
+    /// Divisors of the residuals: of each column of each test, in SI.
     scales: Vec<Vec<f64>>,
     values: usize,
-    /// Root of the sum of squares of what was measured, over the scales.
+    /// Root of the sum of squares of the data, over the scales.
     size: f64,
 }
 
@@ -94,7 +94,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// What a residual is divided by: of each column of each test, in SI.
+    /// Divisors of the residuals: of each column of each test, in SI.
     pub(super) fn scales(&self) -> &[Vec<f64>] {
         &self.scales
     }

@@ -42,7 +42,7 @@ pub enum Known {
     },
 }
 
-/// What is known at the end of a search.
+/// Knowledge of the parameters at the end of a search.
 pub(super) struct Statistics {
     pub(super) known: Vec<Known>,
     /// Correlation of each pair by their places; not a number where one of the two has no error.
@@ -125,7 +125,7 @@ pub(super) fn statistics(
     statistics
 }
 
-/// What is known before any inverse: parameters at bounds or walls, and those that no residual depends on; and the places of the others.
+/// Knowledge before any inverse: parameters at bounds or walls, and those that no residual depends on; and the places of the others.
 fn held(ranges: &[Range], at: &[f64], norms: &[f64], rows: usize) -> (Vec<Known>, Vec<usize>) {
     let mut known = vec![Known::NotDetermined { with: Vec::new() }; at.len()];
     let mut free = Vec::new();

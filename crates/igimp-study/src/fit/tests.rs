@@ -271,7 +271,7 @@ fn cam_clay_comes_back() {
     close(&fitted, &[ratio, lambda, kappa]);
 }
 
-/// GOAL: a parameter that data do not depend on has no number, one at a bound is told, and the same fit has the same bits.
+/// GOAL: a parameter that data do not depend on has no number, one at a bound is named, and the same fit has the same bits.
 #[test]
 fn undetermined_and_bounded_parameters_are_printed() {
     let plateau = triaxial(30e6, 3.0_f64.sqrt() * 40e3, &[0.03, 0.05, 0.08]);
@@ -339,7 +339,7 @@ fn a_search_that_does_not_converge_is_an_error() {
     );
 }
 
-/// GOAL: what cannot be fitted is refused with its reason.
+/// GOAL: a request that cannot be fitted is refused with its reason.
 #[test]
 fn requests_without_a_fit_are_refused() {
     let two = triaxial(30e6, 60e3, &[0.001, 0.05]);

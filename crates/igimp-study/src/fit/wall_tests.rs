@@ -41,7 +41,7 @@ fn measured(law: &str, of: StandardTest, stress: f64) -> Request {
 }
 
 /// GOAL: a search that meets a wall on its way goes on, with its parameters held there, to the least sum of squares.
-/// CASE: Hardening Soil, whose power is 1 at most, and Cam-clay, whose λ* is above κ*: searches ended at the walls, were told to have
+/// CASE: Hardening Soil, whose power is 1 at most, and Cam-clay, whose λ* is above κ*: searches ended at the walls, were said to have
 /// converged, and had intervals that did not hold what the data were made of. ORACLE: the values of the data, without scatter. BAND: 1e-4.
 #[test]
 fn a_search_goes_on_from_a_wall() {
@@ -77,7 +77,7 @@ fn a_search_goes_on_from_a_wall() {
     }
 }
 
-/// GOAL: where data want a value that the law refuses, the parameter is held at the last one, is told so, and has no interval; the others are
+/// GOAL: where data want a value that the law refuses, the parameter is held at the last one, is named, and has no interval; the others are
 /// those with it held. CASE: Hardening Soil under three pressures with stiffness that grows with their power of 1.3. ORACLE: the same fit with
 /// `power` = 1 in the file. BAND: 1e-6.
 #[test]

@@ -178,7 +178,7 @@ fn end(summary: &StageSummary) -> String {
         "; {} steps, {} iterations, {} cuts",
         summary.steps, summary.iterations, summary.cuts
     );
-    // A search leaves the body as it was found: how far it moved is told of every trial and equilibrium.
+    // A search leaves the body as it was found: how far it moved is printed for every trial and equilibrium.
     if summary.safety.is_none() {
         let largest = short(summary.largest_displacement);
         let _ = write!(line, ", largest displacement {largest} m");

@@ -16,7 +16,7 @@ use super::table;
 /// A particle in a frame, packed, in the plane and in space \[bytes\].
 const FRAME: [f64; 2] = [250.0, 350.0];
 
-/// The size of a case and what it will cost.
+/// The size of a case and its cost.
 #[derive(Clone, Debug)]
 pub struct Cost {
     /// Particles, cells, unknowns and memory.
@@ -117,7 +117,7 @@ fn lines<const D: usize>(case: &Case<D>) -> Option<String> {
     (!sides.is_empty()).then_some(text)
 }
 
-/// How many frames a run writes along its stages, and what they take; none where it writes those of their ends alone.
+/// How many frames a run writes along its stages, and their size; none where it writes those of their ends alone.
 fn frames<const D: usize>(case: &Case<D>, particles: usize) -> Option<String> {
     let every = case.output.paraview;
     let one_in = film::one_in(particles);
@@ -242,7 +242,7 @@ mod tests {
         );
     }
 
-    /// GOAL: what frames take is told wherever a run writes them along its stages. CASE: the column with ten steps, a frame for every step and
+    /// GOAL: frames are printed wherever a run writes them along its stages. CASE: the column with ten steps, a frame for every step and
     /// for every fifth, and those of its end alone. ORACLE: counted by hand.
     #[test]
     fn frames_along_a_stage_are_printed() {

@@ -60,7 +60,7 @@ fn mesh(mesh: &MeshSummary) -> Vec<String> {
     ]
 }
 
-/// The results of a study: the values on all meshes, and what they say together.
+/// The results of a study: the values on all meshes, and their extrapolation.
 fn mesh_error(study: &StudySummary) -> String {
     let rows: Vec<Vec<String>> = study
         .results
@@ -268,7 +268,7 @@ mod tests {
         "#);
     }
 
-    /// GOAL: checks and their values on meshes are told in the unit of the case. ORACLE: by hand: 1 mm is 0.001 m.
+    /// GOAL: checks and their values on meshes are printed in the unit of the case. ORACLE: by hand: 1 mm is 0.001 m.
     #[test]
     fn checks_are_printed_in_the_unit_of_the_case() {
         let unit = Some(ToldUnit {

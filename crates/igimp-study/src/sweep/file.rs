@@ -13,7 +13,7 @@ use super::{Sweep, SweepError, Task};
 /// Most tasks of a study; more are a slip of the keyboard.
 const MOST_TASKS: usize = 100_000;
 
-/// A problem, where it is, and what helps.
+/// A problem, its place and its help.
 struct Problem {
     at: Range<usize>,
     message: String,

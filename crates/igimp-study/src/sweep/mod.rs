@@ -243,7 +243,7 @@ impl Sweep {
         };
         let (marker, owner) = (root.join(MARKER), Owner::of(&claim, root, false));
         match Owner::read(&marker) {
-            // Many tasks begin at once: what is there already is not written again.
+            // Many tasks begin at once: a marker that is there is not written again.
             Some(found) if found == owner => Ok(lock),
             Some(found)
                 if found.case != owner.case

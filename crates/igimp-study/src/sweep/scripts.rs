@@ -161,7 +161,7 @@ impl Sweep {
         })
     }
 
-    /// Comments on where a file comes from, and on what it asks for.
+    /// Comments on the origin of a file, and on the resources that it asks for.
     fn head(&self, demand: &Resources) -> String {
         let file = self.file.display().to_string();
         format!(

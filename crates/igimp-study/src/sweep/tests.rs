@@ -1,5 +1,5 @@
-//! GOAL: tasks are what the file says, problems are told with their place, and a table is made of
-//! what is there.
+//! GOAL: tasks are those of the file, problems are printed with their place, and a table is made of
+//! the results that are there.
 
 use igimp_model::check::{Band, Check, ToldUnit};
 use igimp_results::summary::{CheckRow, SafetySummary, StageSummary, Standing, Summary};
