@@ -6,12 +6,12 @@ use std::fs;
 
 use crate::process::root;
 
-/// A command that is printed, what runs it, and the line there.
+/// A printed command, the file that runs it, and the line there.
 struct Printed {
     command: &'static str,
     run_by: &'static str,
     line: &'static str,
-    /// What is smaller there, or other.
+    /// The part that is smaller there, or other.
     scope: &'static str,
 }
 

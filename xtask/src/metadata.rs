@@ -1,4 +1,4 @@
-//! What the checks need to know of the workspace, from `cargo metadata`.
+//! The workspace as the checks see it, from `cargo metadata`.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};

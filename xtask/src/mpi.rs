@@ -39,7 +39,7 @@ pub(crate) fn run() -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// What the program needs and this computer lacks.
+/// The first need of the program that this computer lacks.
 fn missing() -> Option<&'static str> {
     let needed: [(&str, &str, &[&str]); 3] = [
         ("PETSc", "pkg-config", &["--exists", "PETSc"]),

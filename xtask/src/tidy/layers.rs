@@ -85,7 +85,7 @@ const NOT_BELOW_CASES: [&str; 11] = [
     "ttf-parser",
 ];
 
-/// What is wrong with the layers.
+/// Problems with the layers.
 pub(super) fn check(metadata: &Metadata) -> Vec<String> {
     let names: Vec<&str> = metadata
         .members()
