@@ -13,7 +13,7 @@ use crate::harness::reference::interpolate;
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::Computed;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A rough strip footing on weightless Tresca soil with E/c_u = 1500 is pushed by a tenth of its width on the given geometry, bonded: on clay that keeps its strength, and on clay that loses 70 % of it, 63 % of that over a plastic strain of 5 %, with a length of a tenth of the width (theory, eqs. 110a to 110c), on cells of a half and a third of the length. Without a length the same clay is the control: its bands are as wide as cells.";
 const PRANDTL: Oracle = Oracle {
     kind: OracleKind::Exact,

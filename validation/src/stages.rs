@@ -15,7 +15,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{RunRecord, Study};
 use crate::runs::{Computed, corners};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Construction stages: fill in lifts, excavation in slices and at once, water that is lowered, undrained loading and its dissipation. Columns between smooth sides have exact stresses; elastic ground that was cut in slices is that cut at once, and that which never was anything else.";
 const COLUMN: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -174,7 +174,7 @@ fn lifts(study: &mut Study) -> Result<(), CaseError> {
         &lifts.report,
         lifts.elapsed,
     ));
-    // Weight above by what was seeded above: the width does not change.
+    // Weight above by the particles seeded above: the width does not change.
     let filled = deviation(&lifts.run, |y| -dry * (10.0 - y));
     study.check(run, quantity, COLUMN.says(0.0), Band::AtMost(2e-3), filled);
 

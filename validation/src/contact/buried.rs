@@ -33,7 +33,7 @@ const SOFT: f64 = 1.0;
 
 /// A body of unit width in half of the soil around it, x ≥ 0.
 pub(crate) struct Buried {
-    /// What it is, and how it is computed.
+    /// The body, and how it is computed.
     pub(crate) variant: String,
     /// Cells over the unit width.
     pub(crate) cells: usize,
@@ -163,16 +163,16 @@ impl Buried {
 /// Cells over the unit width of a fine mesh.
 const FINE: usize = 17;
 
-/// What is claimed of a limit load.
+/// The claim on a limit load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Claim {
-    /// That of every mesh, and what they say of none.
+    /// That of every mesh, and the extrapolated one.
     Every,
-    /// What two meshes say of none; that of each is told.
+    /// The one extrapolated from two meshes; that of each is printed.
     Extrapolated,
     /// That of every mesh of [`FINE`] cells: values that go up and down say nothing of none.
     Fine,
-    /// Nothing: all is told.
+    /// Nothing: all is printed.
     None,
 }
 
@@ -190,7 +190,7 @@ pub(crate) struct Question<'a> {
     pub(crate) body: Box<dyn Fn(usize) -> Buried + Sync + 'a>,
 }
 
-/// Computes limit loads, and holds them against what is known.
+/// Computes limit loads, and holds them against known ones.
 pub(crate) fn answer(study: &mut Study, questions: &[Question<'_>]) -> Result<(), CaseError> {
     let mut jobs = Vec::new();
     for question in questions {

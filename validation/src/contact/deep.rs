@@ -11,7 +11,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::Computed;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Pipes on Tresca soil with E/s_u = 500 and γD/s_u = 0.1 are pushed three quarters of a diameter in and pulled out again, on ten cells and a geometry that moves. Their middles stand at two places of the grid within a cell. Every march has to reach both ends. Loads are means over 0.025 D; those of smooth pipes are claimed, all are told. Below the full level there is one smooth pipe.";
 const MERIFIELD: Oracle = Oracle {
     kind: OracleKind::Published,
@@ -21,7 +21,7 @@ const MERIFIELD: Oracle = Oracle {
 
 /// By how much a load that is claimed may differ \[-\].
 const BAND: f64 = 0.04;
-/// Depths over diameter at which loads are told.
+/// Depths over diameter at which loads are printed.
 const DEPTHS: [f64; 7] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7];
 /// Loads are means over depths as far as this to either side, in diameters.
 const ASIDE: f64 = 0.0126;

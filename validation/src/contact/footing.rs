@@ -15,7 +15,7 @@ use crate::harness::study::coverage::{self, Known, on_cells};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, shipped_case};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "The footing of the benchmark in stiffer soil (E/s_u = 300, contact that lets go, rough base, smooth side), pushed one width deep, against sequential limit analysis. N is the mean over a twentieth of the width on either side. With its edge at three quarters of a cell the footing acts as wide as it is on every mesh; with its edge in the middle of a cell it acts wider by a share of the cell, and two meshes are extrapolated.";
 /// The effort of Newton's method.
 const QUADRATIC: Oracle = Oracle {

@@ -18,7 +18,7 @@ use crate::continuum::laboratory::run;
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A rigid cylinder is pressed onto an elastic half-plane, smooth, and with friction pushed sideways. Half-width and pressure are Hertz's, the stick zone is that of Cattaneo and Mindlin.";
 const HERTZ: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -45,7 +45,7 @@ struct Cylinder {
     sideways: f64,
 }
 
-/// What was found at the end: tangential and vertical force, half-width and largest pressure of the
+/// Results at the end: tangential and vertical force, half-width and largest pressure of the
 /// profile, and the share of friction that the middle takes.
 struct Found {
     run: RunRecord,

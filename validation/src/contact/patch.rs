@@ -19,7 +19,7 @@ use crate::continuum::laboratory::{run, unobserved};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A smooth plate presses an elastic block evenly. With its surface anywhere in its cell the stress is exact; below a plate that is turned against the grid, the stepped edge of the particles leaves an error that falls with the cell.";
 const UNIFORM: Oracle = Oracle {
     kind: OracleKind::Exact,

@@ -14,7 +14,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, corners};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Strips, pipes and an anchor in weightless Tresca soil with E/s_u = 1000, from case files that say nothing of the method but fit = none, on ten cells, are pushed or pulled at small strain with their sides at five places of the grid within a cell, and a strip with sharp edges on ground at eight. Every march has to reach its end. Loads within 4 % of limit analysis and spreads within 3 % are claimed, all is told.";
 const ABOUT_FITTED: &str = "The bodies of contact-places, and a strip whose sides are bonded, on lines that are fitted to them, as they are where a file says nothing of fit. Sides and ground stand at four pairs of places within a cell. Every march has to reach its end. Loads within 4 % of limit analysis and spreads within 3 % are claimed of all.";
 const PRANDTL: Oracle = Oracle {
@@ -72,7 +72,7 @@ struct Question {
     kind: Kind,
     oracle: Oracle,
     bounds: [f64; 2],
-    /// What is claimed where lines are not fitted to it; nothing where that is not computed. Both are where they are.
+    /// The claim where lines are not fitted to it; none where that is not computed. Both are where they are.
     claim: Option<Claim>,
     level: Level,
 }
@@ -95,7 +95,7 @@ impl Fit {
     }
 }
 
-/// What is claimed of the places; all is told.
+/// The claim on the places; all is printed.
 #[derive(Clone, Copy)]
 enum Claim {
     /// Nothing: they only have to reach their end.

@@ -26,7 +26,7 @@ use crate::harness::reference::interpolate;
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::Computed;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Bodies of revolution (theory, eqs. 130 to 130e). A thick cylinder and a thick sphere of nearly incompressible clay are opened to one and a half times their bores; without B-bar the sphere locks. A cylinder of soil with friction is pressed together under cell pressure. The factor of safety of a thick cylinder under pressure from within is searched for, of clay and of soil with friction and three angles of dilation. A circular footing on Tresca soil, rough and smooth, has its edge at five places within a cell; on the coarsest cells alone below `--full`, where circles stand on clay that grows stronger with depth too.";
 const CYLINDER: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -382,7 +382,7 @@ fn carried(friction: f64) -> f64 {
     (ratio.powf(1.0 - 1.0 / passive) - 1.0) / friction.tan()
 }
 
-/// The factor by which the strength of that soil exceeds what half of its cohesion as pressure asks for, by bisection.
+/// The factor of safety of that soil under half of its cohesion as pressure, by bisection.
 fn exact_factor(friction: f64) -> f64 {
     let (mut lower, mut upper) = (1.0, 10.0);
     for _ in 0..60 {

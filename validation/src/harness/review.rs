@@ -1,5 +1,5 @@
-//! What changed since the snapshots were accepted: for every curve the largest change and where it is,
-//! a picture of old against new of every curve and residual history; and how what a run left is accepted.
+//! Changes since the snapshots were accepted: for every curve the largest change and where it is,
+//! a picture of old against new of every curve and residual history; and how the files of a run are accepted.
 
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -17,7 +17,7 @@ const PANELS: usize = 4;
 pub(crate) struct Difference {
     /// Name of the snapshot, or of the line of the matrix.
     pub(crate) name: String,
-    /// What differs, in words.
+    /// The difference, in words.
     pub(crate) change: String,
 }
 
@@ -117,7 +117,7 @@ fn said(name: &str) -> String {
     name.replace('_', " ")
 }
 
-/// What differs between two texts of a curve, in words: its largest change, as a share of the largest
+/// The difference of two texts of a curve, in words: its largest change, as a share of the largest
 /// value of its column.
 fn largest_change(old: &str, new: &str) -> Option<String> {
     let (old, new) = (Columns::read(old)?, Columns::read(new)?);
@@ -268,10 +268,10 @@ fn plot(
     }
 }
 
-/// Accepts what earlier runs left beside the snapshots, as `cargo insta accept` does; returns the names.
+/// Accepts the files of earlier runs beside the snapshots, as `cargo insta accept` does; returns the names.
 ///
 /// # Errors
-/// What the file system says.
+/// An error of the file system.
 pub(crate) fn accept_left(folder: &Path) -> io::Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(folder)? {

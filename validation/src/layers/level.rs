@@ -26,11 +26,11 @@ pub(super) struct Ground {
     pub(super) offset: f64,
     /// Young's modulus of the lower soil over that of the upper one \[-\].
     pub(super) stiffness: f64,
-    /// What is done about the boundary.
+    /// The treatment of the boundary.
     pub(super) cells: Cells,
 }
 
-/// What is done about a boundary within cells.
+/// The treatment of a boundary within cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Cells {
     /// A line of the grid is put on it.

@@ -15,7 +15,7 @@ use crate::harness::study::{RunRecord, Study};
 use level::{Cells, Ground};
 use sloping::{Way, patch};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Two soils meet within a cell. Level ground under its own weight, the boundary at several heights of the cell, with the grid fitted to it and without: the vertical stress is the weight above. A block with an inclined boundary under pressure normal to it: the stress is known in both soils, and several ways to treat the cells that the boundary cuts are held against it.";
 /// Vertical stress of level ground.
 const OVERBURDEN: Oracle = Oracle {

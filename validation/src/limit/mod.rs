@@ -26,9 +26,9 @@ use crate::limit_equilibrium::section::{Path, Search, Variant};
 use crate::runs::Computed;
 use crate::slopes::problems::{Asked, Problem, drained, published, undrained};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "The slopes with bounds by limit analysis, searched for along the path of equilibria, the strength reduction factor an unknown: against the bounds, against the search by trials, and against itself for other tolerances, stiffnesses and effort, with all searches of the shipped cases; its changes with the strengths against reruns, its rise with dilation, and associated flow on Davis's strengths beside it.";
-/// What is measured.
+/// The measured quantity.
 const QUANTITY: &str = "factor of safety [-]";
 /// Elastic constants and the solver enter no limit load.
 const LIMIT_THEOREMS: Oracle = Oracle {
@@ -60,7 +60,7 @@ struct Sought<'p> {
     cells: u32,
 }
 
-/// What it found.
+/// The result of a search.
 struct Found {
     factor: f64,
     stage: StageSummary,
@@ -76,7 +76,7 @@ impl Found {
         Self::of_stage(computed, stages.last().unwrap_or(&nothing))
     }
 
-    /// What one of its stages found. Corrections of steps that were cut count those of all stages.
+    /// The result of one of its stages. Corrections of steps that were cut count those of all stages.
     fn of_stage<const D: usize>(computed: &Computed<D>, stage: &StageSummary) -> Self {
         let ends = stage
             .safety
@@ -224,7 +224,7 @@ pub(crate) fn study(level: Level, out: &Folder) -> Result<Study, CaseError> {
     Ok(study)
 }
 
-/// What is searched for at a level.
+/// The searches of a level.
 fn sought(problems: &[Problem], level: Level) -> Vec<Sought<'_>> {
     let mut all = Vec::new();
     for problem in problems {
@@ -251,7 +251,7 @@ fn sought(problems: &[Problem], level: Level) -> Vec<Sought<'_>> {
     all
 }
 
-/// A factor against what is known, and its mechanism against the balance of work.
+/// A factor against the known bounds, and its mechanism against the balance of work.
 fn against_bounds(study: &mut Study, case: &Sought<'_>, found: &Found) {
     let Some([low, high]) = case.problem.known else {
         return;

@@ -19,7 +19,7 @@ const DISPLACED: Oracle = Oracle {
 /// The rise of a path in its last doubling, and of the march from there to 0.3 B, as a share of the load \[-\].
 const OFF: f64 = 5e-3;
 
-/// A rough strip on undrained clay, pressed on level ground by what drives it, and its resistance N \[-\].
+/// A rough strip on undrained clay, pressed on level ground by a drive, and its resistance N \[-\].
 fn resistance(drive: &str, others: &[&str]) -> Result<(f64, RunRecord), CaseError> {
     let mut overrides = [
         "rigid.footing.reference=[\"0 m\", \"14/9 m\"]",

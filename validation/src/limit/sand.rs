@@ -19,7 +19,7 @@ const INFINITE_SLOPE: Oracle = Oracle {
     source: "infinite slope without cohesion",
     locator: "F = tan φ / tan β with ψ = φ",
 };
-/// What cells of a tenth of the height are off, as a share of the factor \[-\].
+/// The error of cells of a tenth of the height, as a share of the factor \[-\].
 const OFF: f64 = 0.03;
 /// Slopes: run for one down \[-\], φ \[degree\].
 const SLOPES: [(f64, f64); 3] = [(2.0, 38.0), (1.5, 40.0), (3.0, 25.0)];

@@ -1,4 +1,4 @@
-//! The spread of a factor of safety over what is no part of the answer: tolerance, corrections and steps of the solver,
+//! The spread of a factor of safety over settings that are no part of the answer: tolerance, corrections and steps of the solver,
 //! stiffness.
 
 use std::fmt::Write as _;
@@ -34,7 +34,7 @@ const STIFFNESS_COUNTS: [&str; 3] = ["rapid_drawdown", "embankment_time", "sensi
 /// raised, which takes more than the five cuts of a case.
 const CUTS: u32 = 12;
 
-/// What is set other than in the case file.
+/// A setting other than that of the case file.
 #[derive(Clone, Copy, Debug)]
 enum Setting {
     AsGiven,
@@ -47,7 +47,7 @@ enum Setting {
     Young(f64),
 }
 
-/// What is varied.
+/// The varied settings.
 const SETTINGS: [Setting; 15] = [
     Setting::AsGiven,
     Setting::Corrections(10),

@@ -1,4 +1,4 @@
-//! What sand leaves when it has spread and rests.
+//! Deposits of sand that has spread and rests.
 
 use igimp_assembly::Particles;
 use igimp_cases::CaseError;
@@ -181,7 +181,7 @@ fn columns(study: &mut Study, level: Level) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// Checks with what power of the ratio run-outs and heights of all columns grow.
+/// Checks with which power of the ratio run-outs and heights of all columns grow.
 fn exponents(study: &mut Study, found: &[Deposit]) {
     let last = found[found.len() - 1].run;
     let run_out: fn(&Deposit) -> f64 = |deposit| deposit.run_out;
@@ -207,7 +207,7 @@ fn slope(points: &[[f64; 2]]) -> f64 {
     sum(1) / sum(0)
 }
 
-/// What a column leaves when it rests.
+/// The deposit of a column at rest.
 pub(super) struct Deposit {
     /// Number of the run.
     pub(super) run: usize,

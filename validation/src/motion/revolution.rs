@@ -268,7 +268,7 @@ fn columns(study: &mut Study, level: Level) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// Checks with what power of the ratio run-outs and heights grow.
+/// Checks with which power of the ratio run-outs and heights grow.
 fn exponents(study: &mut Study, found: &[Deposit]) {
     let power = |from: f64, to: f64, value: fn(&Deposit) -> f64| {
         let at = |ratio: f64| found.iter().find(|d| d.ratio.total_cmp(&ratio).is_eq());

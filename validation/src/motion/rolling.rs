@@ -63,7 +63,7 @@ fn over(scheme: TimeScheme, duration: f64, is_first: bool) -> TimeStep {
 }
 
 impl<const D: usize> Slide<D> {
-    /// The ground, and what holds it.
+    /// The ground and its supports.
     fn ground(&self) -> Result<(Body<D>, StepConditions<D>), CaseError> {
         let cells = self.extent.map(|side| (side / self.cell).round() as usize);
         let mut filled_cells = cells;

@@ -11,7 +11,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{RunRecord, Study};
 use crate::runs::Computed;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A strip of elastic soil, one cell high and without Poisson's ratio, is pulled or pressed with a member of reinforcement in it: elastic, at its capacity, slack, with a bond that lets its ends slip, and stressed by a jack and locked off. Soil and member share the load by their stiffness, cell by cell.";
 const BAR: Oracle = Oracle {
     kind: OracleKind::Exact,

@@ -14,7 +14,7 @@ use crate::harness::study::coverage::{self, Known, on_cells};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, mesh, shipped_case};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "The shipped cut of 5 m in undrained clay on rock, γH/c_u = 4, held by three rows of nails and a facing, and the same cut without them. Factors of safety on two meshes are extrapolated to no width of the cell. Reinforcement that pulls weakens no soil, so the lower bound without nails holds; circles through the nails, least over all of them, give the upper bound.";
 const BOUNDS: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,
@@ -63,7 +63,7 @@ impl Search {
         if !self.has_nails {
             overrides.push("curves=[]".to_owned());
             overrides.push("reinforcement=[]".to_owned());
-            // What stands without nails.
+            // The cut that stands without nails.
             overrides.push("case.gravity=\"8 m/s2\"".to_owned());
             overrides.push("materials.clay.unit_weight=\"16 kN/m3\"".to_owned());
         }

@@ -1,4 +1,4 @@
-//! What shared strain costs: corrections and cuts of Newton's method over all slopes, beside those of
+//! The cost of shared strain: corrections and cuts of Newton's method over all slopes, beside those of
 //! B-bar on the same meshes.
 
 use std::fmt::Write as _;

@@ -1,4 +1,4 @@
-//! What a limit load of a given geometry must not depend on: the stiffness of the soil, and the steps.
+//! A limit load of a given geometry must not depend on the stiffness of the soil, nor on the steps.
 
 use std::fmt::Write as _;
 

@@ -15,7 +15,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{RunRecord, Study};
 use crate::runs::{Computed, corners};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Cases of plane strain are computed again as slices in space, one cell across, between smooth sides: a soft column, slopes of three soils that yield under their weight, a strip of pressure; slopes with water tables, ratios and given pressures, drained and undrained, with drawdown; ground that is dug, filled and treated; a face with an anchor and nails, one of each across the slice. Displacements and stresses, pore pressures and tensions are the plane's.";
 const PLANE_STRAIN: Oracle = Oracle {
     kind: OracleKind::Theory,
@@ -237,7 +237,7 @@ pub(super) fn computed(
     ))
 }
 
-/// Adds both runs to the study, and what was found of their differences.
+/// Adds both runs to the study, and their differences.
 pub(super) fn check_pair(
     study: &mut Study,
     name: &str,

@@ -21,14 +21,14 @@ use crate::limit_equilibrium::section::{Section, Variant};
 use crate::runs::Computed;
 use problems::Problem;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Slopes with water: submerged, drawn down, with r_u and with phreatic lines, ψ = φ, on the given geometry with shared strain. Factors of safety on two meshes are extrapolated to no width of the cell. A submerged slope is that of buoyant weight, at any level of the water, to round-off.";
 const ARCHIMEDES: Oracle = Oracle {
     kind: OracleKind::Exact,
     source: "Archimedes",
     locator: "water that stands everywhere leaves γ_sat − γ_w of the weight, at any level",
 };
-/// What is measured.
+/// The measured quantity.
 const QUANTITY: &str = "factor of safety, extrapolated from two meshes [-]";
 
 impl Problem {
@@ -58,7 +58,7 @@ fn given(source: PoreSource) -> WaterCondition {
     }
 }
 
-/// What a search on one mesh found.
+/// The result of a search on one mesh.
 struct Found {
     computed: Computed<2>,
     interval: [f64; 2],

@@ -14,7 +14,7 @@ use crate::bodies::forces::{Begun, carriers, forces};
 /// Size of the round-off in the strain of a particle \[-\].
 const STRAIN_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 
-/// What was found.
+/// The result of the check.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Equilibrium {
     /// Out-of-balance force over external force and reactions \[-\].
@@ -39,7 +39,7 @@ struct Squares {
     external: f64,
 }
 
-/// Computes the equilibrium of a step again, from the body before it and what it accepted.
+/// Computes the equilibrium of a step again, from the body before it and the accepted one.
 /// `None` if the particles have no place on the grid.
 pub(crate) fn equilibrium(
     case: &Case<2>,

@@ -1,5 +1,5 @@
 //! Remedies for small cuts on a block whose sides reach any distance into the next cells: how it settles
-//! under its own weight, and what holds it up when its base is let down.
+//! under its own weight, and its support when its base is let down.
 
 use igimp_assembly::{Method, SmallCuts};
 use igimp_cases::CaseError;
@@ -113,7 +113,7 @@ pub(crate) fn settling(study: &mut Study) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// The same block with its base let down: what holds it up beside its base?
+/// The same block with its base let down: does anything else hold it up?
 pub(crate) fn sinking(study: &mut Study) -> Result<(), CaseError> {
     let offsets = &OFFSETS[1..];
     let mut header = vec!["offset_[cells]".to_owned()];

@@ -1,4 +1,4 @@
-//! A bar that is pushed through deep clay, which loses strength as it is sheared: what a T-bar measures.
+//! A bar that is pushed through deep clay, which loses strength as it is sheared: the measurement of a T-bar.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -12,7 +12,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, corners};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A smooth bar, bonded, is pushed by its diameter through deep, weightless Tresca soil with E/s_u = 300, on ten cells, the geometry moving with it, from a case file: once in clay that keeps its strength, and in clay that loses it by Einav and Randolph (2005). The mean resistance from 0.6 diameters on, in clay that keeps its strength, is held against the exact one, and the others over it against the factor of Zhou and Randolph (2009).";
 const DEEP: Oracle = Oracle {
     kind: OracleKind::Exact,

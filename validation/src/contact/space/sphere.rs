@@ -20,7 +20,7 @@ use crate::continuum::laboratory::run;
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A rigid smooth sphere is pressed onto an elastic half-space, in a quarter. The radius of contact is Hertz's for the force that was needed; largest pressure and approach, which err by a share of the cell, are told beside it.";
 const HERTZ: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -35,7 +35,7 @@ const FAR: f64 = 30.0 * CONTACT;
 const MODULUS: f64 = 1.0;
 const POISSON: f64 = 0.3;
 
-/// What was found: force, radius of contact and largest pressure, and r, p by contact node.
+/// Results: force, radius of contact and largest pressure, and r, p by contact node.
 struct Found {
     run: RunRecord,
     load: f64,
@@ -151,7 +151,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             100.0 * off[2]
         );
         study.notes.push(note);
-        // The error of pressure and approach is a share of the cell: told by two meshes.
+        // The error of pressure and approach is a share of the cell: two meshes give it.
         if let Some(before) = errors.rows.last() {
             let [coarse, fine] = [before[0], cells as f64];
             let limit = |k: usize| off[k] + (off[k] - before[k + 1]) * coarse / (fine - coarse);

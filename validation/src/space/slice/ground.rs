@@ -10,7 +10,7 @@ use crate::runs::Computed;
 /// A case of both: `(x, y)` stands for a point, `@across` for the thickness of a body, `@m` for the unit of a force per metre.
 struct Pair {
     name: &'static str,
-    /// What comes after grid, materials and supports.
+    /// The case file after grid, materials and supports.
     text: &'static str,
     /// Whether members of reinforcement are held against those of the plane.
     is_reinforced: bool,

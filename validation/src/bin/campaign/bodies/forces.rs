@@ -1,4 +1,4 @@
-//! What rigid bodies do to the nodes of the grid in an accepted step, computed again from the traction
+//! Forces of rigid bodies on the nodes of the grid in an accepted step, computed again from the traction
 //! that the step left at the knots (theory, eqs. 45 and 48), from outlines, poses and particles: nothing
 //! of the code of contact is used, but the places of the knots.
 
@@ -37,7 +37,7 @@ pub(crate) fn carriers(stencils: &Stencils<2>, nodes: usize) -> Vec<bool> {
     is_carrier
 }
 
-/// What is averaged around a knot.
+/// Averages around a knot.
 #[derive(Default)]
 struct Around {
     area: f64,
@@ -386,7 +386,7 @@ fn faces(particles: &Particles<2>, body: &RigidBody<2>, sides: &[Side]) -> Vec<F
     faces
 }
 
-/// What is around the knots of a body that turns by an angle in the step \[rad\].
+/// Averages around the knots of a body that turns by an angle in the step \[rad\].
 fn around_knots(
     begun: &Begun<'_>,
     slot: usize,
