@@ -168,7 +168,7 @@ pub(crate) struct Row {
 pub(crate) struct Study {
     /// Name of the case; also of its folder.
     pub(crate) case: &'static str,
-    /// What is computed and asked, in a sentence or two of Markdown for the book.
+    /// The computation and its checks, in a sentence or two of Markdown for the book.
     pub(crate) about: &'static str,
     /// Where its files go.
     pub(crate) folder: PathBuf,
