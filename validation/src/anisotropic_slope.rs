@@ -16,7 +16,7 @@ use crate::limit_equilibrium::section::{self, Search, Section, Variant, YOUNG};
 use crate::runs::Computed;
 use crate::slopes::Found;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Slopes of clay whose undrained strength is s_a, s_d and s_p in active loading, simple shear and passive loading, on the given geometry with shared strain: N = γHF/s_a on two meshes, extrapolated, against the least upper bound of circles (theory, eq. 123b). One strength has Taylor's numbers and is the control.";
 const CIRCLES: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,
@@ -35,7 +35,7 @@ const FROZEN: Oracle = Oracle {
 };
 /// How far below the circles N may lie \[-\]: with one strength limit analysis has 2 to 4 % below those that reach the base.
 const BELOW: f64 = 0.05;
-/// How far N over that of one strength may lie beyond what circles say \[-\].
+/// How far N over that of one strength may lie beyond that of circles \[-\].
 const RATIO: f64 = 0.02;
 /// How far above them on one mesh \[-\].
 const MESH: f64 = 0.01;
@@ -80,12 +80,12 @@ const DIRECTIONS: [(&str, Shares); 3] = [
 /// Slope angles: one down for so much across.
 const ANGLES: [(f64, f64, Level); 2] = [(45.0, 1.0, Level::Default), (26.57, 2.0, Level::Full)];
 
-/// A slope and what is known of it.
+/// A slope with its known values.
 struct Slope {
     section: Section,
     shares: Shares,
     circles: Circles,
-    /// What turns a factor of safety into N \[-\].
+    /// Factor that turns a factor of safety into N \[-\].
     number: f64,
 }
 
@@ -156,7 +156,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         .flat_map(|&angle| {
             DIRECTIONS[..directions]
                 .iter()
-                .map(move |own| (angle, *own))
+                .map(move |shares| (angle, *shares))
         })
         .collect();
     let slopes: Vec<Slope> = (problems.par_iter())

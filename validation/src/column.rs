@@ -14,7 +14,7 @@ use crate::harness::reference::column_stress_error;
 use crate::harness::study::{RunRecord, Study};
 use crate::runs::{Computed, corners, mesh, method, shipped_case, unwatched};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A column of soft soil one cell wide settles under its own weight. Mean stress error against the exact solution, under refinement: iGIMP converges with second order, iMPM does not.";
 /// Initial height of the column \[m\].
 pub(crate) const HEIGHT: f64 = 50.0;

@@ -24,7 +24,7 @@ use crate::harness::study::{Level, RunRecord, Study};
 use crate::pictures::{contours, scaled};
 use crate::runs::{Computed, mesh, method, shipped_case};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A rigid strip footing in undrained soil, pushed one width deep: resistance against penetration. The soil can leave the footing; where nothing else is said it is bonded for comparison, as nodes that are prescribed.";
 /// The limit load at small strain.
 const PRANDTL: Oracle = Oracle {
@@ -51,7 +51,7 @@ const PROGRAM: Oracle = Oracle {
     locator: "same footing and mesh; sequential limit analysis has 5.95 at 0.5 B and 6.40 at 1 B",
 };
 
-/// One push and what is asked of it.
+/// One push and its checks.
 struct Push {
     name: &'static str,
     label: String,
@@ -59,7 +59,7 @@ struct Push {
     /// Cells per width B/h, odd so that the edge of a bonded footing lies mid-cell; none: those of the
     /// case file.
     cells_per_width: Option<u32>,
-    /// What differs from the shipped footing besides the mesh.
+    /// The changes to the shipped footing besides the mesh.
     overrides: Vec<String>,
 }
 

@@ -284,7 +284,7 @@ fn again_with_update() -> ExitCode {
     }
 }
 
-/// Accepts what was left, and names it.
+/// Accepts the files that were left, and names them.
 fn accept_left(folder: Result<PathBuf, CaseError>) -> Result<u8, CaseError> {
     let folder = folder?;
     let accepted = harness::review::accept_left(&folder).map_err(|source| ResultsError::File {
@@ -353,9 +353,9 @@ fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
         harness::matrix::write(&studies, all_cases)?;
     }
     let drift = harness::matrix::drift(&studies, level, all_cases)?;
-    missed.extend(drift.into_iter().map(|told| Difference {
+    missed.extend(drift.into_iter().map(|change| Difference {
         name: "verification matrix".to_owned(),
-        told,
+        change,
     }));
     let code = print_report(&studies, &missed, arguments, clock.elapsed().as_secs_f64());
     for error in &errors {
@@ -364,7 +364,7 @@ fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
     Ok(errors.first().map_or(code, exit_code))
 }
 
-/// Prints notes, table and what was missed; returns the exit code.
+/// Prints notes, table and misses; returns the exit code.
 fn print_report(
     studies: &[Study],
     missed: &[Difference],

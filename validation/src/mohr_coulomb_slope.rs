@@ -21,7 +21,7 @@ use crate::harness::study::{Level, RunRecord, Study};
 use crate::pictures::contours;
 use crate::runs::{Computed, Trial, mesh, method, shipped_case};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A 2:1 slope in drained soil, φ = 20°, ψ = 0: displacement against strength reduction factor, and the factor of safety.";
 /// The displacements.
 const GRIFFITHS_LANE: Oracle = Oracle {
@@ -76,7 +76,7 @@ struct Mesh {
     slug: String,
 }
 
-/// What was found on one mesh.
+/// The result on one mesh.
 struct Found {
     /// The factors listed: 0.8 to 1.6.
     sweep: Vec<State>,

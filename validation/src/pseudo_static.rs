@@ -16,7 +16,7 @@ use crate::limit_equilibrium::rotation;
 use crate::limit_equilibrium::section::{self, Search, Section, Variant, YOUNG};
 use crate::runs::Computed;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A pseudo-static force as a share of the weight. A level layer of dry soil without cohesion is pushed along its rough base: the infinite slope, whose factor of safety is known. Slopes with k = 0.1 are held against rotating blocks, and the force on the slope of Loukidis et al. is raised until it fails. Soil dilates with ψ = φ, and the geometry is given.";
 /// A block on a plane.
 const INFINITE_SLOPE: Oracle = Oracle {
@@ -36,7 +36,7 @@ const LOUKIDIS: Oracle = Oracle {
     source: "Loukidis, Bandini and Salgado 2003, example 1, dry",
     locator: "k_c = 0.432, where Spencer's method on logarithmic spirals has F = 1.000",
 };
-/// By how much an upper bound of rigid blocks may lie above what it bounds \[-\].
+/// By how much an upper bound of rigid blocks may lie above the bounded value \[-\].
 const BLOCKS: f64 = 0.03;
 /// By how much a mesh may lie above it: coarse, fine \[-\].
 const ABOVE: [f64; 2] = [0.03, 0.02];

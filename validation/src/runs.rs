@@ -1,4 +1,4 @@
-//! Runs of the shipped case files, with what the studies need of them: the reports of all steps and
+//! Runs of the shipped case files, with the parts that studies need: the reports of all steps and
 //! the states of trials, gathered from the events of a run.
 
 use std::sync::atomic::AtomicBool;
@@ -48,7 +48,7 @@ pub(crate) fn corners(polygon: &[[f64; 2]]) -> String {
     format!("[{}]", corners.join(", "))
 }
 
-/// Overrides that leave out what a case watches at places of its own mesh or outline.
+/// Overrides that leave out the watched quantities of a case at places of its own mesh or outline.
 pub(crate) fn unwatched() -> [String; 3] {
     ["monitors=[]", "sections=[]", "checks=[]"].map(str::to_owned)
 }
@@ -58,7 +58,7 @@ pub(crate) fn unwatched() -> [String; 3] {
 pub(crate) struct Computed<const D: usize> {
     /// The case.
     pub(crate) case: Case<D>,
-    /// What the engine hands back.
+    /// The run as the engine returns it.
     pub(crate) run: run::Run<D>,
     /// Every step, but those of trials.
     pub(crate) report: MarchReport,

@@ -16,7 +16,7 @@ use crate::limit_equilibrium::section::{self, Layer, Search, Section, Variant, Y
 use crate::runs::Computed;
 use crate::slopes::Found;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Undrained slopes whose strength grows with depth from nothing or from c_0 at the crest, and an embankment with friction on clay whose strength grows with depth: factors of safety of the given geometry with shared strain on two meshes, extrapolated. Circles bound the slopes from above, half a percent to two above the truth; limit analysis bounds the embankment on both sides.";
 const CIRCLES: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,
@@ -30,7 +30,7 @@ const EMBANKMENT: Oracle = Oracle {
 };
 /// Where the truth lies below the circles, as shares of them.
 const BELOW_CIRCLES: [f64; 2] = [0.98, 0.995];
-/// How far an extrapolated factor may lie beyond what is known \[-\].
+/// How far an extrapolated factor may lie beyond the known one \[-\].
 const BEYOND: f64 = 0.02;
 /// ν of undrained soil \[-\]: with much less, ground at rest whose strength begins at nothing yields everywhere.
 const POISSON: f64 = 0.45;

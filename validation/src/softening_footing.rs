@@ -13,7 +13,7 @@ use crate::harness::reference::interpolate;
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::Computed;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A rough strip footing on weightless Tresca soil with E/c_u = 1500 is pushed by a tenth of its width on the given geometry, bonded: on clay that keeps its strength, and on clay that loses 70 % of it, 63 % of that over a plastic strain of 5 %, with a length of a tenth of the width (theory, eqs. 110a to 110c), on cells of a half and a third of the length. Without a length the same clay is the control: its bands are as wide as cells.";
 const PRANDTL: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -173,12 +173,12 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         .collect::<Result<Vec<_>, CaseError>>()?;
     let curves: Vec<_> = computed
         .iter()
-        .map(|own| own.curve("resistance").points(0, 1))
+        .map(|result| result.curve("resistance").points(0, 1))
         .collect();
     let runs: Vec<usize> = std::iter::zip(&clays, &computed)
-        .map(|((cells, clay), own)| {
+        .map(|((cells, clay), result)| {
             let variant = format!("{}, l/h = {cells}", clay.name());
-            study.run_to_end(RunRecord::new(variant, &own.report, own.elapsed))
+            study.run_to_end(RunRecord::new(variant, &result.report, result.elapsed))
         })
         .collect();
     let intact = at(&curves[0], None);

@@ -15,7 +15,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{RunRecord, Study};
 use crate::runs::{Computed, corners};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Construction stages: fill in lifts, excavation in slices and at once, water that is lowered, undrained loading and its dissipation. Columns between smooth sides have exact stresses; elastic ground that was cut in slices is that cut at once, and that which never was anything else.";
 const COLUMN: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -92,14 +92,14 @@ fn ground(
 }
 
 /// A stage after the last one of a case.
-fn then(case: &mut Case<2>, own: Construction) {
+fn then(case: &mut Case<2>, construction: Construction) {
     let last = case.stages.len() - 1;
-    for &body in &own.place {
+    for &body in &construction.place {
         case.bodies[body].from_start = false;
     }
     case.stages.push(Stage {
         name: format!("stage {}", last + 2),
-        kind: StageKind::Construction(own),
+        kind: StageKind::Construction(construction),
         steps: 4,
         start_from: Some(last),
         ..case.stages[last].clone()
@@ -128,20 +128,20 @@ fn deviation(run: &Run<2>, exact: impl Fn(f64) -> f64) -> f64 {
     for particle in 0..particles.len() {
         let y = particles.x[particle][1] - particles.displacement[particle][1];
         let sums = cells.entry((2.0 * y).floor() as i64).or_default();
-        for (sum, own) in sums
+        for (sum, value) in sums
             .iter_mut()
             .zip([1.0, particles.sigma[particle][1][1], exact(y)])
         {
-            *sum += own;
+            *sum += value;
         }
     }
     let means = cells
         .values()
-        .map(|[count, own, exact]| (own / count, exact / count));
+        .map(|[count, stress, exact]| (stress / count, exact / count));
     let greatest = means
         .clone()
         .fold(0.0, |a: f64, (_, exact)| a.max(exact.abs()));
-    means.fold(0.0, |a: f64, (own, exact)| a.max((own - exact).abs())) / greatest
+    means.fold(0.0, |a: f64, (stress, exact)| a.max((stress - exact).abs())) / greatest
 }
 
 /// A column of soil that is filled up in lifts, and dug off again.
@@ -174,7 +174,7 @@ fn lifts(study: &mut Study) -> Result<(), CaseError> {
         &lifts.report,
         lifts.elapsed,
     ));
-    // Weight above by what was seeded above: the width does not change.
+    // Weight above by the particles seeded above: the width does not change.
     let filled = deviation(&lifts.run, |y| -dry * (10.0 - y));
     study.check(run, quantity, COLUMN.says(0.0), Band::AtMost(2e-3), filled);
 
@@ -472,10 +472,10 @@ fn cuts(study: &mut Study) -> Result<(), CaseError> {
 }
 
 /// The largest difference of two lists over the largest number of the second; not a number for lists of other lengths.
-fn difference(own: &[f64], other: &[f64]) -> f64 {
-    if own.len() != other.len() {
+fn difference(found: &[f64], other: &[f64]) -> f64 {
+    if found.len() != other.len() {
         return f64::NAN;
     }
     let largest = other.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    std::iter::zip(own, other).fold(0.0, |a: f64, (x, y)| a.max((x - y).abs())) / largest
+    std::iter::zip(found, other).fold(0.0, |a: f64, (x, y)| a.max((x - y).abs())) / largest
 }

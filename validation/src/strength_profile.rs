@@ -14,7 +14,7 @@ use crate::harness::study::coverage::{self, Known, on_cells};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, corners, mesh, shipped_case};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A rigid strip on weightless Tresca soil whose strength grows with depth from c_0, bonded, rough and smooth, on the given geometry with shared strain. Limit loads on two meshes are extrapolated to no width of the cell. Mechanisms grow thin as kB/c_0 grows: 6 and 10 take finer cells.";
 const BOUNDS: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,

@@ -22,7 +22,7 @@ use rayon::prelude::*;
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "The infinite slope: a layer of dry soil without cohesion, φ = 30°, is tilted between two smooth ends until it slides. It does at tan β = tan φ, once the layer is long enough for its ends not to matter; with water that seeps along it, and with r_u, at tilts that are known as well.";
 /// Sliding on planes parallel to the surface.
 const INFINITE_SLOPE: Oracle = Oracle {

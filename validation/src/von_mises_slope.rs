@@ -19,7 +19,7 @@ use crate::harness::study::{Level, RunRecord, Study};
 use crate::pictures::{contours, scaled, with_outlines};
 use crate::runs::{Computed, corners, mesh, method, shipped_case, unwatched};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A 45° slope in undrained soil: smoothness of stress in soft soil that crosses cells, and the collapse load of stiff soil, for the four variants of the method.";
 /// How smooth the stresses of each variant are.
 const PROGRAM: Oracle = Oracle {

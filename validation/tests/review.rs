@@ -14,7 +14,7 @@ use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// What is changed: a curve, a count, a residual, and a snapshot that is not there yet.
+/// The changed snapshots: a curve, a count, a residual, and a snapshot that is not there yet.
 const CURVE: &str = "column__convergence_1MPa";
 const COUNT: &str = "column__effort__igimp_16_cells_e_1_mpa";
 const RESIDUALS: &str = "column__residuals__256_cells_1MPa";
@@ -120,7 +120,7 @@ impl Walk {
         fs::write(self.snap(name), change(&text) + "\n").unwrap();
     }
 
-    /// Names of what was left beside the snapshots.
+    /// Names of the files beside the snapshots.
     fn left(&self) -> Vec<String> {
         let names = fs::read_dir(&self.snapshots).unwrap();
         let names = names.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -131,7 +131,7 @@ impl Walk {
         left
     }
 
-    /// The words of what is accepted, by name.
+    /// The words of the accepted snapshots, by name.
     fn accepted(&self) -> BTreeMap<&'static str, Vec<String>> {
         let words = |name: &str| {
             let text = fs::read_to_string(self.snap(name)).unwrap();
@@ -140,7 +140,7 @@ impl Walk {
         ALL.into_iter().map(|name| (name, words(name))).collect()
     }
 
-    /// The last run was clean: nothing told, nothing left, no picture.
+    /// The last run was clean: nothing printed, nothing left, no picture.
     fn is_clean(&self, run: &Output) {
         assert_eq!(run.status.code(), Some(0), "{}", said(run));
         assert!(
@@ -190,7 +190,7 @@ fn differences(output: &Output) -> Vec<String> {
 }
 
 /// A run after the change: exit code, lines, pictures and files.
-fn told_and_drawn(walk: &Walk) {
+fn reported_and_drawn(walk: &Walk) {
     assert!(!walk.folder.join("results").exists());
     let run = walk.run(&[]);
     assert_eq!(run.status.code(), Some(1), "{}", said(&run));
@@ -228,13 +228,13 @@ fn told_and_drawn(walk: &Walk) {
 }
 
 #[test]
-fn a_changed_number_is_told_drawn_and_accepted() {
+fn a_changed_number_is_reported_drawn_and_accepted() {
     let walk = Walk::new("review");
     let before = walk.accepted();
     walk.is_clean(&walk.run(&[]));
     fs::remove_dir_all(walk.folder.join("results")).unwrap();
     walk.change();
-    told_and_drawn(&walk);
+    reported_and_drawn(&walk);
 
     let accepting = walk.validate(&["--accept-left"]);
     assert_eq!(accepting.status.code(), Some(0));
@@ -254,8 +254,8 @@ fn a_changed_number_is_told_drawn_and_accepted() {
     agree(&walk.accepted(), &before);
 }
 
-/// What was accepted is what it was before the change: curves within the tolerance of snapshots, words to the
-/// letter. Residuals may be round-off, and their number is what stays.
+/// The accepted snapshots are those of before the change: curves within the tolerance of snapshots, words to the
+/// letter. Residuals may be round-off, and their number stays.
 fn agree(now: &BTreeMap<&str, Vec<String>>, before: &BTreeMap<&str, Vec<String>>) {
     let number = |word: &String| word.parse::<f64>().ok();
     for (name, words) in now {
@@ -272,7 +272,7 @@ fn agree(now: &BTreeMap<&str, Vec<String>>, before: &BTreeMap<&str, Vec<String>>
 }
 
 #[test]
-fn cargo_insta_takes_what_was_left_in_a_clone() {
+fn cargo_insta_takes_pending_snapshots_in_a_clone() {
     let Some(programs) = std::env::var_os("IGIMP_CARGO_INSTA") else {
         println!(
             "skipped: IGIMP_CARGO_INSTA names no folder (cargo install cargo-insta --root FOLDER, and FOLDER/bin)"
@@ -283,7 +283,7 @@ fn cargo_insta_takes_what_was_left_in_a_clone() {
     let before = walk.accepted();
     let insta = |command: &str| Insta::new(&programs, &walk, command);
     walk.change();
-    told_and_drawn(&walk);
+    reported_and_drawn(&walk);
     let pending = said(&insta("pending-snapshots").output());
     for name in ALL {
         assert!(
@@ -302,7 +302,7 @@ fn cargo_insta_takes_what_was_left_in_a_clone() {
     }
     fs::remove_dir_all(walk.folder.join("results")).unwrap();
     walk.change();
-    told_and_drawn(&walk);
+    reported_and_drawn(&walk);
     insta("review").answered("A");
     walk.is_clean(&walk.run(&[]));
     agree(&walk.accepted(), &before);

@@ -6,12 +6,12 @@ use std::fs;
 
 use crate::process::root;
 
-/// A command that is printed, what runs it, and the line there.
+/// A printed command, the file that runs it, and the line there.
 struct Printed {
     command: &'static str,
     run_by: &'static str,
     line: &'static str,
-    /// What is smaller there, or other.
+    /// The part that is smaller there, or other.
     scope: &'static str,
 }
 
@@ -149,7 +149,7 @@ fn every_command_that_is_printed_is_run() {
 }
 
 #[test]
-fn what_is_said_to_run_a_command_does() {
+fn the_stated_lines_run_their_commands() {
     for Printed {
         command,
         run_by,

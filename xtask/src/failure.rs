@@ -23,7 +23,7 @@ impl Failure {
         Self { message, code }
     }
 
-    /// A program or file failed: what was being done, and what was said.
+    /// A program or file failed: the action and its error.
     pub(crate) fn input_output(action: impl fmt::Display, cause: impl fmt::Display) -> Self {
         Self::new(INPUT_OUTPUT, format!("{action}: {cause}"))
     }

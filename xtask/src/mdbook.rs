@@ -15,10 +15,10 @@ const VERSION: &str = "0.5.4";
 ///
 /// The installation fails.
 pub(crate) fn find_or_install(target: &Path) -> Result<PathBuf, Failure> {
-    let own = target
+    let installed = target
         .join("tools/bin")
         .join(format!("mdbook{}", std::env::consts::EXE_SUFFIX));
-    for candidate in [PathBuf::from("mdbook"), own.clone()] {
+    for candidate in [PathBuf::from("mdbook"), installed.clone()] {
         let version = output(program(&candidate).arg("--version"));
         if version.is_ok_and(|said| serves(&said)) {
             return Ok(candidate);
@@ -47,7 +47,7 @@ pub(crate) fn find_or_install(target: &Path) -> Result<PathBuf, Failure> {
     std::fs::remove_dir_all(&built).map_err(|error| {
         Failure::input_output(format!("cannot remove {}", built.display()), error)
     })?;
-    Ok(own)
+    Ok(installed)
 }
 
 /// Whether a program that says this of its version serves.

@@ -1,4 +1,4 @@
-//! What the checks need to know of the workspace, from `cargo metadata`.
+//! The workspace as the checks see it, from `cargo metadata`.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
@@ -61,7 +61,7 @@ impl Metadata {
         for package in value["packages"].as_array()? {
             let manifest = Path::new(package["manifest_path"].as_str()?);
             let dependencies = package["dependencies"].as_array()?;
-            let own = Package {
+            let parsed = Package {
                 name: string(&package["name"])?,
                 version: string(&package["version"])?,
                 licence: string(&package["license"]),
@@ -73,7 +73,7 @@ impl Metadata {
                     .collect::<Option<_>>()?,
                 links: Vec::new(),
             };
-            packages.insert(string(&package["id"])?, own);
+            packages.insert(string(&package["id"])?, parsed);
         }
         for node in value["resolve"]["nodes"].as_array()? {
             let package = packages.get_mut(node["id"].as_str()?)?;

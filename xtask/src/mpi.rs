@@ -39,7 +39,7 @@ pub(crate) fn run() -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// What the program needs and this computer lacks.
+/// The first need of the program that this computer lacks.
 fn missing() -> Option<&'static str> {
     let needed: [(&str, &str, &[&str]); 3] = [
         ("PETSc", "pkg-config", &["--exists", "PETSc"]),
@@ -48,7 +48,7 @@ fn missing() -> Option<&'static str> {
     ];
     let mut lacks = needed.into_iter();
     let lacks = lacks.find(|(_, name, words)| output(program(*name).args(*words)).is_err());
-    lacks.map(|(what, ..)| what)
+    lacks.map(|(need, ..)| need)
 }
 
 #[cfg(test)]

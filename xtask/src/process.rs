@@ -46,7 +46,7 @@ pub(crate) fn status(command: &mut Command) -> Result<u8, Failure> {
     }
 }
 
-/// Runs a program and returns what it printed; a failure unless it ends well.
+/// Runs a program and returns its output; a failure unless it ends well.
 pub(crate) fn output(command: &mut Command) -> Result<String, Failure> {
     let output = command
         .output()

@@ -12,7 +12,7 @@ use crate::process::{output, program, root, status, with_manifest};
 pub(crate) const MANIFEST: &str = "python/Cargo.toml";
 /// The oldest Python that the package runs on.
 const OLDEST: (u32, u32) = (3, 10);
-/// What builds the wheel and what its tests and notebooks need.
+/// Packages that build the wheel, and those of its tests and notebooks.
 const TOOLS: [&str; 8] = [
     "maturin>=1.9,<2",
     "pytest>=8",
@@ -106,7 +106,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     )
 }
 
-/// What installs a wheel without asking a registry.
+/// The command that installs a wheel without asking a registry.
 fn install(python: &Path, wheel: &Path) -> Command {
     let words = "-m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps";
     let mut install = program(python);

@@ -1,4 +1,4 @@
-//! `cargo xtask validate`: the validation program in release mode, and what `--accept` changed.
+//! `cargo xtask validate`: the validation program in release mode, and the changes of `--accept`.
 
 use crate::failure::Failure;
 use crate::process::{program, status};

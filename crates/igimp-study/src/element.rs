@@ -1,4 +1,4 @@
-//! A law on its own: the test, its table, its pictures, and what is said of it.
+//! A law on its own: the test, its table, its pictures and its text.
 
 mod closed_form;
 mod compared;
@@ -38,7 +38,7 @@ use values::KeyValues;
 /// Largest natural strain of a test \[-\].
 const MOST_STRAIN: f64 = 10.0;
 
-/// What is driven.
+/// The driven test.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Drive {
     /// A test of the laboratory, up to a strain \[-\].
@@ -50,7 +50,7 @@ pub enum Drive {
 /// A test of a material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// What is driven.
+    /// The driven test.
     pub drive: Drive,
     /// The initial axial stress and that at the sides, effective \[Pa\], compression positive.
     pub stress: [f64; 2],
@@ -71,11 +71,11 @@ pub struct Tested {
     pub run: ElementRun,
     /// Its table, named `element`.
     pub table: Table,
-    /// What is said of it, lines ready to print.
+    /// Its lines, ready to print.
     pub text: String,
     /// The data beside it.
     pub compared: Option<Compared>,
-    /// What was said as the file of its material was read, ready to print; it stands on the page. Empty at first.
+    /// Warnings of the file of its material, ready to print; they stand on the page. Empty at first.
     pub warnings: String,
     request: Request,
     /// As it was driven.
@@ -96,13 +96,13 @@ pub enum TestError {
     #[error(transparent)]
     Element(#[from] ElementError),
     /// A value that no test can have.
-    #[error("{what} is {value}: {bounds}")]
+    #[error("{quantity} is {value}: {bounds}")]
     Value {
-        /// Whose value.
-        what: &'static str,
+        /// The quantity.
+        quantity: &'static str,
         /// The value in SI units.
         value: f64,
-        /// What it may be.
+        /// Its bounds.
         bounds: &'static str,
     },
     /// The data are none of the test.
@@ -114,7 +114,7 @@ pub enum TestError {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{problem}")]
 pub struct NotChosen {
-    /// What is wrong.
+    /// The problem.
     pub problem: String,
     /// The names that there are.
     pub names: String,
@@ -253,8 +253,8 @@ impl Request {
             ),
         ];
         match values.into_iter().find(|(.., holds, _)| !holds) {
-            Some((what, value, _, bounds)) => Err(TestError::Value {
-                what,
+            Some((quantity, value, _, bounds)) => Err(TestError::Value {
+                quantity,
                 value,
                 bounds,
             }),
@@ -277,7 +277,7 @@ impl Drive {
 }
 
 impl Tested {
-    /// What was measured, what is computed there, and the difference: a table named `data`, if there are data.
+    /// Measured and computed values, and their difference: a table named `data`, if there are data.
     pub fn data_table(&self) -> Option<Table> {
         Some(self.compared.as_ref()?.table(&self.request.drive))
     }
@@ -297,7 +297,7 @@ impl Tested {
     /// their names.
     ///
     /// # Errors
-    /// [`ReportError`] of what cannot be written.
+    /// [`ReportError`] of a file that cannot be written.
     pub fn write(&self, folder: &Path) -> Result<Vec<String>, ReportError> {
         let files = self.write_parts(folder)?;
         page::page(self).write(folder)?;
@@ -329,7 +329,7 @@ impl Tested {
         pictures::plots(&self.run.states, drive, &self.title, compared)
     }
 
-    /// What holds of the material in its case and not in the test.
+    /// Notes on the material that hold in its case and not in the test.
     fn notes(&self) -> Vec<String> {
         let cu = short(self.material.cohesive() / 1e3);
         let by_stress = format!("{} {cu} kPa", said::BY_STRESS);
@@ -388,10 +388,10 @@ mod tests {
         [materials.rock]\nmodel = \"hoek-brown\"\nunit_weight = \"25 kN/m3\"\nyoung = \"1 GPa\"\npoisson = 0.3\n\
         sci = \"30 MPa\"\ngsi = 20.0\nmi = 8.0\n";
 
-    /// GOAL: where a formula is told, the test ends on it: 0.1 %, with natural and with linear strain. ORACLE: eq. 92 and the closed
+    /// GOAL: where a formula is printed, the test ends on it: 0.1 %, with natural and with linear strain. ORACLE: eq. 92 and the closed
     /// forms of perfectly plastic soil.
     #[test]
-    fn tests_end_on_the_formulas_that_are_told() {
+    fn tests_end_on_the_formulas_that_are_printed() {
         let materials = MaterialsFile::parse("soils.toml", SOILS, &[])
             .unwrap()
             .materials;
@@ -483,10 +483,10 @@ mod tests {
         assert!(test(sand, &sheared(0.1)).is_ok());
     }
 
-    /// GOAL: a duration without effect is count, and one with effect is not; so is strength that snaps back where a test ends early.
+    /// GOAL: a duration without effect is named, and one with effect is not; so is strength that snaps back where a test ends early.
     /// ORACLE: the laws; soil with these curves is followed where all strains but one are driven.
     #[test]
-    fn a_duration_without_effect_and_brittle_soil_are_told() {
+    fn a_duration_without_effect_and_brittle_soil_are_printed() {
         let clay = "igimp = 1\n[materials.clay]\nmodel = \"tresca\"\nunit_weight = \"18 kN/m3\"\nyoung = \"30 MPa\"\n\
             poisson = 0.49\ncu = \"50 kPa\"\n";
         let rate = format!("{clay}rate = {{ per_log_cycle = 0.1, reference = \"1 %/h\" }}\n");
@@ -525,10 +525,10 @@ mod tests {
         }
     }
 
-    /// GOAL: of a law that takes the place of that of the file its name and its words are told, and no formula of the other.
+    /// GOAL: of a law that takes the place of that of the file its name and its words are printed, and no formula of the other.
     /// CASE: sand that is given the law of the clay with c_u = 50 kPa. ORACLE: q = 2 c_u of Tresca.
     #[test]
-    fn a_law_that_was_given_is_told_of() {
+    fn a_given_law_is_named() {
         let all = soils();
         let law = all[2].law().unwrap();
         let sand = Material {

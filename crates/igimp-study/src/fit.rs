@@ -29,18 +29,18 @@ use problem::{Lost, Problem, Solved};
 pub use statistics::Known;
 use statistics::{Statistics, statistics};
 
-/// Correlations above are told.
+/// Correlations above are printed.
 const CORRELATED: f64 = 0.9;
 
-/// Where a material comes from: what is asked again at every trial.
+/// Where a material comes from: the source is asked again at every trial.
 pub trait Source {
     /// The material with values of some of its keys, written as in the file.
     ///
     /// # Errors
-    /// [`InputError`] of what the file does not allow.
+    /// [`InputError`] of values that the file does not allow.
     fn material(&self, values: &[(String, String)]) -> Result<Material, InputError>;
 
-    /// What is written of a key in the file: a quantity as text, or a number.
+    /// The value of a key as written in the file: a quantity as text, or a number.
     fn written(&self, key: &str) -> Option<String>;
 }
 
@@ -60,8 +60,8 @@ impl Source for FileSource {
             .map(|(key, value)| format!("materials.{name}.{key}={value}"))
             .collect();
         let file = self.file.with(set)?;
-        let is_own = |own: &&Material| own.name == self.material;
-        let found = file.materials.iter().find(is_own).cloned();
+        let is_named = |material: &&Material| material.name == self.material;
+        let found = file.materials.iter().find(is_named).cloned();
         Ok(found.expect("values of a material leave its name"))
     }
 
@@ -70,7 +70,7 @@ impl Source for FileSource {
     }
 }
 
-/// What is fitted to what.
+/// Parameters, and the data that they are fitted to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitRequest {
     /// The parameters.
@@ -222,11 +222,11 @@ pub fn fit(source: &dyn Source, request: &FitRequest) -> Result<Fitted, FitError
         .is_minimum(&at, &residuals, &jacobian, &step)
         .map_err(|why| not_converged(&at, why))?;
     let found: Vec<Found> = (parameters.iter().zip(&at).zip(known))
-        .map(|((own, x), known)| Found {
-            key: own.key.clone(),
-            unit: own.unit.clone(),
-            start: own.first,
-            value: own.value(*x),
+        .map(|((parameter, x), known)| Found {
+            key: parameter.key.clone(),
+            unit: parameter.unit.clone(),
+            start: parameter.first,
+            value: parameter.value(*x),
             known,
         })
         .collect();
@@ -257,7 +257,7 @@ fn not_converged(parameters: &[Parameter], at: &[f64], why: &str) -> FitError {
     FitError::NotConverged {
         why: why.to_owned(),
         at: values
-            .map(|(own, x)| format!("{} = {}", own.key, own.text(own.value(*x))))
+            .map(|(p, x)| format!("{} = {}", p.key, p.text(p.value(*x))))
             .collect::<Vec<_>>()
             .join(", "),
     }
@@ -266,7 +266,7 @@ fn not_converged(parameters: &[Parameter], at: &[f64], why: &str) -> FitError {
 /// The parameters of a request, each of which stands there once.
 fn parameters(vary: &[Vary], source: &dyn Source) -> Result<Vec<Parameter>, ParameterError> {
     for (place, one) in vary.iter().enumerate() {
-        if vary[..place].iter().any(|own| own.key == one.key) {
+        if vary[..place].iter().any(|other| other.key == one.key) {
             let key = one.key.clone();
             return Err(ParameterError::Twice { key });
         }
@@ -282,8 +282,8 @@ impl Fitted {
         let mut pairs = Vec::new();
         for (one, row) in self.correlation.iter().enumerate() {
             let others = row.iter().enumerate().skip(one + 1);
-            let told = others.filter(|(_, own)| own.abs() > CORRELATED);
-            pairs.extend(told.map(|(other, own)| (one, other, *own)));
+            let strong = others.filter(|(_, value)| value.abs() > CORRELATED);
+            pairs.extend(strong.map(|(other, value)| (one, other, *value)));
         }
         pairs
     }
@@ -292,7 +292,7 @@ impl Fitted {
     /// its own, and all of it as `report.html`; their names.
     ///
     /// # Errors
-    /// [`ReportError`] of what cannot be written.
+    /// [`ReportError`] of a file that cannot be written.
     pub fn write(&self, folder: &Path) -> Result<Vec<String>, ReportError> {
         let header = [
             "parameter",
@@ -306,16 +306,16 @@ impl Fitted {
         ]
         .map(str::to_owned);
         let mut rows = RowWriter::create(&folder.join("fit.csv"), &header)?;
-        for own in &self.parameters {
-            rows.push_text(&said::row(own))?;
+        for found in &self.parameters {
+            rows.push_text(&said::row(found))?;
         }
-        let keys = self.parameters.iter().map(|own| own.key.clone());
+        let keys = self.parameters.iter().map(|found| found.key.clone());
         let header: Vec<String> = ["parameter".to_owned()].into_iter().chain(keys).collect();
         let mut rows = RowWriter::create(&folder.join("correlation.csv"), &header)?;
-        for (own, correlations) in self.parameters.iter().zip(&self.correlation) {
-            let cells = correlations.iter().map(|own| said::correlation(*own, 9));
+        for (found, correlations) in self.parameters.iter().zip(&self.correlation) {
+            let cells = correlations.iter().map(|r| said::correlation(*r, 9));
             rows.push_text(
-                &[own.key.clone()]
+                &[found.key.clone()]
                     .into_iter()
                     .chain(cells)
                     .collect::<Vec<_>>(),
@@ -329,16 +329,16 @@ impl Fitted {
         let mut written = Vec::new();
         for ((tested, scales), at) in self.tests.iter().zip(&self.scales).zip(1..) {
             let name = format!("test-{at}");
-            let own = folder.join(&name);
-            std::fs::create_dir_all(&own).map_err(|source| ResultsError::File {
-                path: own.clone(),
+            let subfolder = folder.join(&name);
+            std::fs::create_dir_all(&subfolder).map_err(|source| ResultsError::File {
+                path: subfolder.clone(),
                 source,
             })?;
-            let mut files = tested.write_parts(&own)?;
-            let scales: Vec<f64> = scales.iter().map(|own| own * self.deviation).collect();
+            let mut files = tested.write_parts(&subfolder)?;
+            let scales: Vec<f64> = scales.iter().map(|scale| scale * self.deviation).collect();
             let plot = tested.residuals(&scales).filter(|_| self.deviation > 0.0);
             if let Some(plot) = plot {
-                plot.write(&own.join("residuals"))?;
+                plot.write(&subfolder.join("residuals"))?;
                 files.extend(["svg", "png"].map(|kind| format!("residuals.{kind}")));
             }
             written.push((name, files));

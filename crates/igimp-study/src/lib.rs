@@ -1,11 +1,11 @@
-//! Many runs, and what is said of one: parameter studies, tests of laws, and the texts of the program and of Python.
+//! Many runs, and the text on one: parameter studies, tests of laws, and the texts of the program and of Python.
 //!
-//! | module | what to find |
+//! | module | contents |
 //! |---|---|
 //! | [`sweep`] | many cases that differ in a few values |
 //! | [`element`] | a law on its own: test, table, pictures |
 //! | [`fit`] | parameters of a law from data of the laboratory |
-//! | [`narration`] | what is said of a case and of its run, as text |
+//! | [`narration`] | a case and its run as text |
 //! | [`threads`] | how many threads may be asked for |
 
 pub mod element;

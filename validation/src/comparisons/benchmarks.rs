@@ -11,7 +11,7 @@ use crate::footing;
 use crate::harness::study::{RunRecord, Study};
 use crate::runs::{Computed, corners, mesh, shipped_case, unwatched};
 
-/// One choice: what it changes in a case.
+/// One choice: its changes to a case.
 pub(super) struct Variant {
     /// Its name in texts.
     pub(super) label: &'static str,

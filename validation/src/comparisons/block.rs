@@ -134,7 +134,7 @@ pub(super) fn small_strain_turned(angle: f64, steps: usize) -> f64 {
 /// A quarter turn \[rad\].
 pub(super) const QUARTER: f64 = 0.5 * PI;
 
-/// What fills the cells beside the block.
+/// The filling of the cells beside the block.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Beside {
     /// Nothing.

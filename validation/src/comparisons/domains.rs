@@ -30,7 +30,7 @@ const SECOND_ORDER: Oracle = Oracle {
     source: "second order of the GIMP basis",
     locator: "order between 64 and 256 cells",
 };
-/// What a rotation does to domains.
+/// The effect of a rotation on domains.
 const RIGID_ROTATION: Oracle = Oracle {
     kind: OracleKind::Exact,
     source: "rigid rotation",
@@ -153,7 +153,7 @@ fn figure(results: &Results<'_>, stiffness: &str) -> CurvePlot {
     }
 }
 
-/// What domains become when a body turns.
+/// Domains after a turn of the body.
 fn rotation(study: &mut Study) -> Result<(), CaseError> {
     let header = [
         "angle_[deg]",

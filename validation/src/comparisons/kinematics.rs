@@ -28,13 +28,13 @@ const SMALL_STRAIN_COLUMN: Oracle = Oracle {
     source: "column of the rate law dσ = E dλ/λ under its own weight",
     locator: "λ = exp(−s): height (1 − e^−S)/S, S = ρ₀ g l₀/E",
 };
-/// What a rotation does to a body without stress.
+/// The effect of a rotation on a body without stress.
 const RIGID_ROTATION: Oracle = Oracle {
     kind: OracleKind::Exact,
     source: "rigid rotation of a stress-free body",
     locator: "no stress",
 };
-/// What small strain makes of it.
+/// Its result at small strain.
 const SMALL_STRAIN_ROTATION: Oracle = Oracle {
     kind: OracleKind::Exact,
     source: "small strain of a rotation in n steps",

@@ -15,7 +15,7 @@ use igimp_cases::CaseError;
 use crate::comparisons::benchmarks::Footings;
 use crate::harness::study::{Level, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Choices of the method side by side: finite and small strain, updates of the particle domains, particles per cell, remedies for small cuts. What the defaults choose must meet an outside value; what they reject must miss it.";
 
 /// Runs the study: columns and blocks at every level, slopes, footings and the cantilever at the

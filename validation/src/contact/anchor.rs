@@ -9,7 +9,7 @@ use super::buried::{Buried, Claim, Question, adhesive, answer};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A horizontal plate, two cells thick, is pulled up at small strain through weightless Tresca soil with E/s_u = 1000 from depths of one, two and five widths: soil leaves its underside (breakaway), or is bonded with adhesion s_u. Limit loads, extrapolated to a thin plate, are held against bounds of limit analysis; bonded ones at one and two widths on every mesh. Plates that soil sticks to whatever its strength are told.";
 const BOUNDS: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,

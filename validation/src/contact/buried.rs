@@ -33,7 +33,7 @@ const SOFT: f64 = 1.0;
 
 /// A body of unit width in half of the soil around it, x ≥ 0.
 pub(crate) struct Buried {
-    /// What it is, and how it is computed.
+    /// The body, and how it is computed.
     pub(crate) variant: String,
     /// Cells over the unit width.
     pub(crate) cells: usize,
@@ -163,16 +163,16 @@ impl Buried {
 /// Cells over the unit width of a fine mesh.
 const FINE: usize = 17;
 
-/// What is claimed of a limit load.
+/// The claim on a limit load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Claim {
-    /// That of every mesh, and what they say of none.
+    /// That of every mesh, and the extrapolated one.
     Every,
-    /// What two meshes say of none; that of each is told.
+    /// The one extrapolated from two meshes; that of each is printed.
     Extrapolated,
     /// That of every mesh of [`FINE`] cells: values that go up and down say nothing of none.
     Fine,
-    /// Nothing: all is told.
+    /// Nothing: all is printed.
     None,
 }
 
@@ -190,7 +190,7 @@ pub(crate) struct Question<'a> {
     pub(crate) body: Box<dyn Fn(usize) -> Buried + Sync + 'a>,
 }
 
-/// Computes limit loads, and holds them against what is known.
+/// Computes limit loads, and holds them against known ones.
 pub(crate) fn answer(study: &mut Study, questions: &[Question<'_>]) -> Result<(), CaseError> {
     let mut jobs = Vec::new();
     for question in questions {
@@ -212,18 +212,18 @@ pub(crate) fn answer(study: &mut Study, questions: &[Question<'_>]) -> Result<()
             (1.0 + question.beyond) * upper,
         );
         let expected = question.oracle.says(0.5 * (lower + upper));
-        let (mut told, mut limits, mut last) = (Vec::new(), Vec::new(), 0);
+        let (mut parts, mut limits, mut last) = (Vec::new(), Vec::new(), 0);
         let mut has_ended_early = false;
-        for (&cells, own) in question.meshes.iter().zip(&mut pushed) {
-            let limit = own.limit();
-            has_ended_early |= own.record.stopped_by.is_some();
-            let end = match own.record.stopped_by {
+        for (&cells, push) in question.meshes.iter().zip(&mut pushed) {
+            let limit = push.limit();
+            has_ended_early |= push.record.stopped_by.is_some();
+            let end = match push.record.stopped_by {
                 None => String::new(),
-                Some(_) => format!(" ({})", own.record.outcome),
+                Some(_) => format!(" ({})", push.record.outcome),
             };
             last = match question.claim {
-                Claim::None => study.run(own.record),
-                _ => study.run_to_end(own.record),
+                Claim::None => study.run(push.record),
+                _ => study.run_to_end(push.record),
             };
             let is_claimed = match question.claim {
                 Claim::Every => true,
@@ -233,9 +233,9 @@ pub(crate) fn answer(study: &mut Study, questions: &[Question<'_>]) -> Result<()
             if is_claimed {
                 study.check(last, "V/(B s_u) [-]", expected, band, limit);
             }
-            told.push(format!("{limit:.3} on {cells} cells{end}"));
+            parts.push(format!("{limit:.3} on {cells} cells{end}"));
             limits.push(limit);
-            own.curve.write_csv(&study.folder)?;
+            push.curve.write_csv(&study.folder)?;
         }
         if let (&[coarse, fine], &[a, b]) = (&limits[..], &question.meshes[..]) {
             let [a, b] = [a, b].map(|cells| 1.0 / cells as f64);
@@ -251,7 +251,7 @@ pub(crate) fn answer(study: &mut Study, questions: &[Question<'_>]) -> Result<()
             if matches!(question.claim, Claim::Every | Claim::Extrapolated) {
                 study.check(last, "V/(B s_u), extrapolated [-]", expected, band, limit);
             }
-            told.push(if has_ended_early {
+            parts.push(if has_ended_early {
                 "nothing is extrapolated: a march ended early".to_owned()
             } else {
                 format!("{limit:.3} extrapolated")
@@ -261,7 +261,7 @@ pub(crate) fn answer(study: &mut Study, questions: &[Question<'_>]) -> Result<()
             "{}, {}: V/(B s_u) = {}; bounds {lower:.3} to {upper:.3}",
             study.case,
             question.name,
-            told.join(", ")
+            parts.join(", ")
         ));
     }
     Ok(())

@@ -14,7 +14,7 @@ use crate::continuum::laboratory::{run, unobserved};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A rigid plate presses an elastic column that cannot widen from 0.8 m to 0.6 m. The stress is the exact one of the height that the penetration leaves, whatever the stiffness of contact.";
 const HENCKY: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -28,7 +28,7 @@ const HEIGHT: [f64; 2] = [0.8, 0.6];
 /// Size of the cells \[m\]: the surface is never so close above a line of the grid that nodes are tied.
 const CELL: f64 = 0.8 / 7.0;
 
-/// What a push found.
+/// The result of a push.
 struct Pressed {
     run: RunRecord,
     /// Mean vertical stress, and the largest deviation from it over itself.
@@ -70,7 +70,7 @@ fn press(stiffness: f64) -> Result<Pressed, CaseError> {
     let stresses = body.particles.sigma.iter().map(|sigma| sigma[1][1]);
     let stress = stresses.clone().sum::<f64>() / body.particles.len() as f64;
     let uneven = stresses
-        .map(|own| (own / stress - 1.0).abs())
+        .map(|sigma| (sigma / stress - 1.0).abs())
         .fold(0.0, f64::max);
     let touching = closed(&body.rigid);
     Ok(Pressed {

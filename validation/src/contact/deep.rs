@@ -11,7 +11,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::Computed;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Pipes on Tresca soil with E/s_u = 500 and γD/s_u = 0.1 are pushed three quarters of a diameter in and pulled out again, on ten cells and a geometry that moves. Their middles stand at two places of the grid within a cell. Every march has to reach both ends. Loads are means over 0.025 D; those of smooth pipes are claimed, all are told. Below the full level there is one smooth pipe.";
 const MERIFIELD: Oracle = Oracle {
     kind: OracleKind::Published,
@@ -21,7 +21,7 @@ const MERIFIELD: Oracle = Oracle {
 
 /// By how much a load that is claimed may differ \[-\].
 const BAND: f64 = 0.04;
-/// Depths over diameter at which loads are told.
+/// Depths over diameter at which loads are printed.
 const DEPTHS: [f64; 7] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7];
 /// Loads are means over depths as far as this to either side, in diameters.
 const ASIDE: f64 = 0.0126;
@@ -126,18 +126,18 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             Computed::new(CaseFile::parse(pipe.name, &text, &[])?.into_case())
         })
         .collect::<Result<Vec<_>, CaseError>>()?;
-    for ((pipe, place), own) in std::iter::zip(all, &computed) {
+    for ((pipe, place), run) in std::iter::zip(all, &computed) {
         let variant = format!("{}, middle at {place} m", pipe.name);
-        let last = study.run_to_end(RunRecord::new(variant.clone(), &own.report, own.elapsed));
-        let points = own.curve("load").points(0, 1);
+        let last = study.run_to_end(RunRecord::new(variant.clone(), &run.report, run.elapsed));
+        let points = run.curve("load").points(0, 1);
         let deepest = points.iter().map(|[w, _]| *w).fold(0.0, f64::max);
         let push = points.iter().take_while(|[w, _]| *w < deepest);
         let push: Vec<[f64; 2]> = push.copied().collect();
-        let mut told = Vec::new();
+        let mut loads = Vec::new();
         for depth in DEPTHS {
             let load = load_at(&push, depth);
             let fit = pipe.fit[0] * depth.powf(pipe.fit[1]);
-            told.push(format!("{load:.2} ({:+.1} %)", 100.0 * (load / fit - 1.0)));
+            loads.push(format!("{load:.2} ({:+.1} %)", 100.0 * (load / fit - 1.0)));
             if pipe.is_claimed {
                 let quantity = format!("V/(D s_u) at w/D = {depth} [-]");
                 let band = Band::Between((1.0 - BAND) * fit, (1.0 + BAND) * fit);
@@ -147,7 +147,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         study.notes.push(format!(
             "{}: {variant}, at w/D = 0.1 to 0.7: {}",
             study.case,
-            told.join(", ")
+            loads.join(", ")
         ));
     }
     Ok(study)

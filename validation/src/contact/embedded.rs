@@ -9,7 +9,7 @@ use super::buried::{Buried, Claim, Question, adhesive, answer};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A rigid strip with a rough base stands one width deep in weightless Tresca soil with E/s_u = 1000, its side bare, smooth and bonded, or bonded with adhesion s_u, and is pushed down at small strain. The bare side is held against bounds of limit analysis, the others are told.";
 const BOUNDS: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,

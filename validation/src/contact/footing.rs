@@ -15,7 +15,7 @@ use crate::harness::study::coverage::{self, Known, on_cells};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, shipped_case};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "The footing of the benchmark in stiffer soil (E/s_u = 300, contact that lets go, rough base, smooth side), pushed one width deep, against sequential limit analysis. N is the mean over a twentieth of the width on either side. With its edge at three quarters of a cell the footing acts as wide as it is on every mesh; with its edge in the middle of a cell it acts wider by a share of the cell, and two meshes are extrapolated.";
 /// The effort of Newton's method.
 const QUADRATIC: Oracle = Oracle {
@@ -84,7 +84,7 @@ fn mean(curve: &[[f64; 2]], sequential: &[[f64; 2]], depth: f64) -> [f64; 2] {
     let near: Vec<[f64; 2]> = near
         .map(|point| [point[1], interpolate(sequential, point[0])])
         .collect();
-    [0, 1].map(|k| near.iter().map(|own| own[k]).sum::<f64>() / near.len() as f64)
+    [0, 1].map(|k| near.iter().map(|pair| pair[k]).sum::<f64>() / near.len() as f64)
 }
 
 /// The distance between N and its mean over a cell of penetration, over that mean, beyond a depth of
@@ -96,8 +96,8 @@ fn wiggle(curve: &[[f64; 2]], cell: f64) -> f64 {
     let off = deep.map(|point| {
         let near = curve
             .iter()
-            .filter(|own| (own[0] - point[0]).abs() <= 0.5 * cell);
-        let near: Vec<f64> = near.map(|own| own[1]).collect();
+            .filter(|other| (other[0] - point[0]).abs() <= 0.5 * cell);
+        let near: Vec<f64> = near.map(|other| other[1]).collect();
         let mean = near.iter().sum::<f64>() / near.len() as f64;
         (point[1] / mean - 1.0).powi(2)
     });

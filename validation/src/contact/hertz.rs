@@ -18,7 +18,7 @@ use crate::continuum::laboratory::run;
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A rigid cylinder is pressed onto an elastic half-plane, smooth, and with friction pushed sideways. Half-width and pressure are Hertz's, the stick zone is that of Cattaneo and Mindlin.";
 const HERTZ: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -45,7 +45,7 @@ struct Cylinder {
     sideways: f64,
 }
 
-/// What was found at the end: tangential and vertical force, half-width and largest pressure of the
+/// Results at the end: tangential and vertical force, half-width and largest pressure of the
 /// profile, and the share of friction that the middle takes.
 struct Found {
     run: RunRecord,
@@ -120,7 +120,7 @@ impl Cylinder {
         let middle = profile
             .iter()
             .min_by(|a, b| a[0].abs().total_cmp(&b[0].abs()))
-            .map_or(f64::NAN, |own| own[2] / own[1]);
+            .map_or(f64::NAN, |knot| knot[2] / knot[1]);
         let [half_width, largest] = fitted(&profile);
         Ok(Found {
             run,
@@ -148,7 +148,7 @@ fn profile(bodies: &[RigidBody<2>]) -> Vec<[f64; 3]> {
 /// squares: ∫ p x² = P b²/4, and p² = p₀² (1 − x²/b²) by least squares over the part with at least a third
 /// of the largest pressure.
 fn fitted(profile: &[[f64; 3]]) -> [f64; 2] {
-    let most = profile.iter().fold(0.0, |most: f64, own| most.max(own[1]));
+    let most = profile.iter().fold(0.0, |most: f64, row| most.max(row[1]));
     let (mut sum, mut moment) = (0.0, 0.0);
     let (mut n, mut sx, mut sy, mut sxx, mut sxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for [x, p, _] in profile {
@@ -244,8 +244,8 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             format!("pressure_{cells}"),
             &["x_over_b_[-]", "p_over_p0_[-]"],
         );
-        for own in &found.profile {
-            profile.push(vec![own[0] / width, own[1] / pressure]);
+        for row in &found.profile {
+            profile.push(vec![row[0] / width, row[1] / pressure]);
         }
         study.table(profile)?;
     }
@@ -280,8 +280,8 @@ fn friction(study: &mut Study) -> Result<(), CaseError> {
         measured,
     );
     let mut profile = Table::new("shear", &["x_[-]", "p_[-]", "q_[-]"]);
-    for own in &found.profile {
-        profile.push(own.to_vec());
+    for row in &found.profile {
+        profile.push(row.to_vec());
     }
     study.table(profile)?;
     Ok(())

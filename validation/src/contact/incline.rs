@@ -20,7 +20,7 @@ use crate::continuum::laboratory::{filled, grid_of, run, unobserved};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "An elastic block stands on a rigid floor while gravity turns, until it slides: at tan β = μ. A rigid plate is pressed onto elastic ground and pushed sideways: it slides at H = μ V + a B.";
 const COULOMB: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -156,7 +156,7 @@ pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
         let (record, [stands, slides]) = turned(shift)?;
         let run = study.run(record);
         if shift > 0.0 {
-            // Newton's method gives up before the block slides: told, and not claimed.
+            // Newton's method gives up before the block slides: printed, and not claimed.
             study.notes.push(format!(
                 "contact-incline, {}: stands to tan β / μ = {stands:.4}, no equilibrium at {slides:.4}",
                 study.runs[run].variant

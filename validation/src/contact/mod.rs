@@ -117,7 +117,7 @@ pub(crate) fn force<const D: usize>(accepted: &Accepted<'_, D>) -> [f64; D] {
     accepted.forces.reactions[accepted.conditions.grid.node_count()]
 }
 
-/// The contact nodes of the first body that soil touches: place in space and what contact left there.
+/// The contact nodes of the first body that soil touches: place in space and contact state.
 pub(crate) fn closed<const D: usize>(bodies: &[RigidBody<D>]) -> Vec<([f64; D], ContactNode)> {
     let body = &bodies[0];
     let nodes = body.surface.knots();

@@ -19,7 +19,7 @@ use crate::continuum::laboratory::{run, unobserved};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A smooth plate presses an elastic block evenly. With its surface anywhere in its cell the stress is exact; below a plate that is turned against the grid, the stepped edge of the particles leaves an error that falls with the cell.";
 const UNIFORM: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -130,12 +130,12 @@ fn turned(angle: f64, cells: usize) -> Result<(RunRecord, [f64; 2]), CaseError> 
     let exact = 100.0 * (1.0 - strain).ln() / (1.0 - strain).powi(2);
     let (mut square, mut mean, mut volume) = (0.0, 0.0, 0.0);
     for (particle, sigma) in body.particles.sigma.iter().enumerate() {
-        let own = body.particles.volume0[particle];
+        let volume0 = body.particles.volume0[particle];
         for off in [sigma[0][0] - exact, sigma[1][1] - exact, sigma[0][1]] {
-            square += own * off * off;
+            square += volume0 * off * off;
         }
-        mean += own * 0.5 * (sigma[0][0] + sigma[1][1]);
-        volume += own;
+        mean += volume0 * 0.5 * (sigma[0][0] + sigma[1][1]);
+        volume += volume0;
     }
     let rms = (square / volume).sqrt() / exact.abs();
     Ok((run, [rms, (mean / volume / exact - 1.0).abs()]))

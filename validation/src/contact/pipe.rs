@@ -10,7 +10,7 @@ use super::buried::{Buried, Claim, Question, adhesive, answer};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A circular bar deep in weightless Tresca soil with E/s_u = 1000, bonded, smooth or with adhesion, and a pipe wished in place at shallow depth without tension, are pushed down at small strain. The soil at a circle is a staircase of particles, so nodes with little of it are tied to others sooner than elsewhere. What lies within its band is claimed, all is told: of smooth pipes every mesh of seventeen cells and more, as their values go up and down from mesh to mesh.";
 const DEEP: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -122,7 +122,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             ("smooth", Interface::smooth(), smooth),
             ("rough", Interface::rough(), rough),
         ] {
-            // What counts is cells over the chord of contact.
+            // Cells over the chord of contact count.
             let fine = match embedment {
                 _ if embedment < 0.2 => [25, 49],
                 _ if embedment < 0.4 => [17, 33],

@@ -14,7 +14,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, corners};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Strips, pipes and an anchor in weightless Tresca soil with E/s_u = 1000, from case files that say nothing of the method but fit = none, on ten cells, are pushed or pulled at small strain with their sides at five places of the grid within a cell, and a strip with sharp edges on ground at eight. Every march has to reach its end. Loads within 4 % of limit analysis and spreads within 3 % are claimed, all is told.";
 const ABOUT_FITTED: &str = "The bodies of contact-places, and a strip whose sides are bonded, on lines that are fitted to them, as they are where a file says nothing of fit. Sides and ground stand at four pairs of places within a cell. Every march has to reach its end. Loads within 4 % of limit analysis and spreads within 3 % are claimed of all.";
 const PRANDTL: Oracle = Oracle {
@@ -72,7 +72,7 @@ struct Question {
     kind: Kind,
     oracle: Oracle,
     bounds: [f64; 2],
-    /// What is claimed where lines are not fitted to it; nothing where that is not computed. Both are where they are.
+    /// The claim where lines are not fitted to it; none where that is not computed. Both are where they are.
     claim: Option<Claim>,
     level: Level,
 }
@@ -95,7 +95,7 @@ impl Fit {
     }
 }
 
-/// What is claimed of the places; all is told.
+/// The claim on the places; all is printed.
 #[derive(Clone, Copy)]
 enum Claim {
     /// Nothing: they only have to reach their end.
@@ -466,11 +466,11 @@ fn add(
     let name = question.name;
     let mut loads = Vec::new();
     let mut last = 0;
-    for (place, own) in std::iter::zip(places, &computed) {
+    for (place, run) in std::iter::zip(places, &computed) {
         let place = question.kind.place_label(*place, fit);
         let variant = format!("{name}, {place}");
-        last = study.run_to_end(RunRecord::new(variant, &own.report, own.elapsed));
-        let load = own.curve("load").points(0, 1);
+        last = study.run_to_end(RunRecord::new(variant, &run.report, run.elapsed));
+        let load = run.curve("load").points(0, 1);
         let load = load.last().map_or(f64::NAN, |[_, load]| load.abs());
         let [lower, upper] = question.bounds;
         let band = Band::Between((1.0 - BEYOND) * lower, (1.0 + BEYOND) * upper);
@@ -501,7 +501,7 @@ fn add(
 /// Runs the study of bodies on lines that are not fitted to them.
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("contact-places", ABOUT, out)?;
-    for question in questions().iter().filter(|own| own.level <= level) {
+    for question in questions().iter().filter(|q| q.level <= level) {
         if let Some(claim) = question.claim {
             let places = question.kind.places();
             add(&mut study, question, (Fit::None, &places), claim)?;
@@ -513,7 +513,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
 /// Runs the study of bodies on lines that are fitted to them.
 pub(crate) fn fitted(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("contact-fitted", ABOUT_FITTED, out)?;
-    for question in questions().iter().filter(|own| own.level <= level) {
+    for question in questions().iter().filter(|q| q.level <= level) {
         add(&mut study, question, (Fit::Bodies, &FITTED), Claim::Both)?;
     }
     Ok(study)

@@ -17,7 +17,7 @@ use crate::continuum::laboratory::run;
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A rigid smooth punch of width B on an elastic half-plane is pushed down at an eccentricity, free to tilt. Beyond B/4 it lifts off; contact width and rotation are exact.";
 const LIFTED: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -33,7 +33,7 @@ const FULL: Oracle = Oracle {
 const MODULUS: f64 = 1.0;
 const POISSON: f64 = 0.3;
 
-/// What was found at the end.
+/// The results at the end.
 struct Found {
     run: RunRecord,
     load: f64,
@@ -146,8 +146,8 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
                 format!("pressure_{eccentricity}_{cells}"),
                 &["x_over_B_[-]", "p_over_E_[-]"],
             );
-            for own in &found.profile {
-                profile.push(own.to_vec());
+            for row in &found.profile {
+                profile.push(row.to_vec());
             }
             study.table(profile)?;
         }

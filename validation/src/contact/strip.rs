@@ -16,7 +16,7 @@ use crate::harness::oracle::{Expected, Oracle, OracleKind};
 use crate::harness::study::coverage::{self, Known, on_cells};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A rigid strip on weightless Tresca soil, on the given geometry: pushed down with its edges anywhere in their cell, under an eccentric load, free to tilt and to lift off, and at an angle. Shared strain with sharp edges is held against limit analysis mesh by mesh, B-bar with edges rounded by half a cell, as case files have it, by two meshes.";
 const BOUNDS: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,
@@ -123,7 +123,7 @@ fn pushes(level: Level) -> Vec<Push> {
     pushes
 }
 
-/// What is known of a push: the quantity, its value, the band on one mesh if it is claimed there, and that of
+/// The known values of a push: the quantity, its value, the band on one mesh if it is claimed there, and that of
 /// two meshes extrapolated.
 fn known(push: &Push) -> (&'static str, Expected, Option<Band>, Band) {
     let is_sharp = push.scheme == Scheme::Sharp;
@@ -149,7 +149,7 @@ fn known(push: &Push) -> (&'static str, Expected, Option<Band>, Band) {
             ("(V, H) over Green's", expected, None, Band::Relative(0.03))
         }
         Load::Sideways => {
-            // It hangs on how far the strip is pushed, and in what steps.
+            // It depends on how far the strip is pushed, and in which steps.
             let expected = GREEN.says(1.0);
             ("H/(B s_u)", expected, None, Band::Relative(0.03))
         }
@@ -168,7 +168,7 @@ fn bounds(push: &Push) -> Option<[f64; 2]> {
     }
 }
 
-/// The number that is held against what is known, from V/(B s_u) and H/(B s_u).
+/// The number that is held against the known one, from V/(B s_u) and H/(B s_u).
 fn measured(push: &Push, at_end: [f64; 2]) -> f64 {
     match push.load {
         Load::Centric { .. } | Load::Eccentric(_) => at_end[0],
@@ -192,7 +192,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         let end = last.map_or([f64::NAN; 2], |row| [row[1], row[2]]);
         ends.push(end);
         let (quantity, expected, band, extrapolated) = known(push);
-        // What is only told on its mesh is extrapolated, save for the push sideways.
+        // A number that is only printed on its mesh is extrapolated, save for the push sideways.
         let run = match push.load {
             Load::Sideways => study.run(record),
             _ => study.run_to_end(record),

@@ -10,7 +10,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, corners, shipped_case};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A smooth wall beside level ground, moved away from it and into it: sand of the template (φ = ψ = 30°, with its cohesion of 0.1 kPa) without tension, and clay (s_u = γH/8) bonded to the wall. The field of stress is uniform but for weight, and exact. Then sand along a wall with friction δ, whose force normal to the wall is held against bounds of that component, and clay along one with adhesion s_u, pushed into it. Those on a line of the grid are computed with B-bar. Their ground stands on a base that is rough but for the first cell beside the wall, which slides: a base held up to the toe carries part of the force, along a smooth wall as along a rough one. In full the face stands at five places of its cell, by the method that case files have where they say nothing, moved away four times as far.";
 const RANKINE: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -27,7 +27,7 @@ const ADHESION: Oracle = Oracle {
     source: "Rankine's field, fan and state at the wall",
     locator: "1 + 2 K_c s_u/(γ H), K_c = 1 + Δ + cos Δ, sin Δ = a/s_u",
 };
-/// What is claimed where the answer is exact.
+/// The band where the answer is exact.
 const CLOSE: Band = Band::Relative(0.04);
 /// Weight of the soil beside the wall, γ H \[kPa\].
 const WEIGHT: f64 = 40.0;
@@ -47,13 +47,13 @@ fn wedge(friction: f64, cohesion: f64, sign: f64) -> f64 {
     let (weight, height) = (WEIGHT, 1.0);
     let forces = (1..9000).filter_map(|hundredths| {
         let slope = (0.01 * f64::from(hundredths)).to_radians();
-        let (own, slip) = (
+        let (load, slip) = (
             0.5 * weight * height / slope.tan(),
             cohesion * height / slope.sin(),
         );
         let turned = slope + sign * phi;
         let lever = (turned + sign * delta).cos();
-        let force = (own * turned.sin() + sign * slip * phi.cos()) / lever;
+        let force = (load * turned.sin() + sign * slip * phi.cos()) / lever;
         (turned > 0.0 && lever > 0.0).then_some(force * delta.cos() / (0.5 * weight * height))
     });
     let best = |one: f64, other: f64| {
@@ -75,7 +75,7 @@ fn lancellotta(friction: f64, sign: f64) -> f64 {
         * (sign * turn * phi.tan()).exp()
 }
 
-/// What stands beside the wall, and what holds it there.
+/// The soil beside the wall, and its supports.
 #[derive(Clone, Copy, PartialEq)]
 enum Soil {
     Sand,
@@ -248,13 +248,13 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
                 // Without a bond it does not follow a wall that moves away.
                 Soil::ClayWithAdhesion if way == 0 => continue,
                 Soil::ClayWithAdhesion => {
-                    let own = 0.5 * std::f64::consts::PI;
-                    let share = 2.0 * (1.0 + own) * 5.0 / WEIGHT;
+                    let fan = 0.5 * std::f64::consts::PI;
+                    let share = 2.0 * (1.0 + fan) * 5.0 / WEIGHT;
                     (ADHESION.says(1.0 + share), CLOSE)
                 }
             };
-            let what = format!("{name}: E/(γ H²/2) [-]");
-            study.check(run, what, expected, band, forces[way]);
+            let quantity = format!("{name}: E/(γ H²/2) [-]");
+            study.check(run, quantity, expected, band, forces[way]);
         }
     }
     Ok(study)

@@ -21,7 +21,7 @@ use crate::continuum::laboratory::run;
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A smooth rigid wedge that stands in weightless Tresca soil with E/s_u = 300, with the lip that it has thrown up, is pushed deeper by a fifth (in full also by a half, where the lip is told and not claimed: at 30° it comes out 5.05 % too high on c/h = 8). The motion is self-similar: force and height of the lip over the depth, and the pressure, stay those of Hill, Lee and Tupper. The height is thrice that of the centroid of the soil above the old ground, as of a triangle; the highest soil is told beside it. Half of the wedge is modelled, with knots of contact two cells apart, a ghost penalty of 0.001, and no support on those nodes of the axis of symmetry that stand in the wedge: they belong to soil beside it that has left the axis. With the support the same run must miss.";
 const HILL: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -96,7 +96,7 @@ impl Field {
     }
 }
 
-/// What is pushed, and how.
+/// The wedge, and its push.
 #[derive(Clone, Copy)]
 struct Wedge {
     /// Semi-angle \[°\].
@@ -253,7 +253,7 @@ fn push(wedge: Wedge) -> Result<(RunRecord, Table), CaseError> {
     Ok((run, curve))
 }
 
-/// What is run at a level.
+/// The runs of a level.
 fn wedges(level: Level) -> Vec<Wedge> {
     let mut wedges = vec![Wedge::new(15.0, 8, PUSH), Wedge::new(30.0, 8, PUSH)];
     if level >= Level::Default {
@@ -290,7 +290,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         let quantity = "pressure P over the face up to the lip / 2 s_u, the same mean [-]";
         let expected = HILL.says(1.0 + field.fan);
         study.check(run, quantity, expected, band, mean(2));
-        // Of a longer push the lip is told alone: at 30° it is some 5 % too high.
+        // Of a longer push the lip is printed alone: at 30° it is some 5 % too high.
         if wedge.push <= PUSH {
             let quantity = "height of the lip / c, from its centroid, the same mean [-]";
             let band = Band::Relative(0.05);

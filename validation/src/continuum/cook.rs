@@ -25,7 +25,7 @@ use crate::continuum::laboratory::{grid_of, run};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Cook's tapered panel in plane strain, clamped on the left and sheared on the right, at ν = 1/3, 0.49 and 0.4999. The rise of its corner under refinement: with B-bar it does not care about ν, without it locks.";
 /// The rise of the corner.
 const MIXED_ELEMENTS: Oracle = Oracle {

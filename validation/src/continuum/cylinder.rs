@@ -23,7 +23,7 @@ use crate::exact::cylinder::ThickCylinder;
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A thick cylinder of nearly incompressible elastic-plastic soil is expanded from within by half its radius, and a cavity in soil without end to four times its radius. The pressure is held against the exact curve at finite strain; without B-bar it locks.";
 /// Pressure once all of the cylinder yields.
 const RIGID_PLASTIC: Oracle = Oracle {
@@ -248,7 +248,7 @@ fn thick_cylinder(
     curve: Table,
 ) -> Result<Series, CaseError> {
     let run = study.run_to_end(run);
-    // What is shared in a cell is constant there: as good as B-bar on cells twice as wide.
+    // Shared strain is constant in a cell: as good as B-bar on cells twice as wide.
     let shared = job.method.locking == Locking::SharedStrain;
     let (early, late) = if shared || job.cells < 16 {
         (0.02, 0.01)
@@ -263,7 +263,7 @@ fn thick_cylinder(
         let quantity = format!("p/s_u at a = {a} a₀ [-]");
         let (exact, found) = (job.exact.pressure(a), at(&curve, a));
         if shared && a > 1.1 {
-            // Known to miss its band, for a reason that is not known: told, and not claimed.
+            // Known to miss its band, for an unknown reason: printed, and not claimed.
             study.notes.push(format!(
                 "cylinder, {}: {quantity} is {found:.4}, exact {exact:.4}",
                 job.method.label()
@@ -313,7 +313,7 @@ fn locked(study: &mut Study, run: RunRecord, curve: &Table) -> Series {
     Series::line("iGIMP, a_{0}/h = 8: locked", curve.points(0, 1))
 }
 
-/// Checks the cavity. What soil without end adds beyond the model is known exactly: the motion does
+/// Checks the cavity. The effect of endless soil beyond the model is known exactly: the motion does
 /// not depend on it.
 fn cavity(
     study: &mut Study,

@@ -22,7 +22,7 @@ use crate::exact::elastica::Cantilever;
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A slender elastic cantilever is bent by a dead load at its end, up to P L²/EI = 5. The deflection against the exact beam with extension and shear, and its dependence on mesh, particles and number of steps: B-bar softens the beam by a little in every step in which particles cross cells.";
 /// The deflection of the end.
 const REISSNER: Oracle = Oracle {
@@ -49,7 +49,7 @@ struct Bending {
     method: Method,
 }
 
-/// What became of a beam.
+/// The state of a beam at the end.
 struct Bent {
     run: RunRecord,
     /// Load P L²/EI and deflection over length by step.

@@ -24,7 +24,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::coverage::{self, Known, on_cells};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A strip with two deep notches is pulled until its net section flows. Von Mises soil under full constraint: the limit is Prandtl's. With B-bar the force levels off there, without B-bar it rises for ever.";
 /// Net stress at the limit.
 const PRANDTL: Oracle = Oracle {

@@ -17,7 +17,7 @@ use crate::continuum::laboratory::run;
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A prism of nearly incompressible Tresca soil is pressed between smooth platens to half its height. The force is 2 s_u times the width that incompressibility gives, with every variant of the method: the state is uniform.";
 /// The force.
 const HOMOGENEOUS: Oracle = Oracle {

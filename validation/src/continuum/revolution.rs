@@ -26,7 +26,7 @@ use crate::harness::reference::interpolate;
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::Computed;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Bodies of revolution (theory, eqs. 130 to 130e). A thick cylinder and a thick sphere of nearly incompressible clay are opened to one and a half times their bores; without B-bar the sphere locks. A cylinder of soil with friction is pressed together under cell pressure. The factor of safety of a thick cylinder under pressure from within is searched for, of clay and of soil with friction and three angles of dilation. A circular footing on Tresca soil, rough and smooth, has its edge at five places within a cell; on the coarsest cells alone below `--full`, where circles stand on clay that grows stronger with depth too.";
 const CYLINDER: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -146,7 +146,7 @@ impl Thick {
         }
         let at = |radius: f64, k: usize| {
             let (sine, cosine) = (0.5 * PI * k as f64 / ARC as f64).sin_cos();
-            [cosine, sine].map(|own| if own < 1e-12 { 0.0 } else { radius * own })
+            [cosine, sine].map(|c| if c < 1e-12 { 0.0 } else { radius * c })
         };
         let outside = (0..=ARC).map(|k| at(outer, k));
         outside
@@ -382,7 +382,7 @@ fn carried(friction: f64) -> f64 {
     (ratio.powf(1.0 - 1.0 / passive) - 1.0) / friction.tan()
 }
 
-/// The factor by which the strength of that soil exceeds what half of its cohesion as pressure asks for, by bisection.
+/// The factor of safety of that soil under half of its cohesion as pressure, by bisection.
 fn exact_factor(friction: f64) -> f64 {
     let (mut lower, mut upper) = (1.0, 10.0);
     for _ in 0..60 {
@@ -440,7 +440,7 @@ type = \"strength-reduction\"
         let computed = Computed::<2>::new(CaseFile::parse("safety", &text, &[])?.into_case())?;
         let bracket = computed
             .safety()
-            .and_then(|own| Some([own.stable?, own.failed?]));
+            .and_then(|safety| Some([safety.stable?, safety.failed?]));
         let found = bracket.map_or(f64::NAN, |[stable, failed]| 0.5 * (stable + failed));
         let variant = format!("factor of safety of a thick cylinder, {name}");
         let run = study.run_to_end(RunRecord::new(variant, &computed.report, computed.elapsed));
@@ -549,15 +549,15 @@ fn footings_of(level: Level) -> Vec<Footing> {
 fn footings(study: &mut Study, level: Level) -> Result<(), CaseError> {
     let footings = footings_of(level);
     let computed = (footings.par_iter())
-        .map(|own| Computed::new(CaseFile::parse("footing", &own.file(), &[])?.into_case()))
+        .map(|case| Computed::new(CaseFile::parse("footing", &case.file(), &[])?.into_case()))
         .collect::<Result<Vec<_>, CaseError>>()?;
-    for (own, computed) in std::iter::zip(&footings, &computed) {
+    for (footing, computed) in std::iter::zip(&footings, &computed) {
         let Footing {
             cells,
             interface,
             growth,
             exact,
-        } = *own;
+        } = *footing;
         let (ground, oracle) = if growth == 0.0 {
             (String::new(), CIRCLE)
         } else {

@@ -1,4 +1,4 @@
-//! The rigid footing beyond 0.3B: what becomes of the resistance when the soil beside the shaft may
+//! The rigid footing beyond 0.3B: the resistance when the soil beside the shaft may
 //! let go.
 //!
 //! ORACLE: sequential limit analysis of rigid-plastic soil without contact on the footing's side.
@@ -22,7 +22,7 @@ use crate::harness::study::{Level, RunRecord, Study};
 use crate::pictures::{contours, scaled, with_outlines};
 use crate::runs::{mesh, shipped_case};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "The same footing beyond 0.3 B: what the resistance becomes when the soil in the cell beside the shaft \
     sticks, bears pressure only, or bears nothing.";
 /// The large-deformation curve.
@@ -31,7 +31,7 @@ const SEQUENTIAL: Oracle = Oracle {
     source: "sequential limit analysis",
     locator: "no contact on the side; validation/reference/footing_sequential_limit_analysis.csv",
 };
-/// What separating contact can carry.
+/// The capacity of separating contact.
 const NO_TENSION: Oracle = Oracle {
     kind: OracleKind::Theory,
     source: "contact that can separate",

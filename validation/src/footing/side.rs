@@ -19,7 +19,7 @@ use igimp_solver::{Accepted, MarchReport, Outcome, Workspace, march};
 /// Strength in tension and shear of soil that bears pressure only, over that of the soil \[-\].
 const WEAK: f64 = 1e-3;
 
-/// What the soil beside the shaft can do.
+/// The behaviour of the soil beside the shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Beside {
     /// Everything: it sticks to the shaft, as in a run of the case.
@@ -56,7 +56,7 @@ pub(crate) struct Moment {
     pub(crate) settlement: f64,
     /// Resistance, compression positive, times the reaction factor \[N/m\].
     pub(crate) resistance: f64,
-    /// What of it the nodes of the shaft above the base carry \[N/m\].
+    /// The part of it on the nodes of the shaft above the base \[N/m\].
     pub(crate) shaft: f64,
     /// Pull of one side on the soil, across the shaft, tension positive \[N/m\].
     pub(crate) pull: f64,
@@ -130,7 +130,7 @@ impl Shaft {
             .collect()
     }
 
-    /// What the nodes of the shaft above the base carry of the resistance, and their pull \[N/m\].
+    /// The resistance on the nodes of the shaft above the base, and their pull \[N/m\].
     fn forces(&self, grid: &Grid<2>, settlement: f64, reactions: &[[f64; 2]]) -> [f64; 2] {
         let above = self.level - settlement + 1e-6 * self.cell;
         let column = self.edge - self.cell..self.edge;
@@ -150,7 +150,7 @@ impl Shaft {
 /// shaft after a step lets go for good. Cuts are those of the case, within each step.
 ///
 /// # Errors
-/// [`CaseError`] for what cannot be made. A step without equilibrium is part of the report.
+/// [`CaseError`] for a model that cannot be made. A step without equilibrium is part of the report.
 pub(crate) fn push(
     case: &Case<2>,
     settlement: f64,
@@ -217,7 +217,7 @@ pub(crate) fn push(
                 .map(|(volume, _)| volume)
                 .sum::<f64>();
             body.particles = match beside {
-                Beside::BearsNothing(_) => body.particles.keeping(|own| !leaving[own])?,
+                Beside::BearsNothing(_) => body.particles.keeping(|k| !leaving[k])?,
                 _ => Particles::from_fields(with_law(fields, &leaving, weak_law))?,
             };
         }
@@ -237,9 +237,9 @@ pub(crate) fn push(
 /// The particles with another law where marked.
 fn with_law(fields: &ParticleFields<2>, marked: &[bool], law: usize) -> ParticleFields<2> {
     let mut fields = fields.clone();
-    for (own, marked) in fields.law.iter_mut().zip(marked) {
+    for (current, marked) in fields.law.iter_mut().zip(marked) {
         if *marked {
-            *own = law;
+            *current = law;
         }
     }
     fields
@@ -291,7 +291,7 @@ mod tests {
         let case = coarse();
         let pushed = push(&case, 0.2, 4, Beside::BearsNothing(1.0)).unwrap();
         let left: f64 = pushed.particles.volume0.iter().sum();
-        // What lets go after the last step is in no moment.
+        // Particles that let go after the last step are in no moment.
         let next = push(&case, 0.15, 3, Beside::BearsNothing(1.0)).unwrap();
         let at_three = pushed.moments[3].released;
         assert!((next.particles.volume0.iter().sum::<f64>() + at_three - 25.0).abs() < 1e-9);

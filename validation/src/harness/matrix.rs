@@ -1,5 +1,5 @@
-//! The verification matrix of the book: written from what the checks declare and measure, and
-//! compared with them in every run, so that the page cannot say what the code does not.
+//! The verification matrix of the book: written from the checks' statements and values, and
+//! compared with them in every run, so that the page agrees with the code.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -45,7 +45,7 @@ fn cells(row: &Row, number: usize) -> [String; 6] {
     .map(|cell| cell.replace('|', "\\|"))
 }
 
-/// A measured value; of one that is round-off no digit is told, since it differs between computers.
+/// A measured value; of one that is round-off no digit is printed, since it differs between computers.
 fn measured(value: f64) -> String {
     if value != 0.0 && value.abs() < ROUND_OFF {
         format!("< {ROUND_OFF:e}")
@@ -54,7 +54,7 @@ fn measured(value: f64) -> String {
     }
 }
 
-/// Who says so, and where.
+/// Source and locator.
 fn source(row: &Row) -> String {
     format!("{}: {}", row.check.source, row.locator)
 }
@@ -130,17 +130,17 @@ fn with_sections(matrix: &str, studies: &[Study]) -> String {
     let mut sections: Vec<String> = parts.map(|part| format!("### {part}")).collect();
     let place_of = |sections: &[String], case: &str| {
         let title = format!("### {case}\n");
-        sections.iter().position(|own| own.starts_with(&title))
+        sections.iter().position(|text| text.starts_with(&title))
     };
     let mut behind = None;
     for study in studies.iter().filter(|study| !study.rows.is_empty()) {
-        let own = section(study);
+        let text = section(study);
         let place = if let Some(place) = place_of(&sections, study.case) {
-            sections[place] = own;
+            sections[place] = text;
             place
         } else {
             let place = behind.map_or(0, |last: usize| last + 1);
-            sections.insert(place, own);
+            sections.insert(place, text);
             place
         };
         behind = Some(place);
@@ -158,7 +158,7 @@ struct Printed {
 }
 
 impl Printed {
-    /// What stands between brackets in the cell of the oracle.
+    /// The text between brackets in the cell of the oracle.
     fn number(&self) -> Option<&str> {
         let (_, number) = self.cells.get(2)?.rsplit_once('[')?;
         number.strip_suffix(']')
@@ -178,7 +178,7 @@ impl Printed {
         self.cells.get(number).map_or("", |cell| cell)
     }
 
-    /// What the check declares: all but what is measured, and but the number of the source, which is
+    /// The check's declaration: all but the measured value, and but the number of the source, which is
     /// its place in a list.
     fn declares(&self) -> String {
         let kind = self.cell(2).rsplit_once(" [");
@@ -243,7 +243,7 @@ fn between(page: &str) -> Option<&str> {
     page.get(begin..end)
 }
 
-/// What the page says otherwise than the studies, a line each. Only when all was run is a row
+/// Differences of the page from the studies, a line each. Only when all was run is a row
 /// missed that no study has.
 pub(crate) fn drift(
     studies: &[Study],

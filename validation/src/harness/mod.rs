@@ -1,4 +1,4 @@
-//! What every study shares: outside values, snapshots, the tables and the matrix.
+//! Shared parts of all studies: outside values, snapshots, the tables and the matrix.
 
 pub(crate) mod matrix;
 pub(crate) mod oracle;

@@ -1,4 +1,4 @@
-//! Oracles: what knows the right value, where that is written, and the value it gives.
+//! Oracles: the sources of right values, their locators, and the values they give.
 //!
 //! An oracle is declared as a constant beside the check that uses it; the verification matrix of the
 //! book is made of these declarations.
@@ -7,7 +7,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-/// What kind of knowledge an outside value rests on. The order is that of trust.
+/// The kind of knowledge that an outside value rests on. The order is that of trust.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum OracleKind {
@@ -35,10 +35,10 @@ impl fmt::Display for OracleKind {
     }
 }
 
-/// Who says so, and where.
+/// A source and its locator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Oracle {
-    /// What its knowledge rests on.
+    /// The basis of its knowledge.
     pub(crate) kind: OracleKind,
     /// Author and year, or the method with which it was computed.
     pub(crate) source: &'static str,
@@ -59,7 +59,7 @@ impl Oracle {
 /// An outside value with its oracle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Expected {
-    /// Who says so.
+    /// The oracle of the value.
     pub(crate) oracle: Oracle,
     /// The value, in the unit of the quantity.
     pub(crate) value: f64,

@@ -1,5 +1,5 @@
-//! What changed since the snapshots were accepted: for every curve the largest change and where it is,
-//! a picture of old against new of every curve and residual history; and how what a run left is accepted.
+//! Changes since the snapshots were accepted: for every curve the largest change and where it is,
+//! a picture of old against new of every curve and residual history; and how the files of a run are accepted.
 
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -17,13 +17,13 @@ const PANELS: usize = 4;
 pub(crate) struct Difference {
     /// Name of the snapshot, or of the line of the matrix.
     pub(crate) name: String,
-    /// What differs, in words.
-    pub(crate) told: String,
+    /// The difference, in words.
+    pub(crate) change: String,
 }
 
 impl std::fmt::Display for Difference {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}: {}", self.name, self.told)
+        write!(f, "{}: {}", self.name, self.change)
     }
 }
 
@@ -117,7 +117,7 @@ fn said(name: &str) -> String {
     name.replace('_', " ")
 }
 
-/// What differs between two texts of a curve, in words: its largest change, as a share of the largest
+/// The difference of two texts of a curve, in words: its largest change, as a share of the largest
 /// value of its column.
 fn largest_change(old: &str, new: &str) -> Option<String> {
     let (old, new) = (Columns::read(old)?, Columns::read(new)?);
@@ -188,7 +188,7 @@ pub(crate) fn difference(
     new: &str,
     out: &Path,
 ) -> Result<Difference, CaseError> {
-    let told = match accepted(folder, name) {
+    let change = match accepted(folder, name) {
         None => "new; there is no snapshot of that name".to_owned(),
         Some(old) => {
             write(&drawn(name, &old, new), &out.join(name))?;
@@ -197,7 +197,7 @@ pub(crate) fn difference(
     };
     Ok(Difference {
         name: name.to_owned(),
-        told,
+        change,
     })
 }
 
@@ -268,10 +268,10 @@ fn plot(
     }
 }
 
-/// Accepts what earlier runs left beside the snapshots, as `cargo insta accept` does; returns the names.
+/// Accepts the files of earlier runs beside the snapshots, as `cargo insta accept` does; returns the names.
 ///
 /// # Errors
-/// What the file system says.
+/// An error of the file system.
 pub(crate) fn accept_left(folder: &Path) -> io::Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(folder)? {
@@ -314,15 +314,15 @@ mod tests {
             "1 rows for 3"
         );
         let lost = OLD.replace("4.0", "NaN");
-        let told = largest_change(OLD, &lost).unwrap();
+        let change = largest_change(OLD, &lost).unwrap();
         assert!(
-            told.starts_with("N [-] NaN for 4 at w/B [-] = 0.1"),
-            "{told}"
+            change.starts_with("N [-] NaN for 4 at w/B [-] = 0.1"),
+            "{change}"
         );
     }
 
     #[test]
-    fn what_is_no_curve_is_told_by_its_first_line() {
+    fn other_texts_are_compared_by_their_first_line() {
         assert_eq!(
             first_change("a\nsteps 10\n", "a\nsteps 12\n"),
             "line 2: \"steps 12\" for \"steps 10\""
@@ -348,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_left_is_accepted_once() {
+    fn pending_snapshots_are_accepted_once() {
         let folder = std::env::temp_dir().join(format!("igimp-left-{}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
         let head = "---\nsource: validation/src/harness/snapshot.rs\n";
@@ -362,7 +362,7 @@ mod tests {
         assert_eq!(accepted(&folder, "curve").unwrap(), OLD);
         let pictures = folder.join("out/review");
         let found = difference(&folder, "curve", &new, &pictures).unwrap();
-        assert!(found.told.contains("4.1 for 4"), "{found}");
+        assert!(found.change.contains("4.1 for 4"), "{found}");
         assert!(pictures.join("curve.svg").exists());
         assert_eq!(accept_left(&folder).unwrap(), ["curve"]);
         assert_eq!(accepted(&folder, "curve").unwrap(), new);

@@ -19,7 +19,7 @@ const CONVERGED: f64 = 1e-9;
 /// Most rows of a curve in a snapshot.
 const ROWS: usize = 40;
 
-/// Compares studies with the snapshots of a folder and tells what differs. What is new is left beside
+/// Compares studies with the snapshots of a folder and returns the differences. New texts are left beside
 /// the snapshots for review; pictures of every curve and residual history that changed are written anew.
 ///
 /// # Errors
@@ -35,8 +35,8 @@ pub(crate) fn compare(
     let compared = |study| compare_study(study, folder);
     let missed: Vec<_> = studies.iter().flat_map(compared).collect();
     std::panic::set_hook(hook);
-    let told = |(name, text): &(String, String)| review::difference(folder, name, text, pictures);
-    missed.iter().map(told).collect()
+    let diff = |(name, text): &(String, String)| review::difference(folder, name, text, pictures);
+    missed.iter().map(diff).collect()
 }
 
 /// The names and texts that differ from the snapshots of a folder.

@@ -1,4 +1,4 @@
-//! What a study of one case hands back: runs, checks and tables.
+//! Results of a study of one case: runs, checks and tables.
 
 pub(crate) mod coverage;
 
@@ -150,11 +150,11 @@ pub(crate) struct Row {
     /// The check.
     #[serde(flatten)]
     pub(crate) check: Check,
-    /// What the outside value rests on.
+    /// The basis of the outside value.
     pub(crate) oracle: OracleKind,
     /// Where in the source it is found.
     pub(crate) locator: &'static str,
-    /// Whether this is a negative control: a variant that must miss what the method meets.
+    /// Whether this is a negative control: a variant that must miss the band of the method.
     pub(crate) control: bool,
     /// Whether the band is met.
     pub(crate) pass: bool,
@@ -168,7 +168,7 @@ pub(crate) struct Row {
 pub(crate) struct Study {
     /// Name of the case; also of its folder.
     pub(crate) case: &'static str,
-    /// What is computed and asked, in a sentence or two of Markdown for the book.
+    /// The computation and its checks, in a sentence or two of Markdown for the book.
     pub(crate) about: &'static str,
     /// Where its files go.
     pub(crate) folder: PathBuf,
@@ -334,7 +334,7 @@ fn history(residuals: &[Vec<f64>]) -> String {
     text
 }
 
-/// What is known of a run that found no equilibrium.
+/// The record of a run that found no equilibrium.
 fn not_converged(case: &str, run: &RunRecord, error: &StepError) -> String {
     let residuals: Vec<String> = error.residuals.iter().map(|r| format!("{r:.1e}")).collect();
     let worst = error.worst.map_or_else(String::new, |([x, y, _], axis)| {

@@ -57,7 +57,7 @@ pub(crate) fn checks(studies: &[Study]) -> String {
     text
 }
 
-/// What came of a check; a negative control says so.
+/// The outcome of a check; a negative control says so.
 fn verdict(row: &Row) -> &'static str {
     match (row.pass, row.control) {
         (true, false) => "ok",

@@ -26,11 +26,11 @@ pub(super) struct Ground {
     pub(super) offset: f64,
     /// Young's modulus of the lower soil over that of the upper one \[-\].
     pub(super) stiffness: f64,
-    /// What is done about the boundary.
+    /// The treatment of the boundary.
     pub(super) cells: Cells,
 }
 
-/// What is done about a boundary within cells.
+/// The treatment of a boundary within cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Cells {
     /// A line of the grid is put on it.
@@ -112,10 +112,10 @@ impl Ground {
             let exact = UNIT_WEIGHTS[1] * (top - y.max(level)).max(0.0)
                 + UNIT_WEIGHTS[0] * (level - y).max(0.0);
             let error = (-particles.sigma[particle][1][1] - exact) / above;
-            let own = &mut errors[particles.law[particle] % 2];
+            let worst = &mut errors[particles.law[particle] % 2];
             // The first of those that are equal but for round-off.
-            if error.abs() > own.abs() + 1e-6 {
-                *own = error;
+            if error.abs() > worst.abs() + 1e-6 {
+                *worst = error;
             }
         }
         Ok((run, errors))
@@ -130,6 +130,6 @@ impl Ground {
         };
         let mean = lower * self.stiffness + (1.0 - lower);
         let is_cut = lower > 0.0;
-        [self.stiffness, 1.0].map(|own| if is_cut { own / mean - 1.0 } else { 0.0 })
+        [self.stiffness, 1.0].map(|young| if is_cut { young / mean - 1.0 } else { 0.0 })
     }
 }

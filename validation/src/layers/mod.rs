@@ -15,7 +15,7 @@ use crate::harness::study::{RunRecord, Study};
 use level::{Cells, Ground};
 use sloping::{Way, patch};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Two soils meet within a cell. Level ground under its own weight, the boundary at several heights of the cell, with the grid fitted to it and without: the vertical stress is the weight above. A block with an inclined boundary under pressure normal to it: the stress is known in both soils, and several ways to treat the cells that the boundary cuts are held against it.";
 /// Vertical stress of level ground.
 const OVERBURDEN: Oracle = Oracle {
@@ -70,11 +70,11 @@ fn level_ground(study: &mut Study) -> Result<(), CaseError> {
     let found = found?;
     let percent = |share: f64| 100.0 * share;
     for cells in Cells::ALL {
-        let own = || {
+        let of_cells = || {
             let pairs = grounds.iter().zip(&found);
             pairs.filter(move |(ground, _)| ground.cells == cells)
         };
-        let runs: Vec<&RunRecord> = own().map(|(_, (run, _))| run).collect();
+        let runs: Vec<&RunRecord> = of_cells().map(|(_, (run, _))| run).collect();
         let run = study.run_to_end(RunRecord::sum(
             format!("level ground, {}", cells.name()),
             &runs,
@@ -91,7 +91,7 @@ fn level_ground(study: &mut Study) -> Result<(), CaseError> {
             ],
         );
         let (mut worst, mut beside_stated) = (0.0_f64, 0.0_f64);
-        for (ground, (_, error)) in own() {
+        for (ground, (_, error)) in of_cells() {
             let stated = ground.stated();
             table.push(vec![
                 ground.offset,
@@ -151,11 +151,11 @@ fn inclined(study: &mut Study) -> Result<(), CaseError> {
         .collect();
     let found = found?;
     for way in Way::ALL {
-        let own = || {
+        let of_way = || {
             let pairs = patches.iter().zip(&found);
             pairs.filter(move |(patch, _)| patch.2 == way)
         };
-        let runs: Vec<&RunRecord> = own().map(|(_, (run, _))| run).collect();
+        let runs: Vec<&RunRecord> = of_way().map(|(_, (run, _))| run).collect();
         let run = study.run_to_end(RunRecord::sum(format!("inclined, {}", way.name()), &runs));
         let mut table = Table::new(
             format!("inclined_{}", way.key()),
@@ -169,7 +169,7 @@ fn inclined(study: &mut Study) -> Result<(), CaseError> {
             ],
         );
         let mut worst = [0.0_f64; 2];
-        for (&(slope, stiffness, _), (_, errors)) in own() {
+        for (&(slope, stiffness, _), (_, errors)) in of_way() {
             let mut row = vec![slope, stiffness];
             row.extend(errors.map(|share| 100.0 * share));
             table.push(row);

@@ -144,23 +144,23 @@ pub(super) fn patch(
     let (mut seeds, mut laws): (Vec<ParticleSeed<2>>, Vec<SharedLaw>) = (Vec::new(), Vec::new());
     let mut soils = Vec::new();
     for (soil, polygon) in polygons.iter().enumerate() {
-        let own = match way {
+        let filled = match way {
             Way::Split => split(&grid, polygon),
             _ => fill_polygon(&grid, polygon, PER_DIRECTION, 1.0, 0)?,
         };
-        soils.extend(vec![soil; own.len()]);
-        seeds.extend(own);
+        soils.extend(vec![soil; filled.len()]);
+        seeds.extend(filled);
     }
     let young = [stiffness * YOUNG, YOUNG];
     for (seed, &soil) in seeds.iter_mut().zip(&soils) {
         let share = shares[cell_of(&grid, &seed.x)];
-        let own = match way {
+        let e = match way {
             Way::MeanStiffness => share * young[0] + (1.0 - share) * young[1],
             Way::MeanCompliance => 1.0 / (share / young[0] + (1.0 - share) / young[1]),
             _ => young[soil],
         };
         seed.law = laws.len();
-        laws.push(Arc::new(HenckyElastic::new(Elasticity::new(own, POISSON)?)));
+        laws.push(Arc::new(HenckyElastic::new(Elasticity::new(e, POISSON)?)));
     }
     let mut body = Body::new(Particles::new(&seeds)?);
     let last = cells;
@@ -215,20 +215,20 @@ fn errors(exact: &Exact, grid: &Grid<2>, shares: &[f64], body: &Body<2>, way: Wa
     };
     // Normal and tangential stress with the mean of each cell.
     let mut means = vec![[0.0; 3]; grid.cell_count()];
-    let own: Vec<[f64; 2]> = (0..particles.len())
+    let stresses: Vec<[f64; 2]> = (0..particles.len())
         .map(|k| {
             let sigma = &particles.sigma[k];
             let volume = particles.volume0[k];
             let cell = cell_of(grid, &particles.x[k]);
-            let own = [
+            let stress = [
                 project(sigma, exact.normal, exact.normal),
                 project(sigma, exact.tangent, exact.tangent),
             ];
             for axis in 0..2 {
-                means[cell][axis] += volume * own[axis];
+                means[cell][axis] += volume * stress[axis];
             }
             means[cell][2] += volume;
-            own
+            stress
         })
         .collect();
     let ratio = POISSON / (1.0 - POISSON);
@@ -242,7 +242,7 @@ fn errors(exact: &Exact, grid: &Grid<2>, shares: &[f64], body: &Body<2>, way: Wa
             continue;
         }
         let is_cut = shares[cell] > 0.0 && shares[cell] < 1.0;
-        let mut stress = own[k];
+        let mut stress = stresses[k];
         if is_cut && way == Way::MeanStress {
             stress = [0, 1].map(|axis| means[cell][axis] / means[cell][2]);
         }

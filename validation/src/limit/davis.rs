@@ -92,9 +92,9 @@ pub(super) fn beside_dilation(study: &mut Study, level: Level) -> Result<(), Cas
             })
             .collect::<Result<Vec<_>, CaseError>>()?;
         let associated = &found[dilations.len() - 1];
-        for (dilation, own) in dilations.iter().zip(&found) {
+        for (dilation, row) in dilations.iter().zip(&found) {
             let each = |of: &dyn Fn(&Found) -> String| -> String {
-                own.iter().map(of).collect::<Vec<_>>().join(", ")
+                row.iter().map(of).collect::<Vec<_>>().join(", ")
             };
             let _ = writeln!(
                 note,
@@ -102,7 +102,7 @@ pub(super) fn beside_dilation(study: &mut Study, level: Level) -> Result<(), Cas
                 each(&|found| format!("{:.4}", found.factor)),
                 each(&|found| found.corrections.to_string()),
             );
-            let run = study.run(own[1].record(format!(
+            let run = study.run(row[1].record(format!(
                 "slope, φ = 35°, ψ = {dilation}°, cells of {cell}, flow by Davis"
             )));
             let band = if *dilation < FRICTION {
@@ -115,7 +115,7 @@ pub(super) fn beside_dilation(study: &mut Study, level: Level) -> Result<(), Cas
                 "factor of safety over that with ψ = φ [-]",
                 LIMIT_THEOREMS.says(1.0),
                 band,
-                own[1].factor / associated[0].factor,
+                row[1].factor / associated[0].factor,
             );
         }
     }

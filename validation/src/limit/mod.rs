@@ -26,9 +26,9 @@ use crate::limit_equilibrium::section::{Path, Search, Variant};
 use crate::runs::Computed;
 use crate::slopes::problems::{Asked, Problem, drained, published, undrained};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "The slopes with bounds by limit analysis, searched for along the path of equilibria, the strength reduction factor an unknown: against the bounds, against the search by trials, and against itself for other tolerances, stiffnesses and effort, with all searches of the shipped cases; its changes with the strengths against reruns, its rise with dilation, and associated flow on Davis's strengths beside it.";
-/// What is measured.
+/// The measured quantity.
 const QUANTITY: &str = "factor of safety [-]";
 /// Elastic constants and the solver enter no limit load.
 const LIMIT_THEOREMS: Oracle = Oracle {
@@ -60,7 +60,7 @@ struct Sought<'p> {
     cells: u32,
 }
 
-/// What it found.
+/// The result of a search.
 struct Found {
     factor: f64,
     stage: StageSummary,
@@ -76,7 +76,7 @@ impl Found {
         Self::of_stage(computed, stages.last().unwrap_or(&nothing))
     }
 
-    /// What one of its stages found. Corrections of steps that were cut count those of all stages.
+    /// The result of one of its stages. Corrections of steps that were cut count those of all stages.
     fn of_stage<const D: usize>(computed: &Computed<D>, stage: &StageSummary) -> Self {
         let ends = stage
             .safety
@@ -175,25 +175,25 @@ pub(crate) fn study(level: Level, out: &Folder) -> Result<Study, CaseError> {
     let sought = sought(&problems, level);
     let both = sought
         .par_iter()
-        .map(|own| {
-            let search = own.problem.search;
-            let by_path = own.find(search, true, &[])?;
-            Ok((by_path, own.find(search, false, &[])?))
+        .map(|case| {
+            let search = case.problem.search;
+            let by_path = case.find(search, true, &[])?;
+            Ok((by_path, case.find(search, false, &[])?))
         })
         .collect::<Result<Vec<_>, CaseError>>()?;
     let mut note = "along the path: F; mechanism at displacement [m]; corrections against trials; F by trials\n".to_owned();
-    for (own, (path, trials)) in sought.iter().zip(&both) {
-        against_bounds(&mut study, own, path);
+    for (case, (path, trials)) in sought.iter().zip(&both) {
+        against_bounds(&mut study, case, path);
         // Gravity raised anew at every factor is another load path.
-        if own.problem.search.path == Path::Reduce {
-            against_trials(&mut study, own, path, trials);
+        if case.problem.search.path == Path::Reduce {
+            against_trials(&mut study, case, path, trials);
         }
         let mechanism = path.path().and_then(|path| path.mechanism);
         let at = |point: PathPoint| format!("{:.4} at {}", point.factor, short(point.displacement));
         let _ = writeln!(
             note,
             "  {}: {:.4}; {}; {} / {}; {:.4}",
-            own.name(),
+            case.name(),
             path.factor,
             mechanism.map_or_else(String::new, at),
             path.corrections,
@@ -224,7 +224,7 @@ pub(crate) fn study(level: Level, out: &Folder) -> Result<Study, CaseError> {
     Ok(study)
 }
 
-/// What is searched for at a level.
+/// The searches of a level.
 fn sought(problems: &[Problem], level: Level) -> Vec<Sought<'_>> {
     let mut all = Vec::new();
     for problem in problems {
@@ -251,23 +251,23 @@ fn sought(problems: &[Problem], level: Level) -> Vec<Sought<'_>> {
     all
 }
 
-/// A factor against what is known, and its mechanism against the balance of work.
-fn against_bounds(study: &mut Study, own: &Sought<'_>, found: &Found) {
-    let Some([low, high]) = own.problem.known else {
+/// A factor against the known bounds, and its mechanism against the balance of work.
+fn against_bounds(study: &mut Study, case: &Sought<'_>, found: &Found) {
+    let Some([low, high]) = case.problem.known else {
         return;
     };
-    let asked = own.asked();
-    let mesh = own
+    let asked = case.asked();
+    let mesh = case
         .problem
         .meshes
         .iter()
-        .position(|&cells| cells == own.cells);
+        .position(|&cells| cells == case.cells);
     let above = asked.above[mesh.unwrap_or(0).min(1)];
-    let run = study.run(found.record(own.name()));
+    let run = study.run(found.record(case.name()));
     study.check(
         run,
         QUANTITY,
-        own.problem.oracle.says(0.5 * (low + high)),
+        case.problem.oracle.says(0.5 * (low + high)),
         Band::Between((1.0 - asked.below) * low, (1.0 + above) * high),
         found.factor,
     );
@@ -285,10 +285,10 @@ fn against_bounds(study: &mut Study, own: &Sought<'_>, found: &Found) {
 }
 
 /// A factor against the largest one at which a search by trials found equilibrium.
-fn against_trials(study: &mut Study, own: &Sought<'_>, path: &Found, trials: &Found) {
+fn against_trials(study: &mut Study, case: &Sought<'_>, path: &Found, trials: &Found) {
     let stable = trials.stage.safety.as_ref().and_then(|found| found.stable);
     let failed = path.stage.safety.as_ref().and_then(|found| found.failed);
-    let run = study.run(trials.record(format!("{}, by trials", own.name())));
+    let run = study.run(trials.record(format!("{}, by trials", case.name())));
     study.check(
         run,
         "upper end of the interval along the path over the largest that stands by trials [-]",

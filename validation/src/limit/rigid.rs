@@ -19,7 +19,7 @@ const DISPLACED: Oracle = Oracle {
 /// The rise of a path in its last doubling, and of the march from there to 0.3 B, as a share of the load \[-\].
 const OFF: f64 = 5e-3;
 
-/// A rough strip on undrained clay, pressed on level ground by what drives it, and its resistance N \[-\].
+/// A rough strip on undrained clay, pressed on level ground by a drive, and its resistance N \[-\].
 fn resistance(drive: &str, others: &[&str]) -> Result<(f64, RunRecord), CaseError> {
     let mut overrides = [
         "rigid.footing.reference=[\"0 m\", \"14/9 m\"]",
@@ -32,7 +32,7 @@ fn resistance(drive: &str, others: &[&str]) -> Result<(f64, RunRecord), CaseErro
     overrides.push(format!(
         "stages.load.bodies=[{{ body = \"footing\", {drive} }}]"
     ));
-    overrides.extend(others.iter().map(|&own| own.to_owned()));
+    overrides.extend(others.iter().map(|&text| text.to_owned()));
     let computed = Computed::new(shipped_case("eccentric_footing", overrides)?)?;
     let summary = &computed.run.summary;
     let measured = summary

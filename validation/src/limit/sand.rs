@@ -19,7 +19,7 @@ const INFINITE_SLOPE: Oracle = Oracle {
     source: "infinite slope without cohesion",
     locator: "F = tan φ / tan β with ψ = φ",
 };
-/// What cells of a tenth of the height are off, as a share of the factor \[-\].
+/// The error of cells of a tenth of the height, as a share of the factor \[-\].
 const OFF: f64 = 0.03;
 /// Slopes: run for one down \[-\], φ \[degree\].
 const SLOPES: [(f64, f64); 3] = [(2.0, 38.0), (1.5, 40.0), (3.0, 25.0)];
@@ -120,11 +120,11 @@ pub(super) fn slides_along_its_face(study: &mut Study, level: Level) -> Result<(
     for slope in BESIDE {
         all.extend(of_beside.iter().map(|&place| at(slope, place, 1e5)));
     }
-    let found = (all.par_iter().map(|own| own.find())).collect::<Result<Vec<_>, CaseError>>()?;
+    let found = (all.par_iter().map(|sand| sand.find())).collect::<Result<Vec<_>, CaseError>>()?;
     let mut note =
         "sand without cohesion, cells of H/10: slope; F; F over tan φ / tan β\n".to_owned();
-    for (own, found) in all.iter().zip(&found) {
-        let (name, exact) = (own.name(), own.exact());
+    for (sand, found) in all.iter().zip(&found) {
+        let (name, exact) = (sand.name(), sand.exact());
         let _ = writeln!(
             note,
             "  {name}; {:.4}; {:.4}",

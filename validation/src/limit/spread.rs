@@ -1,4 +1,4 @@
-//! The spread of a factor of safety over what is no part of the answer: tolerance, corrections and steps of the solver,
+//! The spread of a factor of safety over settings that are no part of the answer: tolerance, corrections and steps of the solver,
 //! stiffness.
 
 use std::fmt::Write as _;
@@ -34,7 +34,7 @@ const STIFFNESS_COUNTS: [&str; 3] = ["rapid_drawdown", "embankment_time", "sensi
 /// raised, which takes more than the five cuts of a case.
 const CUTS: u32 = 12;
 
-/// What is set other than in the case file.
+/// A setting other than that of the case file.
 #[derive(Clone, Copy, Debug)]
 enum Setting {
     AsGiven,
@@ -47,7 +47,7 @@ enum Setting {
     Young(f64),
 }
 
-/// What is varied.
+/// The varied settings.
 const SETTINGS: [Setting; 15] = [
     Setting::AsGiven,
     Setting::Corrections(10),
@@ -93,14 +93,14 @@ pub(super) fn of_shipped(study: &mut Study, level: Level) -> Result<(), CaseErro
     let mut note = "searches of the shipped cases, over 15 settings: case, stage; least F, largest F, spread [%]; corrections as \
                     given\n"
         .to_owned();
-    for own in SHIPPED {
-        let is_dear = level < Level::Full && DEAR.contains(&own.name);
-        if is_dear || STIFFNESS_COUNTS.contains(&own.name) {
+    for shipped in SHIPPED {
+        let is_dear = level < Level::Full && DEAR.contains(&shipped.name);
+        if is_dear || STIFFNESS_COUNTS.contains(&shipped.name) {
             continue;
         }
-        match own.case_file::<String>([])?.any_case() {
-            AnyCase::Plane(case) => of_case(study, own.name, case, &mut note)?,
-            AnyCase::Space(case) => of_case(study, own.name, case, &mut note)?,
+        match shipped.case_file::<String>([])?.any_case() {
+            AnyCase::Plane(case) => of_case(study, shipped.name, case, &mut note)?,
+            AnyCase::Space(case) => of_case(study, shipped.name, case, &mut note)?,
         }
     }
     study.notes.push(note);
@@ -197,7 +197,7 @@ fn check(study: &mut Study, record: RunRecord, factors: &[f64]) -> [f64; 3] {
 
 /// One slope with other tolerances, stiffnesses and numbers of corrections.
 pub(super) fn of_one_slope(study: &mut Study, problems: &[Problem]) -> Result<(), CaseError> {
-    let Some(problem) = problems.iter().find(|own| own.section.name == VARIED) else {
+    let Some(problem) = problems.iter().find(|p| p.section.name == VARIED) else {
         return Ok(());
     };
     let mut variants: Vec<(f64, Vec<String>)> = Vec::new();
@@ -213,7 +213,7 @@ pub(super) fn of_one_slope(study: &mut Study, problems: &[Problem]) -> Result<()
     let mut note =
         format!("{VARIED}, along the path: flow; E [kPa], setting; F; mechanism; corrections\n");
     for associated in [true, false] {
-        let own = Sought {
+        let sought = Sought {
             problem,
             associated,
             cells: problem.meshes[0],
@@ -221,7 +221,7 @@ pub(super) fn of_one_slope(study: &mut Study, problems: &[Problem]) -> Result<()
         let found = variants
             .par_iter()
             .map(|(young, set)| {
-                own.find(
+                sought.find(
                     Search {
                         young: *young,
                         ..problem.search

@@ -49,7 +49,7 @@ struct Varied<'a> {
 /// Three slopes against reruns.
 pub(super) fn against_reruns(study: &mut Study, problems: &[Problem]) -> Result<(), CaseError> {
     let mut note = "changes with strength: slope, material; ∂ ln F/∂ ln, by reruns\n".to_owned();
-    if let Some(problem) = problems.iter().find(|own| own.section.name == VARIED) {
+    if let Some(problem) = problems.iter().find(|p| p.section.name == VARIED) {
         for associated in [true, false] {
             let sought = Sought {
                 problem,
@@ -106,7 +106,7 @@ fn check(study: &mut Study, varied: &Varied<'_>, note: &mut String) -> Result<()
         shares.strengths().map(|(_, _, share)| share).sum(),
     );
     if varied.associated {
-        let kinematic = shares.kinematic.map_or(f64::NAN, |own| own.factor);
+        let kinematic = shares.kinematic.map_or(f64::NAN, |bound| bound.factor);
         study.check(
             run,
             "kinematic factor over the factor of safety [-]",
@@ -131,24 +131,24 @@ fn check(study: &mut Study, varied: &Varied<'_>, note: &mut String) -> Result<()
             }
             reruns.push((varied.run)(&overrides)?);
         }
-        let what = if key == "friction" { "tan φ" } else { "c" };
+        let kind = if key == "friction" { "tan φ" } else { "c" };
         let by_reruns = (reruns[1].factor / reruns[0].factor).ln() / (RATIOS[1] / RATIOS[0]).ln();
-        let told = (shares.strengths())
-            .find(|(material, own, _)| *material == varied.material && *own == what)
+        let rate = (shares.strengths())
+            .find(|(material, name, _)| *material == varied.material && *name == kind)
             .map_or(f64::NAN, |(_, _, share)| share);
-        let _ = writeln!(note, "  {}; {what}; {told:.4}, {by_reruns:.4}", varied.name);
+        let _ = writeln!(note, "  {}; {kind}; {rate:.4}, {by_reruns:.4}", varied.name);
         let records: Vec<RunRecord> = reruns
             .iter()
             .map(|found| found.record(String::new()))
             .collect();
-        let name = format!("{}, {what} at 0.97 and 1.03", varied.name);
+        let name = format!("{}, {kind} at 0.97 and 1.03", varied.name);
         let run = study.run(RunRecord::sum(name, &records.iter().collect::<Vec<_>>()));
         study.check(
             run,
             "∂ ln F/∂ ln of the strength [-]",
             RERUNS.says(by_reruns),
             Band::Relative(DIFFERENCE),
-            told,
+            rate,
         );
     }
     Ok(())

@@ -105,9 +105,9 @@ mod tests {
             (60.0, 1.0, 0.191),
             (45.0, 6.0, 0.181),
         ] {
-            let own = number(angle, depth, Shares::ALIKE).recip();
-            println!("{angle}: {own:.4}");
-            assert!((own - taylor).abs() < 1.1e-3, "{angle}: {own}");
+            let found = number(angle, depth, Shares::ALIKE).recip();
+            println!("{angle}: {found:.4}");
+            assert!((found - taylor).abs() < 1.1e-3, "{angle}: {found}");
         }
     }
 

@@ -139,7 +139,7 @@ fn ends(section: &Section, [from, to]: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     (to - from >= small && ends[0][1] - ends[1][1] >= small).then_some(ends)
 }
 
-/// The factor of one circle, which does not change with it: what resists is in proportion to 1/F. Infinite where it is not driven.
+/// The factor of one circle, which does not change with it: the resistance is in proportion to 1/F. Infinite where it is not driven.
 fn circular(section: &Section, ends: [[f64; 2]; 2], angle: f64, work: impl Fn(f64) -> f64) -> f64 {
     let circle = Spiral::new(ends, angle, 0.0);
     let drive = -section.unit_weight * circle.area_moment(section);

@@ -37,7 +37,7 @@ pub(crate) struct Layer {
 /// A slope that falls to the right on a rigid rough base, between smooth upright sides.
 #[derive(Clone, Debug)]
 pub(crate) struct Section {
-    /// Name, with what is varied.
+    /// Name, with the variation.
     pub(crate) name: String,
     /// Height H of the slope \[m\].
     pub(crate) height: f64,
@@ -49,7 +49,7 @@ pub(crate) struct Section {
     pub(crate) surface: Vec<[f64; 2]>,
     /// Level of the base \[m\].
     pub(crate) base: f64,
-    /// Layers; together they fill what is between base and surface.
+    /// Layers; together they fill the space between base and surface.
     pub(crate) layers: Vec<Layer>,
 }
 
@@ -58,7 +58,7 @@ pub(crate) struct Section {
 pub(crate) struct Variant {
     /// Cells over the height of the slope.
     pub(crate) cells: u32,
-    /// What is done against locking.
+    /// The measure against locking.
     pub(crate) locking: Locking,
     /// ψ = φ, or else ψ = 0.
     pub(crate) associated: bool,
@@ -103,7 +103,7 @@ impl Ends {
         format!("domain.y = [\"0 m\", \"{} m\"]", self.length)
     }
 
-    /// What they hold.
+    /// The walls at the ends.
     fn walls(self) -> String {
         let back = if self.is_rough { "fixed" } else { "roller" };
         format!("front = \"roller\"\nback = \"{back}\"")
@@ -363,7 +363,7 @@ impl Layer {
     }
 }
 
-/// What a case in space states otherwise than one in the plane.
+/// The changes of a case in space against one in the plane.
 struct Extent {
     analysis: &'static str,
     cells: String,

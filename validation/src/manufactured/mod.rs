@@ -25,7 +25,7 @@ use crate::continuum::laboratory::{filled, grid_of, run, unobserved};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A smooth field with stretches from 0.7 to 1.3 is prescribed by its own body force on the unit square and cube. Errors of displacement and stress under refinement, in one step and in ten: second order in displacement and first in stress until particles cross cells, where iMPM stalls and iGIMP goes on.";
 /// Linear interpolation, as long as every cell has the same particles.
 const LINEAR_CELLS: Oracle = Oracle {

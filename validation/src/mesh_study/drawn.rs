@@ -43,7 +43,7 @@ impl Chance {
     }
 }
 
-/// What came of drawn values.
+/// The coverage of drawn values.
 #[derive(Default)]
 struct Drawn {
     /// Covered and counted, of all orders.

@@ -1,4 +1,4 @@
-//! What a study of meshes says of its own error: along the path of equilibria on slopes whose factor is bounded, at a place
+//! The stated error of a study of meshes: along the path of equilibria on slopes whose factor is bounded, at a place
 //! in ground at rest, and of drawn values whose limit and order are known.
 
 mod drawn;
@@ -23,9 +23,9 @@ use crate::limit_equilibrium::section::{Path, Variant};
 use crate::runs::shipped_case;
 use crate::slopes::problems::{Problem, acads_1a, drained, published, undrained};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "What a study of two meshes says of its own error: slopes whose factor of safety is bounded, searched for along the path of equilibria as case files do it; stress at a place in ground at rest that is no particle's; and drawn values of known limit and order. How often the truth lies within the uncertainty, and how wide that is.";
-/// What a stated uncertainty promises.
+/// The promise of a stated uncertainty.
 const PROMISE: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,
     source: "lower and upper bounds of the slopes",
@@ -137,7 +137,7 @@ fn slopes(study: &mut Study, level: Level) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// Holds what was found for a slope against what is known of it, and tells it in a line.
+/// Holds the result for a slope against its known bounds, and states it in a line.
 fn of_slope(
     study: &mut Study,
     problem: &Problem,
@@ -147,7 +147,7 @@ fn of_slope(
 ) -> String {
     let name = record.variant.clone();
     let run = study.run(record);
-    let told: Vec<String> = (found.values.iter().enumerate())
+    let printed: Vec<String> = (found.values.iter().enumerate())
         .map(|(mesh, value)| {
             let early = if found.ended_early(mesh) {
                 " (early)"
@@ -192,7 +192,7 @@ fn of_slope(
     format!(
         "  {}: {lower:.3} … {upper:.3}; {}; {}\n",
         problem.section.name,
-        told.join(", "),
+        printed.join(", "),
         says.unwrap_or_else(|| "nothing is said".to_owned())
     )
 }

@@ -64,11 +64,11 @@ fn go_on(
     let mut mode = Mode::default();
     let mut observe = |accepted: &Accepted<'_, 1>| {
         let particles = &accepted.body.particles;
-        if let Some(own) = &accepted.report.energy {
-            let strained = own.elastic.sqrt().copysign(particles.sigma[0][0][0]);
+        if let Some(energy) = &accepted.report.energy {
+            let strained = energy.elastic.sqrt().copysign(particles.sigma[0][0][0]);
             let last = particles.len() - 1;
-            let moving = own.kinetic.sqrt().copysign(particles.velocity[last][0]);
-            mode.energy.push(own.kinetic + own.elastic);
+            let moving = energy.kinetic.sqrt().copysign(particles.velocity[last][0]);
+            mode.energy.push(energy.kinetic + energy.elastic);
             mode.phase.push(strained.atan2(moving));
         }
         ControlFlow::Continue(())

@@ -1,4 +1,4 @@
-//! What sand leaves when it has spread and rests.
+//! Deposits of sand that has spread and rests.
 
 use igimp_assembly::Particles;
 use igimp_cases::CaseError;
@@ -151,10 +151,10 @@ fn columns(study: &mut Study, level: Level) -> Result<(), CaseError> {
             })
             .collect::<Result<Vec<_>, CaseError>>()?;
         let mut found = Vec::new();
-        for (&ratio, own) in std::iter::zip(ratios, &computed) {
+        for (&ratio, result) in std::iter::zip(ratios, &computed) {
             let variant = format!("column of sand, a = {ratio}, cells of {cell} cm");
-            let run = study.run_to_end(RunRecord::new(variant, &own.report, own.elapsed));
-            let deposit = Deposit::of(run, ratio, own.particles(), HALF_WIDTH);
+            let run = study.run_to_end(RunRecord::new(variant, &result.report, result.elapsed));
+            let deposit = Deposit::of(run, ratio, result.particles(), HALF_WIDTH);
             let least = ratio.min(1.9 * ratio.powf(2.0 / 3.0));
             let band = Band::Between(least, 3.8 * ratio.powf(0.73));
             let lube = if ratio < 2.3 {
@@ -181,13 +181,13 @@ fn columns(study: &mut Study, level: Level) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// Checks with what power of the ratio run-outs and heights of all columns grow.
+/// Checks with which power of the ratio run-outs and heights of all columns grow.
 fn exponents(study: &mut Study, found: &[Deposit]) {
     let last = found[found.len() - 1].run;
-    let run_out: fn(&Deposit) -> f64 = |own| own.run_out;
-    let height: fn(&Deposit) -> f64 = |own| own.height;
+    let run_out: fn(&Deposit) -> f64 = |deposit| deposit.run_out;
+    let height: fn(&Deposit) -> f64 = |deposit| deposit.height;
     for (name, value, exponent) in [("run-out", run_out, 0.9), ("height", height, 0.4)] {
-        let points = found.iter().map(|own| [own.ratio.ln(), value(own).ln()]);
+        let points = found.iter().map(|d| [d.ratio.ln(), value(d).ln()]);
         let quantity = format!("exponent of the {name} from a = 1 to 8, by least squares [-]");
         let band = Band::Between(exponent - 0.15, exponent + 0.15);
         let found = slope(&points.collect::<Vec<_>>());
@@ -198,16 +198,16 @@ fn exponents(study: &mut Study, found: &[Deposit]) {
 /// The slope of the line that comes closest to points.
 fn slope(points: &[[f64; 2]]) -> f64 {
     let count = points.len() as f64;
-    let mean = |axis: usize| points.iter().map(|own| own[axis]).sum::<f64>() / count;
+    let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / count;
     let middle = [mean(0), mean(1)];
     let sum = |axis: usize| {
-        let product = |own: &[f64; 2]| (own[0] - middle[0]) * (own[axis] - middle[axis]);
+        let product = |point: &[f64; 2]| (point[0] - middle[0]) * (point[axis] - middle[axis]);
         points.iter().map(product).sum::<f64>()
     };
     sum(1) / sum(0)
 }
 
-/// What a column leaves when it rests.
+/// The deposit of a column at rest.
 pub(super) struct Deposit {
     /// Number of the run.
     pub(super) run: usize,
@@ -235,7 +235,7 @@ impl Deposit {
     /// Heights by ratios, in words.
     pub(super) fn heights(found: &[Self]) -> String {
         let heights = found.iter();
-        let heights = heights.map(|own| format!("{:.2} at a = {}", own.height, own.ratio));
+        let heights = heights.map(|d| format!("{:.2} at a = {}", d.height, d.ratio));
         heights.collect::<Vec<_>>().join(", ")
     }
 }

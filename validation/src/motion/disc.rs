@@ -1,4 +1,4 @@
-//! A disc that turns once: what is lost of its angular momentum.
+//! A disc that turns once: the loss of its angular momentum.
 
 use std::f64::consts::PI;
 
@@ -42,8 +42,8 @@ fn disc(cell: f64) -> Result<Body<2>, CaseError> {
 }
 
 fn angular_momentum(body: &Body<2>) -> f64 {
-    let own = std::iter::zip(&body.particles.x, &body.particles.velocity);
-    own.zip(&body.particles.mass)
+    let both = std::iter::zip(&body.particles.x, &body.particles.velocity);
+    both.zip(&body.particles.mass)
         .map(|((x, v), m)| m * ((x[0] - 2.0) * v[1] - (x[1] - 2.0) * v[0]))
         .sum()
 }
@@ -87,7 +87,7 @@ fn turned(
     Ok((run, 1.0 - angular_momentum(&body) / before))
 }
 
-/// Holds what is lost against nothing, and its order against two.
+/// Holds the loss against zero, and its order against two.
 pub(super) fn hold(study: &mut Study, level: Level) -> Result<(), CaseError> {
     let alpha = (TimeScheme::GeneralisedAlpha, "generalised-α");
     let (_, coarse) = turned(study, 0.25, 0.0, alpha)?;

@@ -77,8 +77,8 @@ impl Range {
     fn sees(&mut self, displacement: f64, ground: f64) {
         self.step += 1;
         if self.step > self.from {
-            let own = displacement / WAY + ground;
-            self.most = [self.most[0].min(own), self.most[1].max(own)];
+            let total = displacement / WAY + ground;
+            self.most = [self.most[0].min(total), self.most[1].max(total)];
         }
     }
 
@@ -220,8 +220,8 @@ fn pulse(study: &mut Study, width: f64, band: f64) -> Result<(), CaseError> {
     let steps = Steps::of(TimeScheme::Newmark, 0.25 / compression(), 700);
     let mut left = f64::NAN;
     let mut observe = |accepted: &Accepted<'_, 1>| {
-        if let Some(own) = &accepted.report.energy {
-            left = own.kinetic + own.elastic;
+        if let Some(energy) = &accepted.report.energy {
+            left = energy.kinetic + energy.elastic;
         }
         ControlFlow::Continue(())
     };

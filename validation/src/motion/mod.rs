@@ -21,7 +21,7 @@ use igimp_solver::{Body, MarchSettings, Observer};
 use crate::continuum::laboratory::run;
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Motion in time by the schemes of the program: the first mode of a bar step by step, a disc that turns once, a block that slides and bodies that roll down an incline, waves in layers over rock that is shaken, and what clay and sand leave when they have spread and rest, columns of revolution among them, and a cylinder that breathes.";
 /// Young's modulus and Poisson's ratio of bodies of unit density.
 const YOUNG: f64 = 100.0;

@@ -109,8 +109,8 @@ fn breathed(cells: usize, exact: &Breathing) -> Result<Breath, CaseError> {
     let mut observe = |accepted: &Accepted<'_, 2>| {
         sum += accepted.forces.u[rim][0] / SWING;
         way.push(sum);
-        let own = accepted.report.energy.as_ref();
-        energy.extend(own.map(|own| own.kinetic + own.elastic));
+        let now = accepted.report.energy.as_ref();
+        energy.extend(now.map(|e| e.kinetic + e.elastic));
         ControlFlow::Continue(())
     };
     let loads = StepLoads::gravity([0.0; 2]);
@@ -208,17 +208,17 @@ y = {{ of = \"rigid.tamper.settlement\" }}
         10.0 + fall,
         mass * gravity
     );
-    let own = Computed::<2>::new(CaseFile::parse("tamper", &text, &[])?.into_case())?;
-    let run = RunRecord::new("tamper on a rod", &own.report, own.elapsed);
+    let tamper = Computed::<2>::new(CaseFile::parse("tamper", &text, &[])?.into_case())?;
+    let run = RunRecord::new("tamper on a rod", &tamper.report, tamper.elapsed);
     let run = study.run_to_end(run);
-    let curve = own.curve("way").points(0, 1);
+    let curve = tamper.curve("way").points(0, 1);
     let meets = (2.0 * fall / gravity).sqrt();
     let exact = |time: f64| {
         let (past, last) = (time - meets, gravity * tau);
         last * past + (gravity * meets - last) * tau * (1.0 - (-past / tau).exp())
     };
     for time in [0.11, 0.13, 0.18] {
-        let apart = |own: &&[f64; 2]| (own[0] - time).abs();
+        let apart = |point: &&[f64; 2]| (point[0] - time).abs();
         let nearest = (curve.iter()).min_by(|a, b| apart(a).total_cmp(&apart(b)));
         let [at, way] = nearest.copied().unwrap_or([f64::NAN; 2]);
         let quantity = format!("way into the rod at {at:.3} s [m]");
@@ -240,10 +240,10 @@ fn columns(study: &mut Study, level: Level) -> Result<(), CaseError> {
             .map(|&ratio| Computed::<2>::new(shipped_case("column_collapse", column(cell, ratio))?))
             .collect::<Result<Vec<_>, CaseError>>()?;
         let mut found = Vec::new();
-        for (&ratio, own) in std::iter::zip(ratios, &computed) {
+        for (&ratio, result) in std::iter::zip(ratios, &computed) {
             let variant = format!("column of revolution, a = {ratio}, cells of {cell} cm");
-            let run = study.run_to_end(RunRecord::new(variant, &own.report, own.elapsed));
-            let deposit = Deposit::of(run, ratio, own.particles(), RADIUS);
+            let run = study.run_to_end(RunRecord::new(variant, &result.report, result.elapsed));
+            let deposit = Deposit::of(run, ratio, result.particles(), RADIUS);
             let measured = if ratio < 1.7 {
                 1.24 * ratio
             } else {
@@ -268,16 +268,16 @@ fn columns(study: &mut Study, level: Level) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// Checks with what power of the ratio run-outs and heights grow.
+/// Checks with which power of the ratio run-outs and heights grow.
 fn exponents(study: &mut Study, found: &[Deposit]) {
     let power = |from: f64, to: f64, value: fn(&Deposit) -> f64| {
-        let at = |ratio: f64| found.iter().find(|own| own.ratio.total_cmp(&ratio).is_eq());
+        let at = |ratio: f64| found.iter().find(|d| d.ratio.total_cmp(&ratio).is_eq());
         let (lower, upper) = (at(from)?, at(to)?);
         let growth = (value(upper) / value(lower)).ln();
         Some((upper.run, growth / (to / from).ln()))
     };
-    let run_out: fn(&Deposit) -> f64 = |own| own.run_out;
-    let height: fn(&Deposit) -> f64 = |own| own.height;
+    let run_out: fn(&Deposit) -> f64 = |deposit| deposit.run_out;
+    let height: fn(&Deposit) -> f64 = |deposit| deposit.height;
     for (name, value, [from, to], oracle, exponent) in [
         ("run-out", run_out, [0.75, 1.5], LOW, 1.0),
         ("run-out", run_out, [2.0, 8.0], TALL, 0.5),

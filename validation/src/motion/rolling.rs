@@ -63,9 +63,9 @@ fn over(scheme: TimeScheme, duration: f64, is_first: bool) -> TimeStep {
 }
 
 impl<const D: usize> Slide<D> {
-    /// The ground, and what holds it.
+    /// The ground and its supports.
     fn ground(&self) -> Result<(Body<D>, StepConditions<D>), CaseError> {
-        let cells = self.extent.map(|own| (own / self.cell).round() as usize);
+        let cells = self.extent.map(|side| (side / self.cell).round() as usize);
         let mut filled_cells = cells;
         filled_cells[D - 1] = (2.0 / self.cell).round() as usize;
         let seeds = filled(&grid_of(self.cell, filled_cells)?, 2);
@@ -104,7 +104,7 @@ impl<const D: usize> Slide<D> {
         let mut workspace = Workspace::new(SolverKind::Auto.build());
         let mut go = |body: &mut Body<D>, motion: &RigidMotion<D>, time: TimeStep| {
             let conditions = (still.clone().with_motions(vec![motion.clone()]))
-                .and_then(|own| own.with_time(Some(time)));
+                .and_then(|given| given.with_time(Some(time)));
             let conditions = conditions.map_err(CaseError::from)?;
             let ends = (0.0, 1.0);
             let stepped = step(body, &method, &conditions, ends, &settings, &mut workspace);

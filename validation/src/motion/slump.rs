@@ -1,4 +1,4 @@
-//! What a block of clay leaves that spreads over a floor, creeping against a drag: a layer that yields everywhere.
+//! The deposit of a block of clay that spreads over a floor, creeping against a drag: a layer that yields everywhere.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -22,14 +22,14 @@ const STRENGTH: f64 = 309.0;
 const WEIGHT: f64 = 18e3;
 const GRAVITY: f64 = 9.81;
 const VOLUME: f64 = 0.25;
-/// Places at which the height is told \[m\].
+/// Places at which the height is printed \[m\].
 const PLACES: [f64; 8] = [0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2];
 /// How many of them are held: beyond them the layer is few cells high.
 const HELD: usize = 4;
-/// Share of the clay whose length is told \[-\].
+/// Share of the clay whose length is printed \[-\].
 const MOST: f64 = 0.95;
 
-/// What the clay spreads over.
+/// The floor that the clay spreads over.
 #[derive(Clone, Copy)]
 enum Floor {
     /// Nodes that are held: soil touches them up to a cell above.
@@ -125,7 +125,7 @@ move_per_step = {move_per_step}
         )
     }
 
-    /// Lets it spread, and prints what it leaves.
+    /// Lets it spread, and prints its deposit.
     fn spread(&self) -> Result<Computed<2>, CaseError> {
         let case = CaseFile::parse("slump.toml", &self.case_file(), &[])?.into_case();
         let computed = Computed::<2>::new(case)?;
@@ -190,7 +190,7 @@ pub(super) fn hold(study: &mut Study, level: Level) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// Holds the mean heights and the mean length of what blocks of several stiffnesses leave on a rigid floor.
+/// Holds the mean heights and the mean length of the deposits of blocks of several stiffnesses on a rigid floor.
 fn hold_mean(study: &mut Study, cells: &str, block: &Block) -> Result<(), CaseError> {
     let mut runs = Vec::new();
     let (mut heights, mut end) = ([0.0; HELD], 0.0);

@@ -11,7 +11,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{RunRecord, Study};
 use crate::runs::Computed;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A strip of elastic soil, one cell high and without Poisson's ratio, is pulled or pressed with a member of reinforcement in it: elastic, at its capacity, slack, with a bond that lets its ends slip, and stressed by a jack and locked off. Soil and member share the load by their stiffness, cell by cell.";
 const BAR: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -94,8 +94,8 @@ pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
         },
     ];
     for strip in &strips {
-        let own: Vec<String> = strip.overrides.iter().map(|&own| own.to_owned()).collect();
-        let computed = Computed::new(case("strip.toml", STRIP, &own)?)?;
+        let set: Vec<String> = strip.overrides.iter().map(|&t| t.to_owned()).collect();
+        let computed = Computed::new(case("strip.toml", STRIP, &set)?)?;
         let record = RunRecord::new(strip.name, &computed.report, computed.elapsed);
         let run = study.run_to_end(record);
         let bars = &computed.run.body.reinforcement[0].segments;
@@ -112,12 +112,12 @@ pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
         } else {
             Band::Between(0.0, 0.0)
         };
-        let what = if moves {
+        let quantity = if moves {
             "N in the middle [N/m]"
         } else {
             "N of the bar furthest off [N/m]"
         };
-        study.check(run, what, BAR.says(strip.force), band, force);
+        study.check(run, quantity, BAR.says(strip.force), band, force);
     }
     pull_out(&mut study)?;
     locked_off(&mut study, anchor)?;
@@ -139,13 +139,13 @@ fn pull_out(study: &mut Study) -> Result<(), CaseError> {
     let bars = &computed.run.body.reinforcement[0].segments;
     let mut table = Table::new("pull_out", &["x_[m]", "N_[N/m]", "exact_[N/m]"]);
     let mut worst = 0.0_f64;
-    for (cell, own) in bars.chunks(4).enumerate() {
+    for (cell, group) in bars.chunks(4).enumerate() {
         let middle = |k: usize| cell as f64 + (k as f64 + 0.5) / 4.0;
         let limits: Vec<f64> = (0..4)
             .map(|k| bond * middle(k).min(10.0 - middle(k)))
             .collect();
         let strain = strain(&limits);
-        for (k, bar) in own.iter().enumerate() {
+        for (k, bar) in group.iter().enumerate() {
             let exact = (STIFFNESS * strain).min(limits[k]);
             table.push(vec![middle(k), bar.state.force, exact]);
             worst = worst.max((bar.state.force - exact).abs());

@@ -1,5 +1,5 @@
-//! The upper bound by a block that turns on a circle through nails: what they carry where the circle
-//! crosses them works against the weight.
+//! The upper bound by a block that turns on a circle through nails: their forces where the circle
+//! crosses them work against the weight.
 
 use crate::limit_equilibrium::search::least;
 
@@ -30,7 +30,7 @@ pub(super) struct Cut {
 
 impl Cut {
     /// The least factor on the strength of the soil at which any block that turns on a circle, from the
-    /// surface to the face, is in equilibrium; the nails keep what they carry.
+    /// surface to the face, is in equilibrium; the nails keep their forces.
     pub(super) fn upper_bound(&self) -> f64 {
         let upper = [self.face - 1e-3, 0.9 * self.height, 3.0];
         least(|of| self.factor(of), [0.0, 0.0, 0.02], upper).0
@@ -85,7 +85,7 @@ impl Cut {
 }
 
 impl Nail {
-    /// What it takes when the block beyond the slip line turns about a centre at rate one \[kN m/m\].
+    /// The power that it takes when the block beyond the slip line turns about a centre at rate one \[kN m/m\].
     fn power(&self, line: &[[f64; 2]], centre: [f64; 2]) -> f64 {
         let along = [0, 1].map(|axis| self.end[axis] - self.head[axis]);
         let length = along[0].hypot(along[1]);

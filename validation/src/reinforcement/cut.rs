@@ -14,7 +14,7 @@ use crate::harness::study::coverage::{self, Known, on_cells};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, mesh, shipped_case};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "The shipped cut of 5 m in undrained clay on rock, γH/c_u = 4, held by three rows of nails and a facing, and the same cut without them. Factors of safety on two meshes are extrapolated to no width of the cell. Reinforcement that pulls weakens no soil, so the lower bound without nails holds; circles through the nails, least over all of them, give the upper bound.";
 const BOUNDS: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,
@@ -63,7 +63,7 @@ impl Search {
         if !self.has_nails {
             overrides.push("curves=[]".to_owned());
             overrides.push("reinforcement=[]".to_owned());
-            // What stands without nails.
+            // The cut that stands without nails.
             overrides.push("case.gravity=\"8 m/s2\"".to_owned());
             overrides.push("materials.clay.unit_weight=\"16 kN/m3\"".to_owned());
         }
@@ -120,15 +120,15 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     ];
     let mut table = Table::new("factors_of_safety", &header);
     let meshes = cells.len();
-    for (own, computed) in std::iter::zip(searches.chunks(meshes), results.chunks(meshes)) {
+    for (group, computed) in std::iter::zip(searches.chunks(meshes), results.chunks(meshes)) {
         let mut before: Option<[f64; 2]> = None;
-        for (search, result) in std::iter::zip(own, computed) {
+        for (search, result) in std::iter::zip(group, computed) {
             let nails = search.nails();
             let name = format!("{nails}, h = {} m", search.cell);
             let run = study.run(trials(name, result));
             let found = result
                 .safety()
-                .and_then(|own| Some((own.stable?, own.failed?)));
+                .and_then(|safety| Some((safety.stable?, safety.failed?)));
             let found = found.map_or(f64::NAN, |(stable, failed)| 0.5 * (stable + failed));
             let (low, high, oracle) = search.bounds(upper);
             table.push(vec![

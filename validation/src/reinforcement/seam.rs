@@ -12,7 +12,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::Computed;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A stiff block without weight on a level seam of weak soil is pushed by P, and a nail or an anchor through the seam ties it to the ground. It slides at F = (S + T sin β tan φ) / (P − T cos β), with S the strength of the seam, found on the same mesh without a tie, so that the check knows nothing of how a mesh sees the ends of a seam.";
 const SLIDING: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -141,7 +141,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("reinforcement-seam", ABOUT, out)?;
     let blocks: Vec<Block> = blocks()
         .into_iter()
-        .filter(|own| own.level <= level)
+        .filter(|block| block.level <= level)
         .collect();
     let results = blocks
         .par_iter()
@@ -162,7 +162,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         ));
         let found = computed
             .safety()
-            .and_then(|own| Some((own.stable?, own.failed?)));
+            .and_then(|safety| Some((safety.stable?, safety.failed?)));
         let found = found.map_or(f64::NAN, |(stable, failed)| 0.5 * (stable + failed));
         if block.tie == Tie::None {
             strength = found * block.push;

@@ -1,4 +1,4 @@
-//! What shared strain costs: corrections and cuts of Newton's method over all slopes, beside those of
+//! The cost of shared strain: corrections and cuts of Newton's method over all slopes, beside those of
 //! B-bar on the same meshes.
 
 use std::fmt::Write as _;
@@ -108,14 +108,14 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
         found,
     } in searches(slopes)?
     {
-        let own = found.each_ref().map(|found| found.run(String::new()));
+        let records = found.each_ref().map(|found| found.run(String::new()));
         let fails = found.each_ref().map(Found::failed_trials);
-        let counts = [of(&own[0], fails[0]), of(&own[1], fails[1])];
+        let counts = [of(&records[0], fails[0]), of(&records[1], fails[1])];
         line(&format!("{:>2} H/{cells}", slope + 1), counts);
         let mut row = vec![slope as f64 + 1.0, f64::from(cells)];
         row.extend(counts.as_flattened().iter().map(|&count| count as f64));
         table.push(row);
-        for (which, run) in own.into_iter().enumerate() {
+        for (which, run) in records.into_iter().enumerate() {
             failed[which] += fails[which];
             runs[which].push(run);
         }

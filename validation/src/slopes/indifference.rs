@@ -1,4 +1,4 @@
-//! What a limit load of a given geometry must not depend on: the stiffness of the soil, and the steps.
+//! A limit load of a given geometry must not depend on the stiffness of the soil, nor on the steps.
 
 use std::fmt::Write as _;
 
@@ -44,7 +44,7 @@ pub(super) fn report(study: &mut Study, problems: &[Problem]) -> Result<(), Case
         associated: true,
     };
     let mut note = format!("{SLOPE}: E [kPa], steps; computed\n");
-    for (what, searches) in [
+    for (span, searches) in [
         ("E of 10 MPa to 10 GPa", &stiffnesses[..]),
         ("5 to 20 steps", &steps[..]),
     ] {
@@ -67,7 +67,7 @@ pub(super) fn report(study: &mut Study, problems: &[Problem]) -> Result<(), Case
         let least = factors().fold(f64::INFINITY, f64::min);
         let most = factors().fold(f64::NEG_INFINITY, f64::max);
         let runs: Vec<RunRecord> = found.iter().map(|found| found.run(String::new())).collect();
-        let run = RunRecord::sum(format!("{SLOPE}, {what}"), &runs.iter().collect::<Vec<_>>());
+        let run = RunRecord::sum(format!("{SLOPE}, {span}"), &runs.iter().collect::<Vec<_>>());
         let run = study.run(run);
         study.check(
             run,

@@ -1,4 +1,4 @@
-//! The mesh error of every slope with bounds: what two meshes say of the factor on cells of no size.
+//! The mesh error of every slope with bounds: the factor extrapolated from two meshes.
 
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
@@ -13,18 +13,18 @@ use crate::harness::study::coverage::Known;
 use crate::harness::study::{RunRecord, Study};
 use crate::limit_equilibrium::section::Variant;
 
-/// What is extrapolated.
+/// The extrapolated quantity.
 const EXTRAPOLATED: &str = "factor of safety, extrapolated from two meshes [-]";
 /// How far the extrapolated factor may lie beyond the bounds \[-\].
 const BEYOND: f64 = 0.015;
-/// What the stated uncertainty promises.
+/// The promise of the stated uncertainty.
 const UNCERTAINTY: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,
     source: "lower and upper bounds of all slopes that have both",
     locator: "extrapolated value and uncertainty overlap the bounds in nine of ten",
 };
 
-/// What is told of each slope.
+/// The columns of each slope.
 const HEADER: [&str; 9] = [
     "slope",
     "psi=phi",
@@ -44,7 +44,7 @@ struct Pair<'s> {
     /// With ψ = φ; else with ψ = 0.
     associated: bool,
     bounds: [f64; 2],
-    /// What was found on the coarse mesh and on the fine one.
+    /// The results on the coarse mesh and on the fine one.
     on: [&'s Found; 2],
 }
 
@@ -134,7 +134,7 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
     let mut runs = Vec::new();
     let mut covered = 0_usize;
     let with_bounds = (slopes.problems.iter().enumerate())
-        .filter(|(_, own)| own.oracle.kind == OracleKind::LimitAnalysis && own.known.is_some());
+        .filter(|(_, p)| p.oracle.kind == OracleKind::LimitAnalysis && p.known.is_some());
     let pairs = with_bounds
         .flat_map(|(place, _)| [true, false].map(|associated| Pair::of(slopes, place, associated)));
     for pair in pairs.flatten() {

@@ -25,11 +25,11 @@ use crate::slopes::problems::{
     Asked, Opinion, Problem, drained, published, undrained, weak_layer_edges,
 };
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Slopes of undrained and drained soil, homogeneous and in layers, whose factor of safety is bounded by limit analysis or published; the factor of safety of the given geometry is searched for on two meshes, with its mesh error, and every slope has a second opinion by hand calculation.";
-/// What is measured.
+/// The measured quantity.
 const QUANTITY: &str = "factor of safety [-]";
-/// What is measured of soil that locks.
+/// The measured quantity of soil that locks.
 const STANDS: &str = "largest factor that stands [-]";
 /// By how much an upper bound of rigid blocks may lie above the factor of safety \[-\].
 const BLOCKS: f64 = 0.05;
@@ -41,7 +41,7 @@ struct Sought {
     variant: Variant,
 }
 
-/// What a search found.
+/// The result of a search.
 pub(crate) struct Found {
     /// Largest factor found stable, smallest found failed \[-\].
     interval: [f64; 2],
@@ -73,7 +73,7 @@ impl Found {
     }
 }
 
-/// What is known of a slope: by its oracle, and by hand.
+/// The known factors of a slope: by its oracle, and by hand.
 pub(crate) struct Known {
     /// Least and greatest value \[-\].
     pub(crate) interval: [f64; 2],
@@ -81,7 +81,7 @@ pub(crate) struct Known {
     pub(crate) opinion: f64,
 }
 
-/// All slopes, what is known of them and what was found.
+/// All slopes, their known factors and their results.
 struct Slopes {
     problems: Vec<Problem>,
     known: Vec<Known>,
@@ -90,7 +90,7 @@ struct Slopes {
 }
 
 impl Slopes {
-    /// What was found for a variant of a slope, if that was run.
+    /// The result for a variant of a slope, if that was run.
     fn of(&self, problem: usize, variant: Variant) -> Option<&Found> {
         let mut sought = self.sought.iter();
         let place = sought.position(|s| s.problem == problem && s.variant == variant)?;
@@ -137,7 +137,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     Ok(study)
 }
 
-/// What is run at a level.
+/// The runs of a level.
 fn sought(problems: &[Problem], level: Level) -> Vec<Sought> {
     let variant = |cells, locking, associated| Variant {
         cells,
@@ -174,7 +174,7 @@ impl Problem {
         Ok(Found::of(Computed::new(case)?))
     }
 
-    /// What is asked of a variant.
+    /// The claim on a variant.
     fn asked(&self, variant: Variant) -> Option<Asked> {
         match (variant.locking, variant.associated) {
             (Locking::SharedStrain, true) => Some(self.asked),
@@ -195,7 +195,7 @@ impl Found {
     }
 }
 
-/// The hand calculation of a slope, and what is known with it.
+/// The hand calculation of a slope, and its known factor.
 fn second_opinion(problem: &Problem) -> Known {
     let section = &problem.section;
     let opinion = match problem.opinion {

@@ -1,4 +1,4 @@
-//! All slopes in one picture: what is known as an interval, and what was computed.
+//! All slopes in one picture: known intervals, and computed factors.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use igimp_figures::{Band, CurvePlot, ReferenceLine, ReferenceValue, Series};
 use super::Known;
 use crate::limit_equilibrium::section::Variant;
 
-/// Factors of safety over the middle of what is known: the slope's number, mesh and method, factor.
+/// Factors of safety over the middle of the known interval: the slope's number, mesh and method, factor.
 pub(crate) fn write(
     folder: &Path,
     known: &[Known],

@@ -1,4 +1,4 @@
-//! The slopes: geometry and strength as their sources state them, and what is known of their factor
+//! The slopes: geometry and strength as their sources state them, and the known values of their factor
 //! of safety.
 
 use crate::harness::oracle::{Oracle, OracleKind};
@@ -48,19 +48,19 @@ pub(crate) const ACADS: Oracle = Oracle {
     locator: "1(a): 1.00 (mean of 33 programs 0.991, Bishop 0.987); 1(c): 1.39 (Bishop 1.405, Spencer 1.375)",
 };
 
-/// What is known of a slope, and how it is looked for.
+/// The known factor of a slope, and its search.
 #[derive(Clone, Debug)]
 pub(crate) struct Problem {
     /// The slope.
     pub(crate) section: Section,
-    /// Who knows its factor of safety.
+    /// The oracle of its factor of safety.
     pub(crate) oracle: Oracle,
     /// Least and greatest value of the factor of safety by that knowledge \[-\]; none: the hand
     /// calculation is all there is.
     pub(crate) known: Option<[f64; 2]>,
-    /// What is asked with ψ = φ.
+    /// The claim with ψ = φ.
     pub(crate) asked: Asked,
-    /// What is asked with ψ = 0, if that is run.
+    /// The claim with ψ = 0, if that is run.
     pub(crate) without_dilation: Option<Asked>,
     /// How the second opinion is computed.
     pub(crate) opinion: Opinion,
@@ -74,7 +74,7 @@ pub(crate) struct Problem {
     pub(crate) meshes: Vec<u32>,
 }
 
-/// How far a factor of safety may lie beyond what is known, as shares of it.
+/// How far a factor of safety may lie beyond the known one, as shares of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Asked {
     /// Below the least value \[-\].

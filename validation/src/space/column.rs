@@ -11,7 +11,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{RunRecord, Study};
 use crate::runs::Computed;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A soft column of two cells in space settles under its own weight, as in the tutorial of another program for the method: the vertical stress at its particles, at all four heights.";
 const TUTORIAL: Oracle = Oracle {
     kind: OracleKind::IndependentProgram,

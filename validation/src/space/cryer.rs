@@ -23,7 +23,7 @@ use crate::continuum::laboratory::{grid_of, run};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A sphere of elastic soil, an eighth of it, is pressed on all sides at once and drains at its surface. As the outer shell gives way first, the pressure in the middle rises above that of the load before it falls. In place of a load a suction of p₀ comes at once and everywhere: before water flows, all of it is excess pressure. The same sphere is computed as a body of revolution, by a quarter of its section.";
 const CRYER: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -62,7 +62,7 @@ struct Ball {
     form: Form,
 }
 
-/// As what it is computed.
+/// The form in which it is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Form {
     /// An eighth of it, in space.

@@ -12,7 +12,7 @@ pub(crate) mod walls;
 use igimp_geometry::region::{Cover, Crossing, Part, Region};
 use igimp_geometry::solid::Solid;
 
-/// What of a solid around the origin lies at positive coordinates: the part of it that symmetry leaves.
+/// The part of a solid around the origin at positive coordinates, which symmetry leaves.
 #[derive(Debug)]
 struct Octant(Solid);
 

@@ -13,7 +13,7 @@ use crate::harness::study::{Level, RunRecord, Study};
 use crate::limit_equilibrium::section::{Ends, Path as Way, Search, Section, Variant, YOUNG};
 use crate::runs::Computed;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "The factor of safety of slices in space between smooth ends is that of the plane on the same mesh: a vertical cut in undrained clay, and the first example of Griffiths and Lane.";
 const PLANE: Oracle = Oracle {
     kind: OracleKind::Theory,

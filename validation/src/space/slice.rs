@@ -15,7 +15,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{RunRecord, Study};
 use crate::runs::{Computed, corners};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Cases of plane strain are computed again as slices in space, one cell across, between smooth sides: a soft column, slopes of three soils that yield under their weight, a strip of pressure; slopes with water tables, ratios and given pressures, drained and undrained, with drawdown; ground that is dug, filled and treated; a face with an anchor and nails, one of each across the slice. Displacements and stresses, pore pressures and tensions are the plane's.";
 const PLANE_STRAIN: Oracle = Oracle {
     kind: OracleKind::Theory,
@@ -237,7 +237,7 @@ pub(super) fn computed(
     ))
 }
 
-/// Adds both runs to the study, and what was found of their differences.
+/// Adds both runs to the study, and their differences.
 pub(super) fn check_pair(
     study: &mut Study,
     name: &str,
@@ -248,10 +248,10 @@ pub(super) fn check_pair(
     let record = RunRecord::new(format!("{name}, plane"), &plane.report, plane.elapsed);
     study.run_to_end(record);
     let run = study.run_to_end(RunRecord::new(name, &space.report, space.elapsed));
-    for (what, found) in found {
+    for (field, found) in found {
         study.check(
             run,
-            format!("difference of {what} from the plane [-]"),
+            format!("difference of {field} from the plane [-]"),
             PLANE_STRAIN.says(0.0),
             Band::AtMost(1e-9),
             *found,

@@ -26,7 +26,7 @@ use crate::exact::sphere::ThickSphere;
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A thick sphere of nearly incompressible elastic-plastic soil, an eighth of it, is expanded from within by a fifth of its radius, and a cavity in eight times as much ground across by a half. The pressure is held against the exact curve at finite strain once all of the sphere yields, and once the cavity is wider by a fifth, about a cell; before that it is told.";
 const SPHERE: Oracle = Oracle {
     kind: OracleKind::Exact,

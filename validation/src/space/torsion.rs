@@ -23,7 +23,7 @@ use crate::continuum::laboratory::{grid_of, run};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A quarter of a bar, round or square, is twisted: its ends turn, and their sections are free to warp. The torque is held against the exact one, elastic, in between, and fully plastic.";
 const SAINT_VENANT: Oracle = Oracle {
     kind: OracleKind::Exact,

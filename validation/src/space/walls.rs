@@ -14,7 +14,7 @@ use crate::harness::study::{Level, RunRecord, Study};
 use crate::limit_equilibrium::section::{Ends, Path as Way, Search, Section, Variant, YOUNG};
 use crate::runs::Computed;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "An undrained slope of 45°, on a rigid base at its toe (D = 1) or as deep again below it (D = 2), between two end walls L apart. With rough walls γH/c_u lies between the lower bound of plane strain and the least upper bound of circular cylinders with flat ends; with smooth walls it is the plane's on the same mesh. One half is computed, up to the plane of symmetry, on the given geometry with shared strain.";
 const FLAT_ENDS: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,

@@ -21,14 +21,14 @@ use crate::limit_equilibrium::section::{Section, Variant};
 use crate::runs::Computed;
 use problems::Problem;
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Slopes with water: submerged, drawn down, with r_u and with phreatic lines, ψ = φ, on the given geometry with shared strain. Factors of safety on two meshes are extrapolated to no width of the cell. A submerged slope is that of buoyant weight, at any level of the water, to round-off.";
 const ARCHIMEDES: Oracle = Oracle {
     kind: OracleKind::Exact,
     source: "Archimedes",
     locator: "water that stands everywhere leaves γ_sat − γ_w of the weight, at any level",
 };
-/// What is measured.
+/// The measured quantity.
 const QUANTITY: &str = "factor of safety, extrapolated from two meshes [-]";
 
 impl Problem {
@@ -58,7 +58,7 @@ fn given(source: PoreSource) -> WaterCondition {
     }
 }
 
-/// What a search on one mesh found.
+/// The result of a search on one mesh.
 struct Found {
     computed: Computed<2>,
     interval: [f64; 2],
@@ -165,13 +165,13 @@ fn minimum_lies_inside(
     sums: &[RunRecord],
 ) {
     for depth in ["D = 1", "D = 1.5"] {
-        let own: Vec<usize> = (0..problems.len())
+        let places: Vec<usize> = (0..problems.len())
             .filter(|&k| {
                 let Problem { group, section, .. } = &problems[k];
                 *group == "drawdown" && section.name.ends_with(depth)
             })
             .collect();
-        let [first, inside @ .., last] = &own[..] else {
+        let [first, inside @ .., last] = &places[..] else {
             continue;
         };
         // The least of some values inside over the lesser of others at the ends.
@@ -181,7 +181,7 @@ fn minimum_lies_inside(
         };
         let [lower, upper] = [0, 1].map(|end| move |k: usize| problems[k].known[end]);
         let middle = |k: usize| 0.5 * (lower(k) + upper(k));
-        let runs: Vec<&RunRecord> = own.iter().map(|&k| &sums[k]).collect();
+        let runs: Vec<&RunRecord> = places.iter().map(|&k| &sums[k]).collect();
         let run = study.run(RunRecord::sum(format!("slow drawdown, {depth}"), &runs));
         let quantity = "least factor inside over the lesser one of the ends [-]";
         let expected = problems::MINIMUM.says(over(&middle, &middle));
@@ -224,12 +224,12 @@ fn submerged(study: &mut Study) -> Result<(), CaseError> {
                 .flat_map(|trial| trial.summary.course.clone())
                 .collect()
         };
-        let (own, other) = (course(&wet), course(&buoyant));
-        let pairs = std::iter::zip(&own, &other);
+        let (one, other) = (course(&wet), course(&buoyant));
+        let pairs = std::iter::zip(&one, &other);
         let difference = pairs
             .map(|(a, b)| (a[0] - b[0]).abs().max((a[1] / b[1] - 1.0).abs()))
             .fold(
-                if own.len() == other.len() {
+                if one.len() == other.len() {
                     0.0
                 } else {
                     f64::NAN

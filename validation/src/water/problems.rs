@@ -43,7 +43,7 @@ const fn bounds(locator: &'static str) -> Oracle {
     }
 }
 
-/// A slope with water, and what is known of it.
+/// A slope with water, and its known factor.
 pub(super) struct Problem {
     pub(super) group: &'static str,
     pub(super) section: Section,
@@ -165,7 +165,7 @@ fn ratios() -> Vec<Problem> {
     rows.map(problem).into()
 }
 
-/// A section of layers on a base at level 0, with the surface from the left; `height` is what the cells divide.
+/// A section of layers on a base at level 0, with the surface from the left; the cells divide `height`.
 fn section(name: &str, height: f64, surface: &[[f64; 2]], layers: Vec<Layer>) -> Section {
     Section {
         name: name.to_owned(),

@@ -238,14 +238,14 @@ fn slope(study: &mut Study) -> Result<(), CaseError> {
         let stages = &computed.run.summary.stages;
         4.0 * stages.last().map_or(f64::NAN, |stage| stage.reached)
     };
-    let own = undrained(0.0)?;
+    let plain = undrained(0.0)?;
     let run = study.run(RunRecord::new(
         "undrained slope, ψ = 0",
-        &own.report,
-        own.elapsed,
+        &plain.report,
+        plain.elapsed,
     ));
     let quantity = "limit of gravity over that of Tresca soil [-]";
-    let ratio = limit(&own) / limit(&tresca);
+    let ratio = limit(&plain) / limit(&tresca);
     study.check(run, quantity, SAME.says(1.0), Band::Relative(0.01), ratio);
     let dilates = undrained(FRICTION)?;
     let run = study.run(RunRecord::new(

@@ -5,7 +5,7 @@ use super::row::Row;
 /// Ratio beyond which a change is named.
 const NOTABLE: f64 = 1.10;
 
-/// What changed against an earlier run.
+/// Changes against an earlier run.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Comparison {
     /// Name of the earlier run.
@@ -28,7 +28,7 @@ impl Comparison {
         }
     }
 
-    /// Names what became worse, and says how much was compared.
+    /// Names the rows that became worse, and states how much was compared.
     pub(crate) fn verdict(&self, rows: &[Row]) -> String {
         let compared = self.ratios.iter().flatten().count();
         let worse: Vec<String> = std::iter::zip(rows, &self.ratios)
@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_became_worse_is_named() {
+    fn worse_rows_are_named() {
         let earlier = [
             example("a", "slower", 1, "ns/particle", 100.0),
             example("a", "rate", 1, "GFlop/s", 40.0),

@@ -1,4 +1,4 @@
-//! The criterion benches: running them, and gathering what they left behind.
+//! The criterion benches: running them, and gathering their files.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -22,7 +22,7 @@ pub(crate) fn read(benchmark: &Path, estimates: &Path) -> Result<Row, Failure> {
     })
 }
 
-/// The measurement in the text of the two files; an error says what is missing.
+/// The measurement in the text of the two files; an error names the missing entry.
 fn parse(benchmark: &str, estimates: &str) -> Result<Row, String> {
     let json = |text: &str| serde_json::from_str(text).map_err(|error| error.to_string());
     let (benchmark, estimates): (Value, Value) = (json(benchmark)?, json(estimates)?);
@@ -55,7 +55,7 @@ fn parse(benchmark: &str, estimates: &str) -> Result<Row, String> {
     })
 }
 
-/// What the size of a group's benches counts.
+/// The unit that the size of a group's benches counts.
 fn counted(group: &str) -> &'static str {
     match group {
         "factorisation" => "unknown",
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_is_named() {
+    fn missing_entries_are_named() {
         let without = BENCHMARK.replace("Elements", "Bytes");
         assert_eq!(
             parse(&without, ESTIMATES).unwrap_err(),

@@ -1,4 +1,4 @@
-//! On what was measured, and when.
+//! The measuring machine and the date.
 
 use std::fs;
 use std::thread::available_parallelism;

@@ -21,7 +21,7 @@ use report::Report;
 use row::Row;
 use survey::Survey;
 
-/// What begins the names of all that the survey measures.
+/// The start of the names of all that the survey measures.
 const SURVEY: &str = "survey";
 
 /// What to measure, and how.

@@ -6,7 +6,7 @@ use super::row::Row;
 use super::survey::Survey;
 use super::table;
 
-/// What the report is made of.
+/// The contents of the report.
 pub(crate) struct Report<'a> {
     /// Machine and date.
     pub(crate) machine: &'a str,

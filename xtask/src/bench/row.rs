@@ -120,7 +120,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read() {
+    fn written_rows_are_read() {
         let rows = vec![
             example(
                 "assembly",
@@ -139,7 +139,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn what_is_no_row_is_named() {
+    fn lines_that_are_no_rows_are_named() {
         assert!(parse("a,b\n").unwrap_err().contains("line 1"));
         assert!(
             parse(&format!("{HEADER}\nx,y,many\n"))
@@ -149,7 +149,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn units_say_what_is_better() {
+    fn units_decide_which_row_is_better() {
         let better = |unit| example("a", "b", 1, unit, 1.0).less_is_better();
         let units = ["ns/particle", "B/unknown", "GFlop/s", "%", "-"];
         let expected = [Some(true), Some(true), Some(false), None, None];

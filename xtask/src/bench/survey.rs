@@ -20,7 +20,7 @@ const PARTS: [&str; 7] = [
     "survey/space",
 ];
 
-/// What a survey left behind.
+/// The results of a survey.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Survey {
     /// Its tables, in Markdown.

@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::html::{Tag, tags, unescaped};
 
-/// What the check needs of a page.
+/// A page as the check sees it.
 #[derive(Debug, Default)]
 struct Page {
     anchors: BTreeSet<String>,
@@ -38,7 +38,7 @@ fn target(tag: &Tag<'_>) -> Option<(String, bool)> {
     Some((unescaped(tag.attribute(attribute)?), needed))
 }
 
-/// What is wrong with the links of the pages; pages by their path, files that are no pages by `exists`.
+/// Problems with the links of the pages; pages by their path, files that are no pages by `exists`.
 pub(super) fn problems(
     pages: &BTreeMap<PathBuf, String>,
     exists: impl Fn(&Path) -> bool,
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn links_that_lead_nowhere_are_told() {
+    fn dead_links_are_reported() {
         for page in [
             "<a href=\"b.html\"></a>",
             "<a href=\"../b.html#none\"></a>",

@@ -7,7 +7,7 @@ use pulldown_latex::{Parser, Storage};
 
 use super::html::unescaped;
 
-/// A page with its mathematics set: the number of formulas, and what cannot be read.
+/// A page with its mathematics set: the number of formulas, and those that cannot be read.
 #[derive(Debug, Default)]
 pub(super) struct Typeset {
     pub(super) html: String,
@@ -115,7 +115,7 @@ fn rendered(tex: &str, display: bool) -> Result<String, String> {
     })
 }
 
-/// The source without its `\tag{...}`, and what the tag says.
+/// The source without its `\tag{...}`, and the text of the tag.
 fn without_tag(tex: &str) -> (String, Option<&str>) {
     let Some((before, rest)) = tex.split_once("\\tag{") else {
         return (tex.to_owned(), None);
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_read_is_told() {
+    fn unreadable_formulas_are_reported() {
         for page in [
             "$<code>\\frac{1}</code>$",
             "$<code>\\nosuch</code>$",

@@ -15,7 +15,7 @@ const THEORY: &str = "docs/src/theory.md";
 /// Number of an equation: `24`, or `17a` for one that stands between 17 and 18.
 type Number = (usize, String);
 
-/// What is wrong with the numbers and their citations.
+/// Problems with the numbers and their citations.
 pub(super) fn check(metadata: &Metadata, root: &Path) -> Result<Vec<String>, Failure> {
     let theory = read(&root.join(THEORY))?;
     let mut cited: BTreeMap<Number, String> = BTreeMap::new();
@@ -70,7 +70,7 @@ fn read(path: &Path) -> Result<String, Failure> {
         .map_err(|error| Failure::input_output(format!("cannot read {}", path.display()), error))
 }
 
-/// What is wrong, from the numbers of the theory and those cited, with a place for each.
+/// Problems, from the numbers of the theory and those cited, with a place for each.
 fn problems(numbered: &[Number], cited: &BTreeMap<Number, String>) -> Vec<String> {
     let shown = |(number, letter): &Number| format!("{number}{letter}");
     let mut problems = Vec::new();
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn gaps_and_unknown_and_idle_numbers_are_told() {
+    fn gaps_and_unknown_and_idle_numbers_are_reported() {
         let number = |number: usize| (number, String::new());
         let cited = |numbers: &[usize]| -> BTreeMap<Number, String> {
             numbers

@@ -85,7 +85,7 @@ const NOT_BELOW_CASES: [&str; 11] = [
     "ttf-parser",
 ];
 
-/// What is wrong with the layers.
+/// Problems with the layers.
 pub(super) fn check(metadata: &Metadata) -> Vec<String> {
     let names: Vec<&str> = metadata
         .members()
@@ -119,8 +119,8 @@ fn check_member(member: &Package, members: &[&str]) -> Vec<String> {
         )];
     };
     let of_project = |name: &&String| members.contains(&name.as_str());
-    let own = member.asks_for.iter().filter(of_project);
-    own.filter(|name| !allowed.contains(&name.as_str()))
+    let asks = member.asks_for.iter().filter(of_project);
+    asks.filter(|name| !allowed.contains(&name.as_str()))
         .map(|name| format!("{} must not depend on {name}", member.name))
         .collect()
 }

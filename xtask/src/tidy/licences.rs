@@ -2,7 +2,7 @@
 
 use crate::metadata::Metadata;
 
-/// What is wrong with the licences.
+/// Problems with the licences.
 pub(super) fn check(metadata: &Metadata, allowed: &[String]) -> Vec<String> {
     let mut problems = Vec::new();
     for package in metadata.packages() {

@@ -23,7 +23,7 @@ struct Link {
     target: String,
 }
 
-/// What is wrong with the links of the documents.
+/// Problems with the links of the documents.
 pub(super) fn check(root: &Path) -> Result<Vec<String>, Failure> {
     let [documents, pages] = documents(root)?;
     let mut problems = Vec::new();
@@ -59,7 +59,7 @@ pub(super) fn documents(root: &Path) -> Result<[Vec<PathBuf>; 2], Failure> {
     Ok([DOCUMENTS.map(|name| root.join(name)).to_vec(), pages])
 }
 
-/// What is wrong with a link of a page.
+/// The problem with a link of a page.
 fn problem_of(
     target: &str,
     page: &Path,

@@ -15,7 +15,7 @@ use crate::metadata::Metadata;
 use crate::process::root;
 use crate::{mpi, python};
 
-/// Runs all checks; prints what is wrong, one line each.
+/// Runs all checks; prints the problems, one line each.
 pub(crate) fn run() -> Result<u8, Failure> {
     let root = root();
     let metadata = Metadata::of_workspace()?;

@@ -176,7 +176,7 @@ mod tests {
                 .into_iter()
                 .map(|(_, problem)| problem)
                 .collect();
-            let sentences = long.iter().filter(|own| own.contains("words")).count();
+            let sentences = long.iter().filter(|note| note.contains("words")).count();
             assert_eq!(sentences, usize::from(found), "{text}: {long:?}");
         }
         assert!(long(&"x".repeat(CHARACTERS)).is_empty());

@@ -27,12 +27,12 @@ const RETIRED: [(&str, &str); 10] = [
 /// The mark of a test that is not run.
 const IGNORED_TEST: &str = concat!("#[", "ignore");
 
-/// What the crates below the cases leave to the cases.
+/// Output that the crates below the cases leave to the cases.
 const OUTPUT: [&str; 7] = [
     "println!", "print!", "dbg!", "std::fs", "std::io", "fs::", "io::",
 ];
 
-/// What is wrong with the sources.
+/// Problems with the sources.
 pub(super) fn check(metadata: &Metadata, root: &Path) -> Result<Vec<String>, Failure> {
     let mut problems = Vec::new();
     for member in metadata.members() {

@@ -156,8 +156,8 @@ fn circles(graph: &Graph) -> Vec<Vec<String>> {
         let mut between: Graph = BTreeMap::new();
         for (module, named) in graph {
             let Some(from) = child(module) else { continue };
-            let own = between.entry(from.clone()).or_default();
-            own.extend(named.iter().filter_map(child).filter(|to| *to != from));
+            let targets = between.entry(from.clone()).or_default();
+            targets.extend(named.iter().filter_map(child).filter(|to| *to != from));
         }
         while let Some(free) = between.keys().find(|module| between[*module].is_empty()) {
             let free = free.clone();

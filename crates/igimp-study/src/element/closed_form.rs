@@ -1,4 +1,4 @@
-//! What a law bears by a formula, where there is one.
+//! The strength of a law by a formula, where there is one.
 
 use igimp_material::{CamClayParameters, Cone, ShearStiffness};
 use igimp_model::{Flow, Material, Strength};
@@ -16,7 +16,7 @@ pub(super) struct ClosedForm {
 
 /// q, or τ_xy of tests in shear, at failure.
 ///
-/// Laws speak of Kirchhoff stress: what is a stress in them is less by J in terms of the area that soil has then.
+/// Laws speak of Kirchhoff stress: a stress in them is less by J in terms of the area that soil has then.
 pub(super) fn strength(
     material: &Material,
     test: StandardTest,

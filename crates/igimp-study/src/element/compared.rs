@@ -11,7 +11,7 @@ use super::data::Data;
 use super::measure::Measure;
 use super::table::driven;
 
-/// Data, and what the test gives at the same places.
+/// Data, and the values of the test at the same places.
 #[derive(Clone, Debug)]
 pub struct Compared {
     /// The data.

@@ -16,7 +16,7 @@ const NOT_MEASURED: [&str; 2] = ["plastic strain", "regime"];
 pub struct Data {
     /// The file.
     pub name: String,
-    /// What was measured, beside the place on the way.
+    /// The measured quantities, beside the place on the way.
     pub columns: Vec<Measure>,
     /// The measurements.
     pub rows: Vec<Row>,
@@ -45,14 +45,14 @@ pub enum DataError {
         source: std::io::Error,
     },
     /// A problem and its place.
-    #[error("{name}, {place}: {what}")]
+    #[error("{name}, {place}: {problem}")]
     At {
         /// The file.
         name: String,
         /// Line and column.
         place: String,
         /// The problem.
-        what: String,
+        problem: String,
         /// The help.
         help: String,
     },
@@ -81,7 +81,7 @@ impl DataError {
         Self::At {
             name: name.to_owned(),
             place,
-            what: problem.into(),
+            problem: problem.into(),
             help: help.into(),
         }
     }
@@ -387,7 +387,7 @@ mod tests {
 
     /// GOAL: what is no data is refused at its line and column.
     #[test]
-    fn slips_are_told_with_line_and_column() {
+    fn slips_are_refused_with_line_and_column() {
         for (text, words) in [
             (
                 "strain_yy [%],q [kPa]\n1,2\n2,abc\n",

@@ -1,4 +1,4 @@
-//! What is measured in a test and printed of it: names, headers, units and values.
+//! Quantities that are measured in a test and printed of it: names, headers, units and values.
 
 use igimp_schema::quantity::{Dimension, Quantity};
 use igimp_solver::element::{ElementState, StandardTest};
@@ -133,7 +133,7 @@ impl Measure {
         }
     }
 
-    /// The unit of what is printed.
+    /// The unit of printed values.
     pub(crate) fn unit(self) -> &'static str {
         if self.is_stress() { "kPa" } else { "%" }
     }

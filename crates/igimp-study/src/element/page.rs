@@ -1,4 +1,4 @@
-//! The page of a test: what was driven, what it found, its curves, and what was measured beside them.
+//! The page of a test: its path, its results, its curves, and the data beside them.
 
 use igimp_report::report::page::{Column, Page, PageTable, Section};
 use igimp_report::setup;
@@ -61,7 +61,7 @@ fn sentence(line: &str) -> String {
     format!("{}{}.", first.unwrap_or_default(), letters.as_str())
 }
 
-/// What a reader has to know before a number is used.
+/// Warnings for a reader before a number is used.
 fn warnings(tested: &Tested) -> Vec<String> {
     let varies = tested.material.varies().then(|| sentence(said::VARIES));
     let compared = tested.compared.iter();
@@ -114,7 +114,7 @@ fn values(tested: &Tested) -> Section {
     }
 }
 
-/// What is told of a test: the strain that curves are drawn over, volume or pore pressure, and stresses.
+/// Measures of a test on the page: the strain that curves are drawn over, volume or pore pressure, and stresses.
 fn measures(drive: &Drive, along: Measure) -> impl Iterator<Item = Measure> {
     let has_shear = !matches!(drive, Drive::Standard(test, _) if !test.is_shear());
     let pressure = undrained(drive).map(|_| Measure::PorePressure);
@@ -127,7 +127,7 @@ fn measures(drive: &Drive, along: Measure) -> impl Iterator<Item = Measure> {
         .chain([Measure::P, Measure::Q])
 }
 
-/// The pictures, with what was measured over what is computed.
+/// The pictures, with the data over the computed curves.
 fn curves(tested: &Tested) -> Section {
     Section {
         title: "Curves".to_owned(),
@@ -136,7 +136,7 @@ fn curves(tested: &Tested) -> Section {
     }
 }
 
-/// The pictures of a test by their files, with what they show.
+/// The pictures of a test by their files, with their captions.
 pub(crate) fn pictures(tested: &Tested) -> Vec<FigureNote> {
     let plots = tested.plots().into_iter();
     plots
@@ -162,7 +162,7 @@ pub(crate) fn pictures(tested: &Tested) -> Vec<FigureNote> {
         .collect()
 }
 
-/// How far off a test is from what was measured, by quantity.
+/// How far off a test is from its data, by quantity.
 fn measured(tested: &Tested) -> Option<Section> {
     let compared = tested.compared.as_ref()?;
     let data = &compared.data;
@@ -209,7 +209,7 @@ fn material(tested: &Tested) -> Section {
     }
 }
 
-/// What was driven.
+/// The driven path.
 fn path(tested: &Tested) -> Section {
     let mut sentences = path_words::sentences(&tested.request);
     let notes = tested.notes().into_iter();

@@ -36,7 +36,7 @@ pub enum PathFileError {
 }
 
 impl PathFileError {
-    /// What to write instead.
+    /// Help with the file.
     pub fn help(&self) -> &'static str {
         match self {
             Self::File(_) => "numbers with a decimal point, separated by commas",
@@ -102,7 +102,7 @@ pub fn read_path(path: &Path) -> Result<ElementPath, PathFileError> {
 fn column(header: &str) -> Option<(usize, Control, f64)> {
     let (name, unit) = header.trim().strip_suffix(']')?.split_once('[')?;
     let (kind, component) = name.trim().rsplit_once('_')?;
-    let component = NAMES.iter().position(|own| *own == component)?;
+    let component = NAMES.iter().position(|known| *known == component)?;
     let control = match kind {
         "strain" => Control::Strain,
         "stress" => Control::Stress,

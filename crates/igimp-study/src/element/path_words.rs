@@ -18,7 +18,7 @@ const COMPONENTS: [[Measure; 2]; 4] = [
     [Measure::StrainXy, Measure::TauXy],
 ];
 
-/// What is driven and what is kept, and where it begins.
+/// Driven and kept components, and where the test begins.
 pub(super) fn sentences(request: &Request) -> Vec<String> {
     let [axial, side] = request.stress.map(|stress| short(stress / 1e3));
     let (driven, each) = match &request.drive {
@@ -101,7 +101,7 @@ pub(super) fn legs(drive: &Drive) -> Option<PageTable> {
     })
 }
 
-/// What is prescribed of a component at the end of a leg, compression positive.
+/// The prescribed value of a component at the end of a leg, compression positive.
 fn cell(place: usize, value: f64, control: Control) -> String {
     let [strain, stress] = COMPONENTS[place];
     let sign = if place < 3 { -1.0 } else { 1.0 };

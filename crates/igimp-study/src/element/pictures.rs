@@ -1,4 +1,4 @@
-//! The pictures of a test, with what was measured over what is computed.
+//! The pictures of a test, with the data over the computed curves.
 
 use igimp_figures::{CurvePlot, ReferenceLine, ReferenceValue, Series};
 use igimp_solver::element::ElementState;

@@ -63,7 +63,7 @@ pub(super) fn ending(tested: &Tested) -> Vec<String> {
         .collect()
 }
 
-/// What a formula says of the stress at failure, if there is one.
+/// The stress at failure by a formula, if there is one.
 pub(super) fn closed(
     values: &KeyValues,
     request: &Request,
@@ -80,7 +80,7 @@ pub(super) fn closed(
     ))
 }
 
-/// Peak and end of a test, and what a formula says of it.
+/// Peak and end of a test, and its formula.
 fn values(values: &KeyValues, request: &Request, states: &[ElementState]) -> String {
     let peak = &states[values.peak];
     let end = &states[states.len() - 1];

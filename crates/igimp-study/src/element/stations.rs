@@ -64,12 +64,12 @@ impl Stations {
 
     /// The state of a way.
     pub(super) fn state_at(&self, way: f64) -> usize {
-        let next = self.ways.partition_point(|own| *own < way);
+        let next = self.ways.partition_point(|at| *at < way);
         let before = next.saturating_sub(1);
         let off = |k: usize| {
             self.ways
                 .get(k)
-                .map_or(f64::INFINITY, |own| (own - way).abs())
+                .map_or(f64::INFINITY, |at| (at - way).abs())
         };
         if off(before) < off(next) {
             before
@@ -93,7 +93,7 @@ impl Stations {
     }
 }
 
-/// What is prescribed at the start and at the ends of the legs.
+/// Prescribed values at the start and at the ends of the legs.
 fn ends(path: &ElementPath, sigma: &Principal) -> Vec<[f64; COMPONENTS]> {
     let initial: [f64; COMPONENTS] = std::array::from_fn(|c| match path.controls[c] {
         Control::Stress => sigma.get(c).copied().unwrap_or(0.0),
@@ -111,7 +111,7 @@ fn ends(path: &ElementPath, sigma: &Principal) -> Vec<[f64; COMPONENTS]> {
     std::iter::once(initial).chain(legs).collect()
 }
 
-/// What is prescribed on a way.
+/// Prescribed values on a way.
 fn at(ends: &[[f64; COMPONENTS]], way: f64) -> [f64; COMPONENTS] {
     let leg = (way.ceil() as usize).clamp(1, ends.len() - 1);
     let share = way - (leg - 1) as f64;

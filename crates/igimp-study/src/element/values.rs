@@ -1,4 +1,4 @@
-//! What counts of a test: its states at the start, at the largest stress and at the end, and what a formula says of it.
+//! Key values of a test: its states at the start, at the largest stress and at the end, and its formula.
 
 use igimp_material::ConstitutiveModel;
 use igimp_model::Material;
@@ -8,7 +8,7 @@ use super::closed_form::{self, ClosedForm};
 use super::measure::Measure;
 use super::{Drive, Request};
 
-/// What counts of a test.
+/// Key values of a test.
 #[derive(Clone, Debug)]
 pub(super) struct KeyValues {
     /// The stress that is looked at: q, of tests in shear τ_xy.
@@ -17,7 +17,7 @@ pub(super) struct KeyValues {
     pub(super) peak: usize,
     /// Mobilised strength at the start, at the largest stress and at the end \[-\].
     pub(super) mobilised: [f64; 3],
-    /// What a formula says of the stress at failure, if there is one.
+    /// The stress at failure by a formula, if there is one.
     pub(super) closed: Option<ClosedForm>,
 }
 

@@ -10,7 +10,7 @@ use super::said;
 use super::{Fitted, Found, Known};
 use crate::element::{Compared, Tested, pictures};
 
-/// Stands for what has no number.
+/// Stands for a value without a number.
 const NONE: &str = "–";
 
 /// The caption of the picture of residuals.

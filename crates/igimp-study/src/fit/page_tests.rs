@@ -40,7 +40,7 @@ impl Drop for Written {
 /// before failure alone. BAND: 1e-6.
 #[test]
 fn correlations_are_those_of_the_closed_form() {
-    let own = fitted(&SIDES);
+    let fitted = fitted(&SIDES);
     let (sin, cos) = 34_f64.to_radians().sin_cos();
     let passive = (1.0 + sin) / (1.0 - sin);
     let by_angle = 2.0 * cos / (1.0 - sin).powi(2);
@@ -61,21 +61,21 @@ fn correlations_are_those_of_the_closed_form() {
     }
     let expected = -sums[1] / (sums[0] * sums[2]).sqrt();
     let table = [[1.0, expected, 0.0], [expected, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    println!("{expected:.6}: {:?}", own.correlation);
-    for (row, expected) in own.correlation.iter().zip(table) {
+    println!("{expected:.6}: {:?}", fitted.correlation);
+    for (row, expected) in fitted.correlation.iter().zip(table) {
         for (value, expected) in row.iter().zip(expected) {
             assert!((value - expected).abs() < 1e-6, "{value} {expected}");
         }
     }
-    let told = own.correlated();
-    assert!(told.len() == usize::from(expected.abs() > 0.9), "{told:?}");
+    let high = fitted.correlated();
+    assert!(high.len() == usize::from(expected.abs() > 0.9), "{high:?}");
 }
 
 /// GOAL: the report has every parameter, pair and test, with pictures and tables that are there. ORACLE: what the fit holds.
 #[test]
 fn the_report_tells_all_of_a_fit() {
-    let own = fitted(&SIDES);
-    let (folder, names) = Written::of(&own, "whole");
+    let fitted = fitted(&SIDES);
+    let (folder, names) = Written::of(&fitted, "whole");
     for name in &names {
         assert!(folder.0.join(name).exists(), "{name}");
     }
@@ -100,11 +100,11 @@ fn the_report_tells_all_of_a_fit() {
     assert!(lines[1].starts_with("cohesion,1.000000000,-0."), "{table}");
 }
 
-/// GOAL: a reader of the report is told what the data do not say. ORACLE: one cell pressure does not tell c from φ.
+/// GOAL: the report states which parameters the data do not determine. ORACLE: one cell pressure does not tell c from φ.
 #[test]
-fn the_report_holds_back_what_is_not_determined() {
-    let own = fitted(&[100e3]);
-    let (folder, _) = Written::of(&own, "held-back");
+fn the_report_holds_back_undetermined_parameters() {
+    let fitted = fitted(&[100e3]);
+    let (folder, _) = Written::of(&fitted, "held-back");
     let page = folder.read("report.html");
     for part in [
         "<span class=\"mark fair\">Found, with reservations</span>",
@@ -114,7 +114,7 @@ fn the_report_holds_back_what_is_not_determined() {
     ] {
         assert!(page.contains(part), "{part}");
     }
-    assert!(own.correlation[0].iter().all(|own| own.is_nan()));
+    assert!(fitted.correlation[0].iter().all(|value| value.is_nan()));
     let table = folder.read("correlation.csv");
     assert!(table.contains("cohesion,,,\n"), "{table}");
 }

@@ -20,7 +20,7 @@ pub enum ParameterError {
     /// Neither a key nor a key with bounds.
     #[error("`{text}` is no parameter with bounds")]
     Form {
-        /// What was written.
+        /// The text as written.
         text: String,
     },
     /// The file has no such value.
@@ -34,7 +34,7 @@ pub enum ParameterError {
     NoNumber {
         /// The key.
         key: String,
-        /// What stands there.
+        /// The text in the file.
         text: String,
     },
     /// A bound that is no quantity.
@@ -84,7 +84,7 @@ pub enum ParameterError {
 }
 
 impl ParameterError {
-    /// What helps.
+    /// The help.
     pub fn help(&self) -> &'static str {
         match self {
             Self::Form { .. } | Self::Bound { .. } | Self::Outside { .. } | Self::Kind { .. } => {

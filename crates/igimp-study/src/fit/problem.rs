@@ -39,10 +39,10 @@ pub(super) struct Problem<'a> {
     source: &'a dyn Source,
     parameters: &'a [Parameter],
     tests: &'a [Request],
-    /// What a residual is divided by: of each column of each test, in SI.
+    /// Divisors of the residuals: of each column of each test, in SI.
     scales: Vec<Vec<f64>>,
     values: usize,
-    /// Root of the sum of squares of what was measured, over the scales.
+    /// Root of the sum of squares of the data, over the scales.
     size: f64,
 }
 
@@ -61,10 +61,10 @@ impl<'a> Problem<'a> {
         parameters: &'a [Parameter],
         request: &'a FitRequest,
     ) -> Self {
-        let data = || request.tests.iter().filter_map(|own| own.data.as_ref());
-        let scale = |own: &Measure| {
-            let stated = request.scatter.iter().find(|(of, _)| of == own);
-            stated.map_or_else(|| largest(data(), *own), |(_, scatter)| *scatter)
+        let data = || request.tests.iter().filter_map(|test| test.data.as_ref());
+        let scale = |measure: &Measure| {
+            let stated = request.scatter.iter().find(|(of, _)| of == measure);
+            stated.map_or_else(|| largest(data(), *measure), |(_, scatter)| *scatter)
         };
         let measured = |data: &Data| -> usize {
             let values = data.rows.iter().flat_map(|row| &row.values);
@@ -94,7 +94,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// What a residual is divided by: of each column of each test, in SI.
+    /// Divisors of the residuals: of each column of each test, in SI.
     pub(super) fn scales(&self) -> &[Vec<f64>] {
         &self.scales
     }
@@ -112,7 +112,7 @@ impl<'a> Problem<'a> {
     /// The material of a place in the search.
     pub(super) fn material(&self, at: &[f64]) -> Result<Material, InputError> {
         let values: Vec<(String, String)> = (self.parameters.iter().zip(at))
-            .map(|(own, x)| (own.key.clone(), own.text(own.value(*x))))
+            .map(|(p, x)| (p.key.clone(), p.text(p.value(*x))))
             .collect();
         self.source.material(&values)
     }
@@ -127,9 +127,9 @@ impl<'a> Problem<'a> {
             let by_stress = material.under(request.stress[0]);
             let by_stress = by_stress.as_ref().map(law_of).transpose()?;
             let law = by_stress.as_ref().unwrap_or(&law);
-            let own = driven(&**law, request).map_err(Lost::Test)?;
+            let result = driven(&**law, request).map_err(Lost::Test)?;
             let before = residuals.len();
-            let Some(compared) = own.compared else {
+            let Some(compared) = result.compared else {
                 continue;
             };
             for (column, scale) in scales.iter().enumerate() {
@@ -139,7 +139,7 @@ impl<'a> Problem<'a> {
             let values = compared.data.rows.iter().flat_map(|row| &row.values);
             let expected = values.filter(|value| value.is_finite()).count();
             if residuals.len() - before != expected {
-                let why = own.run.failure.map(|lost| lost.to_string());
+                let why = result.run.failure.map(|lost| lost.to_string());
                 return Err(Lost::Early {
                     test: place + 1,
                     why: why.unwrap_or_else(|| "its stress is not a number".to_owned()),
@@ -154,7 +154,7 @@ impl<'a> Problem<'a> {
     pub(super) fn beside(&self, moved: &[f64], here: &[f64]) -> Option<Vec<f64>> {
         let there = self.residuals(moved).ok()?;
         let changes = there.iter().zip(here).map(|(there, here)| there - here);
-        let leap: f64 = changes.map(|own| own * own).sum();
+        let leap: f64 = changes.map(|change| change * change).sum();
         (leap.sqrt() <= self.size).then_some(there)
     }
 
@@ -162,8 +162,8 @@ impl<'a> Problem<'a> {
     /// refused. None where both are.
     pub(super) fn jacobian(&self, at: &[f64], ranges: &[Range]) -> Option<Vec<Vec<f64>>> {
         let here = self.residuals(at).ok()?;
-        let column = |(place, own): (usize, &Range)| {
-            let [low, high] = own.ends;
+        let column = |(place, range): (usize, &Range)| {
+            let [low, high] = range.ends;
             let beside = |by: f64| {
                 let mut moved = at.to_vec();
                 moved[place] += by;
@@ -193,17 +193,17 @@ impl<'a> Problem<'a> {
             effort: [0; 2],
         };
         for _ in 0..MOST_SEARCHES {
-            let own = self.searched(solved.at, &solved.ranges);
-            solved.at = own.at;
-            solved.why = own.why;
-            for (sum, more) in solved.effort.iter_mut().zip(own.effort) {
+            let found = self.searched(solved.at, &solved.ranges);
+            solved.at = found.at;
+            solved.why = found.why;
+            for (sum, more) in solved.effort.iter_mut().zip(found.effort) {
                 *sum += more;
             }
             let Ok(here) = self.residuals(&solved.at) else {
                 return solved;
             };
             let ranges = self.ranges_beside((&solved.at, &here), &solved.ranges);
-            let is_new = |(own, known): (&Range, &Range)| own.is_wall != known.is_wall;
+            let is_new = |(range, known): (&Range, &Range)| range.is_wall != known.is_wall;
             let mut pairs = ranges.iter().zip(&solved.ranges);
             let is_last = solved.why.is_some() || !pairs.any(is_new);
             solved.ranges = ranges;
@@ -219,10 +219,10 @@ impl<'a> Problem<'a> {
     /// A search within ranges.
     fn searched(&self, start: Vec<f64>, ranges: &[Range]) -> Solved {
         let mut at = start;
-        let limits = |own: &Range| {
+        let limits = |range: &Range| {
             let mut par = MPPar::new();
             par.side = MPSide::User;
-            let [low, high] = own.ends;
+            let [low, high] = range.ends;
             if low.is_finite() {
                 (par.limited_low, par.limit_low) = (true, low);
             }
@@ -273,24 +273,24 @@ impl<'a> Problem<'a> {
                 .sum()
         };
         let gain: f64 = (0..residuals.len()).map(|row| change(row).powi(2)).sum();
-        let sum: f64 = residuals.iter().map(|own| own * own).sum();
+        let sum: f64 = residuals.iter().map(|r| r * r).sum();
         let floor = residuals.len() as f64 * ROUND_OFF * ROUND_OFF;
         if gain <= LEFT * sum + floor {
             return Ok(false);
         }
-        let mut is_told = false;
+        let mut is_accepted = false;
         for share in [1.0, 0.25, 0.0625, 0.015_625] {
             let moved: Vec<f64> = at.iter().zip(step).map(|(x, by)| x + share * by).collect();
-            let Ok(own) = self.residuals(&moved) else {
+            let Ok(trial) = self.residuals(&moved) else {
                 continue;
             };
-            is_told = true;
-            let there: f64 = own.iter().map(|own| own * own).sum();
+            is_accepted = true;
+            let there: f64 = trial.iter().map(|r| r * r).sum();
             if there < (1.0 - LEFT) * sum - floor {
                 return Err("the sum of squares still falls where it ended");
             }
         }
-        if is_told {
+        if is_accepted {
             Ok(true)
         } else {
             Err("the law or a test refuses the correction that is left")
@@ -299,10 +299,10 @@ impl<'a> Problem<'a> {
 }
 
 /// The largest value of a quantity by its size in any of the data, one where all are zero.
-fn largest<'a>(data: impl Iterator<Item = &'a Data>, own: Measure) -> f64 {
+fn largest<'a>(data: impl Iterator<Item = &'a Data>, measure: Measure) -> f64 {
     let mut most = 0.0_f64;
     for data in data {
-        let Some(column) = data.columns.iter().position(|of| *of == own) else {
+        let Some(column) = data.columns.iter().position(|of| *of == measure) else {
             continue;
         };
         let values = data.rows.iter().map(|row| row.values[column].abs());
@@ -350,9 +350,9 @@ impl MPFitter for Search<'_> {
     ) -> MPResult<()> {
         self.eval(params, deviates)?;
         let columns = (self.problem.jacobian(params, self.ranges)).ok_or(MPError::Eval)?;
-        for (own, column) in derivs.iter_mut().zip(columns) {
-            if let Some(own) = own {
-                *own = column;
+        for (deriv, column) in derivs.iter_mut().zip(columns) {
+            if let Some(deriv) = deriv {
+                *deriv = column;
             }
         }
         Ok(())

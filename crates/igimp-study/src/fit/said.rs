@@ -1,4 +1,4 @@
-//! What is said of parameters that were found: lines, rows and TOML.
+//! The text on parameters that were found: lines, rows and TOML.
 
 use std::fmt::Write as _;
 
@@ -167,7 +167,7 @@ pub(super) fn row(found: &Found) -> Vec<String> {
     row
 }
 
-/// The values as a block of a case file; what is not determined is left out.
+/// The values as a block of a case file; undetermined ones are left out.
 pub(super) fn block(material: &str, found: &[Found]) -> String {
     let mut text = format!("[materials.{}]\n", quoted(material));
     for parameter in found {

@@ -42,7 +42,7 @@ pub enum Known {
     },
 }
 
-/// What is known at the end of a search.
+/// Knowledge of the parameters at the end of a search.
 pub(super) struct Statistics {
     pub(super) known: Vec<Known>,
     /// Correlation of each pair by their places; not a number where one of the two has no error.
@@ -105,11 +105,11 @@ pub(super) fn statistics(
         .collect();
     let factor = student(rows - seen.len()) * statistics.deviation;
     for (i, &place) in free.iter().enumerate() {
-        let others = combined.iter().filter(|own| own.contains(&i)).flatten();
+        let others = combined.iter().filter(|set| set.contains(&i)).flatten();
         let mut with: Vec<usize> = others.filter(|&&k| k != i).map(|&k| free[k]).collect();
         with.sort_unstable();
         with.dedup();
-        if combined.iter().any(|own| own.contains(&i)) {
+        if combined.iter().any(|set| set.contains(&i)) {
             statistics.known[place] = Known::NotDetermined { with };
             continue;
         }
@@ -125,14 +125,14 @@ pub(super) fn statistics(
     statistics
 }
 
-/// What is known before any inverse: parameters at bounds or walls, and those that no residual depends on; and the places of the others.
+/// Knowledge before any inverse: parameters at bounds or walls, and those that no residual depends on; and the places of the others.
 fn held(ranges: &[Range], at: &[f64], norms: &[f64], rows: usize) -> (Vec<Known>, Vec<usize>) {
     let mut known = vec![Known::NotDetermined { with: Vec::new() }; at.len()];
     let mut free = Vec::new();
-    for (place, own) in ranges.iter().enumerate() {
-        if let Some(end) = own.end_at(at[place]) {
+    for (place, range) in ranges.iter().enumerate() {
+        if let Some(end) = range.end_at(at[place]) {
             let upper = end == 1;
-            known[place] = if own.is_wall[end] {
+            known[place] = if range.is_wall[end] {
                 Known::AtWall { upper }
             } else {
                 Known::AtBound { upper }
@@ -161,7 +161,7 @@ fn correlate(statistics: &mut Statistics, free: &[usize], covariance: &DMatrix<f
 }
 
 fn norm(values: &[f64]) -> f64 {
-    values.iter().map(|own| own * own).sum::<f64>().sqrt()
+    values.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
 /// The factor of the 95 % interval: Student's t that is exceeded by its size with 5 %, at so many degrees of freedom.
@@ -214,8 +214,8 @@ mod tests {
             (30, 2.042),
             (120, 1.980),
         ] {
-            let own = student(degrees);
-            assert!((own - expected).abs() < 6e-4, "{degrees}: {own}");
+            let factor = student(degrees);
+            assert!((factor - expected).abs() < 6e-4, "{degrees}: {factor}");
         }
     }
 }

@@ -72,18 +72,18 @@ pub(super) fn request(vary: &[&str], tests: Vec<Request>) -> FitRequest {
     }
 }
 
-fn well(own: &Found) -> (f64, [f64; 2]) {
-    match own.known {
+fn well(found: &Found) -> (f64, [f64; 2]) {
+    match found.known {
         Known::Well { error, interval } => (error, interval),
-        _ => panic!("{own:?}"),
+        _ => panic!("{found:?}"),
     }
 }
 
 fn close(found: &Fitted, expected: &[f64]) {
-    for (own, expected) in found.parameters.iter().zip(expected) {
-        let off = own.value / expected - 1.0;
-        println!("{}: {} {off:.1e}", own.key, own.value);
-        assert!(off.abs() < 1e-6, "{}: {off:e}", own.key);
+    for (parameter, expected) in found.parameters.iter().zip(expected) {
+        let off = parameter.value / expected - 1.0;
+        println!("{}: {} {off:.1e}", parameter.key, parameter.value);
+        assert!(off.abs() < 1e-6, "{}: {off:e}", parameter.key);
     }
 }
 
@@ -136,10 +136,10 @@ fn an_elastic_modulus_is_known_as_the_slope_of_a_line() {
         let slope = rows.iter().map(line).sum::<f64>() / sum;
         let off = |row: &(f64, Vec<f64>)| (row.1[0] - 50e3 - slope * row.0).powi(2);
         let error = (rows.iter().map(off).sum::<f64>() / 5.0 / sum).sqrt();
-        let (own, [low, high]) = well(&fitted.parameters[0]);
+        let (fitted_error, [low, high]) = well(&fitted.parameters[0]);
         let value = fitted.parameters[0].value;
         worst[0] = worst[0].max((value * 1e6 / (slope * share) - 1.0).abs());
-        worst[1] = worst[1].max((own * 1e6 / (error * share) - 1.0).abs());
+        worst[1] = worst[1].max((fitted_error * 1e6 / (error * share) - 1.0).abs());
         held += usize::from(low < 10.0 && 10.0 < high);
     }
     println!(
@@ -191,22 +191,22 @@ fn mohr_coulomb_comes_back_from_two_cell_pressures_and_not_from_one() {
 /// GOAL: scattered data of known parameters: the intervals hold them, and cell pressures that are near to each other leave c and φ
 /// correlated. ORACLE: the formula with seeded scatter of 1 kPa, c = 5 kPa, φ = 34°, E = 30 MPa.
 #[test]
-fn scattered_data_hold_what_they_were_made_of() {
+fn intervals_of_scattered_data_hold_the_parameters() {
     let mut random = Random(5);
     let mut scattered = |side: f64| {
-        let mut own = sheared(side);
-        for row in &mut own.data.as_mut().unwrap().rows {
+        let mut test = sheared(side);
+        for row in &mut test.data.as_mut().unwrap().rows {
             row.values[0] += 1e3 * random.gaussian();
         }
-        own
+        test
     };
     let keys = ["cohesion", "friction", "young"];
     let far = request(&keys, [50e3, 100e3, 400e3].map(&mut scattered).to_vec());
     let near = request(&keys, [100e3, 110e3].map(&mut scattered).to_vec());
-    for own in [&far, &near] {
-        let fitted = fit(&soil(SAND), own).unwrap();
-        for (own, expected) in fitted.parameters.iter().zip([5.0, 34.0, 30.0]) {
-            let (_, [low, high]) = well(own);
+    for request in [&far, &near] {
+        let fitted = fit(&soil(SAND), request).unwrap();
+        for (parameter, expected) in fitted.parameters.iter().zip([5.0, 34.0, 30.0]) {
+            let (_, [low, high]) = well(parameter);
             assert!(low < expected && expected < high, "{}", fitted.text);
         }
     }
@@ -271,13 +271,13 @@ fn cam_clay_comes_back() {
     close(&fitted, &[ratio, lambda, kappa]);
 }
 
-/// GOAL: a parameter that data do not depend on has no number, one at a bound is told, and the same fit has the same bits.
+/// GOAL: a parameter that data do not depend on has no number, one at a bound is named, and the same fit has the same bits.
 #[test]
-fn what_data_do_not_say_is_said() {
+fn undetermined_and_bounded_parameters_are_printed() {
     let plateau = triaxial(30e6, 3.0_f64.sqrt() * 40e3, &[0.03, 0.05, 0.08]);
     let test = standard(StandardTest::TriaxialDrained, 100e3, plateau);
-    let own = request(&["cu", "young"], vec![test]);
-    let fitted = fit(&soil(ROUND), &own).unwrap();
+    let request = request(&["cu", "young"], vec![test]);
+    let fitted = fit(&soil(ROUND), &request).unwrap();
     assert_eq!(
         fitted.parameters[1].known,
         Known::NotDetermined { with: vec![] }
@@ -289,11 +289,11 @@ fn what_data_do_not_say_is_said() {
         "{}",
         fitted.text
     );
-    let again = fit(&soil(ROUND), &own).unwrap();
+    let again = fit(&soil(ROUND), &request).unwrap();
     assert_eq!(fitted.parameters, again.parameters);
     let bounded = FitRequest {
         vary: vec!["cu=10 kPa..0.03 MPa".parse().unwrap()],
-        ..own
+        ..request
     };
     let fitted = fit(&soil(ROUND), &bounded).unwrap();
     assert_eq!(fitted.parameters[0].known, Known::AtBound { upper: true });
@@ -339,14 +339,14 @@ fn a_search_that_does_not_converge_is_an_error() {
     );
 }
 
-/// GOAL: what cannot be fitted is refused with its reason.
+/// GOAL: a request that cannot be fitted is refused with its reason.
 #[test]
-fn what_cannot_be_fitted_is_refused() {
+fn requests_without_a_fit_are_refused() {
     let two = triaxial(30e6, 60e3, &[0.001, 0.05]);
     let test = standard(StandardTest::TriaxialDrained, 100e3, two);
     let refused = |vary: &[&str], test: &Request| {
-        let own = request(vary, vec![test.clone()]);
-        fit(&soil(ROUND), &own).unwrap_err().to_string()
+        let request = request(vary, vec![test.clone()]);
+        fit(&soil(ROUND), &request).unwrap_err().to_string()
     };
     assert_eq!(
         refused(&["cu", "young"], &test),

@@ -13,7 +13,7 @@ const CLAY: &str = "model = \"modified-cam-clay\"\ncritical_ratio = 1.0\nshear =
 /// A triaxial test, the undrained one at natural strain, whose data are q of a law, at thirty strains.
 fn measured(law: &str, of: StandardTest, stress: f64) -> Request {
     let source = soil(law);
-    let mut own = Request {
+    let mut request = Request {
         drive: Drive::Standard(of, 0.1),
         stress: [stress; 2],
         steps: 400,
@@ -25,23 +25,23 @@ fn measured(law: &str, of: StandardTest, stress: f64) -> Request {
         duration: 0.0,
         data: None,
     };
-    let tested = test(&source.material(&[]).unwrap(), &own).unwrap();
+    let tested = test(&source.material(&[]).unwrap(), &request).unwrap();
     let state = |k: usize| -> &ElementState { &tested.run.states[10 + 13 * k] };
     let rows = (0..30_usize).map(|k| Row {
         line: k as u64 + 2,
         at: -state(k).strain[1],
         values: vec![state(k).q()],
     });
-    own.data = Some(Data {
+    request.data = Some(Data {
         name: "data.csv".to_owned(),
         columns: vec![Measure::Q],
         rows: rows.collect(),
     });
-    own
+    request
 }
 
 /// GOAL: a search that meets a wall on its way goes on, with its parameters held there, to the least sum of squares.
-/// CASE: Hardening Soil, whose power is 1 at most, and Cam-clay, whose λ* is above κ*: searches ended at the walls, were told to have
+/// CASE: Hardening Soil, whose power is 1 at most, and Cam-clay, whose λ* is above κ*: searches ended at the walls, were said to have
 /// converged, and had intervals that did not hold what the data were made of. ORACLE: the values of the data, without scatter. BAND: 1e-4.
 #[test]
 fn a_search_goes_on_from_a_wall() {
@@ -63,13 +63,13 @@ fn a_search_goes_on_from_a_wall() {
             [0.15, 0.03, 5.0],
         ),
     ] {
-        let own = request(&vary, vec![measured(&truth, of, 100e3)]);
-        match fit(&soil(&start), &own) {
+        let request = request(&vary, vec![measured(&truth, of, 100e3)]);
+        match fit(&soil(&start), &request) {
             Ok(found) => {
                 println!("{}", found.text);
-                for (own, expected) in found.parameters.iter().zip(expected) {
-                    let off = own.value / expected - 1.0;
-                    assert!(off.abs() < 1e-4, "{}: {off:e}", own.key);
+                for (parameter, expected) in found.parameters.iter().zip(expected) {
+                    let off = parameter.value / expected - 1.0;
+                    assert!(off.abs() < 1e-4, "{}: {off:e}", parameter.key);
                 }
             }
             Err(error) => panic!("{error}"),
@@ -77,11 +77,11 @@ fn a_search_goes_on_from_a_wall() {
     }
 }
 
-/// GOAL: where data want a value that the law refuses, the parameter is held at the last one, is told so, and has no interval; the others are
+/// GOAL: where data want a value that the law refuses, the parameter is held at the last one, is named, and has no interval; the others are
 /// those with it held. CASE: Hardening Soil under three pressures with stiffness that grows with their power of 1.3. ORACLE: the same fit with
 /// `power` = 1 in the file. BAND: 1e-6.
 #[test]
-fn a_parameter_at_a_wall_is_told_and_held() {
+fn a_parameter_at_a_wall_is_named_and_held() {
     let tests: Vec<Request> = [50e3, 100e3, 200e3_f64]
         .iter()
         .map(|&stress| {
@@ -109,9 +109,9 @@ fn a_parameter_at_a_wall_is_told_and_held() {
     assert!((e50.value / held.parameters[0].value - 1.0).abs() < 1e-6);
     let words = "power = 1: the greatest value that its law and the tests accept beside the others";
     assert!(found.text.contains(words), "{}", found.text);
-    let error = |own: &Found| match own.known {
+    let error = |parameter: &Found| match parameter.known {
         Known::Well { error, .. } => error,
-        _ => panic!("{own:?}"),
+        _ => panic!("{parameter:?}"),
     };
     // One degree of freedom is the other's.
     let ratio = error(e50) / error(&held.parameters[0]);

@@ -14,8 +14,8 @@ impl Problem<'_> {
         (at, here): (&[f64], &[f64]),
         within: &[Range],
     ) -> Vec<Range> {
-        let beside = |(place, (own, known)): (usize, (&Parameter, &Range))| {
-            let stated = Range::stated(own);
+        let beside = |(place, (parameter, known)): (usize, (&Parameter, &Range))| {
+            let stated = Range::stated(parameter);
             let mut range = stated;
             for (end, direction) in [-1.0, 1.0].into_iter().enumerate() {
                 let room = (direction * (stated.ends[end] - at[place])).min(DIFFERENCE);

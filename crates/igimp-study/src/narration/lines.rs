@@ -81,7 +81,7 @@ impl Lines {
     /// The line of an event on a mesh. Meshes run side by side: each line says of which it is, and
     /// steps are left out.
     fn of_mesh<const D: usize>(&mut self, parts: usize, event: &Event<'_, D>) -> Option<String> {
-        let known = self.meshes.iter().position(|(own, _)| *own == parts);
+        let known = self.meshes.iter().position(|(mesh, _)| *mesh == parts);
         let place = known.unwrap_or_else(|| {
             self.meshes.push((parts, Lines::default()));
             self.meshes.len() - 1
@@ -178,7 +178,7 @@ fn end(summary: &StageSummary) -> String {
         "; {} steps, {} iterations, {} cuts",
         summary.steps, summary.iterations, summary.cuts
     );
-    // A search leaves the body as it was found: how far it moved is told of every trial and equilibrium.
+    // A search leaves the body as it was found: how far it moved is printed for every trial and equilibrium.
     if summary.safety.is_none() {
         let largest = short(summary.largest_displacement);
         let _ = write!(line, ", largest displacement {largest} m");
@@ -194,8 +194,8 @@ fn end(summary: &StageSummary) -> String {
         let _ = write!(line, "\n  {}", energy.sentence());
     }
     if let Some(newmark) = &summary.newmark {
-        let told = newmark.sentence(summary.largest_displacement);
-        let _ = write!(line, "\n  {told}");
+        let text = newmark.sentence(summary.largest_displacement);
+        let _ = write!(line, "\n  {text}");
     }
     if let Some(linear) = &summary.linear {
         let _ = write!(line, "\n  {}", linear.sentence());
@@ -206,7 +206,7 @@ fn end(summary: &StageSummary) -> String {
 /// The shares that decide a factor of safety.
 fn shares(shares: &StrengthShares) -> String {
     let strengths: Vec<String> = (shares.strengths())
-        .map(|(name, what, share)| format!("{what} of {name} {share:.3}"))
+        .map(|(name, kind, share)| format!("{kind} of {name} {share:.3}"))
         .collect();
     let mut line = format!("∂ ln F/∂ ln of the strengths: {}", strengths.join(", "));
     if shares.reinforcement > 0.0 {
@@ -288,18 +288,18 @@ mod tests {
     /// GOAL: a factor that no strength decides is no number to state, and others are. ORACLE: by hand.
     #[test]
     fn ground_that_needs_no_strength_has_no_number() {
-        let told = |stable, failed| {
+        let text = |stable, failed| {
             interval(&SafetySummary {
                 stable,
                 failed,
                 ..SafetySummary::default()
             })
         };
-        assert_eq!(told(Some(1.25), Some(1.5)), "1.250 <= F < 1.500");
-        assert_eq!(told(Some(900.0), None), "F >= 900.000");
-        assert_eq!(told(Some(1.31792), Some(1.31826)), "1.3179 <= F < 1.3183");
+        assert_eq!(text(Some(1.25), Some(1.5)), "1.250 <= F < 1.500");
+        assert_eq!(text(Some(900.0), None), "F >= 900.000");
+        assert_eq!(text(Some(1.31792), Some(1.31826)), "1.3179 <= F < 1.3183");
         for failed in [None, Some(2e8)] {
-            let text = told(Some(166_822_053.789), failed);
+            let text = text(Some(166_822_053.789), failed);
             assert!(
                 text.starts_with("F > 1000: nothing of this ground can fail"),
                 "{text}"

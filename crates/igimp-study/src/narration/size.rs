@@ -16,9 +16,9 @@ use super::table;
 /// A particle in a frame, packed, in the plane and in space \[bytes\].
 const FRAME: [f64; 2] = [250.0, 350.0];
 
-/// The size of a case and what it will cost.
+/// The size of a case and its cost.
 #[derive(Clone, Debug)]
-pub struct Told {
+pub struct Cost {
     /// Particles, cells, unknowns and memory.
     pub size: Estimate,
     /// Time of the case, for a study of the mesh error of all its meshes.
@@ -35,7 +35,7 @@ pub struct Told {
 ///
 /// # Errors
 /// [`CaseError`] for a case that cannot be set up.
-pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Told, CaseError> {
+pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Cost, CaseError> {
     for material in &case.materials {
         material.law()?;
     }
@@ -87,7 +87,7 @@ pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Told, CaseErr
             ]
         })
         .collect();
-    let mut told = Told {
+    let mut cost = Cost {
         text: format!(
             "{} is fine\n  {}\n\n{}\nstages\n{}",
             name.display(),
@@ -101,9 +101,9 @@ pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Told, CaseErr
         time,
     };
     if case.mesh_study.meshes > 1 {
-        add_study(&mut told, case, speed)?;
+        add_study(&mut cost, case, speed)?;
     }
-    Ok(told)
+    Ok(cost)
 }
 
 /// Sides of rigid bodies that stand in the middle of a cell, if any do.
@@ -117,7 +117,7 @@ fn lines<const D: usize>(case: &Case<D>) -> Option<String> {
     (!sides.is_empty()).then_some(text)
 }
 
-/// How many frames a run writes along its stages, and what they take; none where it writes those of their ends alone.
+/// How many frames a run writes along its stages, and their size; none where it writes those of their ends alone.
 fn frames<const D: usize>(case: &Case<D>, particles: usize) -> Option<String> {
     let every = case.output.paraview;
     let one_in = film::one_in(particles);
@@ -134,7 +134,7 @@ fn frames<const D: usize>(case: &Case<D>, particles: usize) -> Option<String> {
         }
     };
     let stages = case.stages.iter().map(of_stage);
-    let (about, most) = stages.fold((0, 0), |sum, own| (sum.0 + own.0, sum.1 + own.1));
+    let (about, most) = stages.fold((0, 0), |sum, stage| (sum.0 + stage.0, sum.1 + stage.1));
     let size = |frames| readable((frames * particles) as f64 * FRAME[D - 2]);
     let how = match every {
         Every::Never | Every::Stage => return None,
@@ -151,7 +151,7 @@ fn frames<const D: usize>(case: &Case<D>, particles: usize) -> Option<String> {
 
 /// Adds the meshes of a study of the mesh error, each with its size, and the cost of all.
 fn add_study<const D: usize>(
-    told: &mut Told,
+    cost: &mut Cost,
     case: &Case<D>,
     speed: Speed,
 ) -> Result<(), CaseError> {
@@ -159,33 +159,33 @@ fn add_study<const D: usize>(
     let (mut bytes, mut most_bytes, mut times) = (Vec::new(), Vec::new(), Vec::new());
     for (mesh, parts) in std::iter::zip(meshes::meshes(case), meshes::refinements(case)) {
         let size = estimate(&mesh)?;
-        let own = time::time(&mesh, &size, speed);
+        let time = time::time(&mesh, &size, speed);
         rows.push(vec![
             meshes::label(parts),
             format!("{} particles", count(size.particles)),
             format!("{} cells", count(size.cells)),
             format!("about {} unknowns", count(size.unknowns)),
             memory(size.bytes, size.most_bytes),
-            format!("about {}", time::readable(own.seconds)),
+            format!("about {}", time::readable(time.seconds)),
         ]);
         bytes.push(size.bytes);
         most_bytes.push(size.most_bytes);
-        times.push(own);
+        times.push(time);
     }
-    told.time.seconds = times.iter().map(|own| own.seconds).sum();
-    told.time.open_ended = times.iter().any(|own| own.open_ended);
-    (told.bytes, told.most_bytes) = (together(&bytes), together(&most_bytes));
+    cost.time.seconds = times.iter().map(|time| time.seconds).sum();
+    cost.time.open_ended = times.iter().any(|time| time.open_ended);
+    (cost.bytes, cost.most_bytes) = (together(&bytes), together(&most_bytes));
     let how = if side_by_side(&bytes) > 1 {
         "side by side"
     } else {
         "one after another"
     };
     let _ = write!(
-        told.text,
+        cost.text,
         "\nmeshes\n{}  {how}: {} of memory, {}\n",
         table(&rows),
-        memory(told.bytes, told.most_bytes),
-        time::sentence(&told.time)
+        memory(cost.bytes, cost.most_bytes),
+        time::sentence(&cost.time)
     );
     Ok(())
 }
@@ -217,17 +217,17 @@ mod tests {
     /// ORACLE: the sizes of its meshes, one by one.
     #[test]
     fn a_study_of_the_mesh_costs_all_its_meshes() {
-        let told = |setting: &str| {
+        let cost = |setting: &str| {
             let slope = igimp_input::shipped::find("slope").unwrap();
             let case = slope.case_file([setting]).unwrap().into_case();
             (size(&case, Path::new("slope.toml")).unwrap(), case)
         };
-        let (alone, _) = told("mesh_study.meshes=1");
-        let (all, case) = told("mesh_study.meshes=3");
+        let (alone, _) = cost("mesh_study.meshes=1");
+        let (all, case) = cost("mesh_study.meshes=3");
         let meshes: Vec<Estimate> = (meshes::meshes(&case).iter())
             .map(|mesh| estimate(mesh).unwrap())
             .collect();
-        let bytes: Vec<f64> = meshes.iter().map(|own| own.bytes).collect();
+        let bytes: Vec<f64> = meshes.iter().map(|mesh| mesh.bytes).collect();
         assert!((all.bytes / together(&bytes) - 1.0).abs() < 1e-12);
         assert!(all.bytes > 2.0 * alone.bytes && all.time.seconds > 2.0 * alone.time.seconds);
         assert!(
@@ -242,11 +242,11 @@ mod tests {
         );
     }
 
-    /// GOAL: what frames take is told wherever a run writes them along its stages. CASE: the column with ten steps, a frame for every step and
+    /// GOAL: frames are printed wherever a run writes them along its stages. CASE: the column with ten steps, a frame for every step and
     /// for every fifth, and those of its end alone. ORACLE: counted by hand.
     #[test]
-    fn frames_along_a_stage_are_told() {
-        let told = |every: &str| {
+    fn frames_along_a_stage_are_printed() {
+        let text = |every: &str| {
             let column = igimp_input::shipped::find("column").unwrap();
             let settings = [
                 format!("output.paraview={{ every = {every} }}"),
@@ -254,17 +254,17 @@ mod tests {
             ];
             super::frames(&column.case_file(settings).unwrap().into_case(), 1000)
         };
-        let frames = |every: &str| told(every).unwrap().split(',').next().unwrap().to_owned();
+        let frames = |every: &str| text(every).unwrap().split(',').next().unwrap().to_owned();
         assert_eq!(frames("1"), "about 11");
         assert_eq!(frames("5"), "about 3");
         assert_eq!(frames("\"film\""), "about 11");
-        let told_of_film = told("\"film\"").unwrap();
-        assert!(told_of_film.contains("; at most 41, "), "{told_of_film}");
-        assert_eq!(told("\"stage\""), None);
+        let film = text("\"film\"").unwrap();
+        assert!(film.contains("; at most 41, "), "{film}");
+        assert_eq!(text("\"stage\""), None);
     }
 
     #[test]
-    fn memory_with_factors_is_told_beside() {
+    fn memory_with_factors_is_printed_beside() {
         insta::assert_snapshot!(memory(1.7e9, 3.6e9), @"about 1.6 GiB, 3.4 GiB where an iteration is given up for factors");
         insta::assert_snapshot!(memory(5e7, 5e7), @"about 50 MiB");
     }

@@ -60,7 +60,7 @@ fn mesh(mesh: &MeshSummary) -> Vec<String> {
     ]
 }
 
-/// The results of a study: the values on all meshes, and what they say together.
+/// The results of a study: the values on all meshes, and their extrapolation.
 fn mesh_error(study: &StudySummary) -> String {
     let rows: Vec<Vec<String>> = study
         .results
@@ -131,17 +131,17 @@ fn explain(safety: &SafetySummary) -> String {
     }
     if let Some(share) = safety.moving_mass {
         let percent = 100.0 * share;
-        let told = if percent >= 1.0 {
+        let rounded = if percent >= 1.0 {
             format!("{percent:.0}")
         } else {
             short(percent)
         };
-        parts.push(format!("{told} % of the mass moves"));
+        parts.push(format!("{rounded} % of the mass moves"));
     }
     if let Some(path) = &safety.path {
-        let at = |what: &str, point: &PathPoint| {
+        let at = |name: &str, point: &PathPoint| {
             format!(
-                "{what} {:.3} at {} m",
+                "{name} {:.3} at {} m",
                 point.factor,
                 short(point.displacement)
             )
@@ -167,7 +167,7 @@ fn explain(safety: &SafetySummary) -> String {
 fn largest_share(shares: &StrengthShares) -> Option<String> {
     let strengths = shares.strengths();
     let largest = strengths.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
-    largest.map(|(name, what, share)| format!("1 % of {what} of {name} changes F by {share:.2} %"))
+    largest.map(|(name, kind, share)| format!("1 % of {kind} of {name} changes F by {share:.2} %"))
 }
 
 #[cfg(test)]
@@ -239,7 +239,7 @@ mod tests {
     /// GOAL: a check that was not reached is told apart from one that is met or missed, and a factor beyond all numbers is no number.
     /// ORACLE: by hand.
     #[test]
-    fn checks_say_what_they_are_worth() {
+    fn verdicts_of_checks_are_printed() {
         let check = |measured: f64| Check {
             case: String::new(),
             variant: String::new(),
@@ -268,14 +268,14 @@ mod tests {
         "#);
     }
 
-    /// GOAL: checks and their values on meshes are told in the unit of the case. ORACLE: by hand: 1 mm is 0.001 m.
+    /// GOAL: checks and their values on meshes are printed in the unit of the case. ORACLE: by hand: 1 mm is 0.001 m.
     #[test]
-    fn checks_are_told_in_the_unit_of_the_case() {
+    fn checks_are_printed_in_the_unit_of_the_case() {
         let unit = Some(ToldUnit {
             name: "mm".into(),
             in_si: 1e-3,
         });
-        let own = Check {
+        let check = Check {
             case: String::new(),
             variant: String::new(),
             quantity: "settlement".into(),
@@ -285,7 +285,7 @@ mod tests {
             measured: 0.0123,
             unit: unit.clone(),
         };
-        insta::assert_snapshot!(checks(&[CheckRow::held(own)]), @"  met  settlement  12.3 mm  expected 12.5 mm  ≤ 12.5 mm  (s)");
+        insta::assert_snapshot!(checks(&[CheckRow::held(check)]), @"  met  settlement  12.3 mm  expected 12.5 mm  ≤ 12.5 mm  (s)");
         let mesh = |parts: usize| MeshSummary {
             parts,
             ..MeshSummary::default()

@@ -157,7 +157,7 @@ mod tests {
         });
         let heights = settings
             .iter()
-            .flat_map(|own| [f64::from(u8::from(own.0 == "10 m")); 2]);
+            .flat_map(|setting| [f64::from(u8::from(setting.0 == "10 m")); 2]);
         let collected = Collected {
             outdated: Vec::new(),
             unchecked: None,

@@ -1,4 +1,4 @@
-//! One table of all tasks: their settings, their ends and what was asked for.
+//! One table of all tasks: their settings, their ends and the columns asked for.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -45,7 +45,7 @@ struct Standing {
     is_outdated: bool,
 }
 
-/// Reads what the tasks of a study found, as far as they ran with the case and settings that they have now.
+/// Reads the results of the tasks of a study, as far as they ran with the case and settings that they have now.
 pub fn collect(sweep: &Sweep) -> Collected {
     let mut unchecked = None;
     let standing: Vec<Standing> = sweep

@@ -13,18 +13,18 @@ use super::{Sweep, SweepError, Task};
 /// Most tasks of a study; more are a slip of the keyboard.
 const MOST_TASKS: usize = 100_000;
 
-/// A problem, where it is, and what helps.
+/// A problem, its place and its help.
 struct Problem {
     at: Range<usize>,
-    what: String,
+    message: String,
     help: String,
 }
 
 impl Problem {
-    fn new(at: Range<usize>, what: impl Into<String>, help: impl Into<String>) -> Self {
+    fn new(at: Range<usize>, message: impl Into<String>, help: impl Into<String>) -> Self {
         Self {
             at,
-            what: what.into(),
+            message: message.into(),
             help: help.into(),
         }
     }
@@ -46,7 +46,7 @@ impl Problem {
         let mut out = format!(
             "error: {}\n{gutter} --> {name}:{number}:{}\n{gutter} |\n{number} | {line}\n\
              {gutter} | {}{mark}",
-            self.what,
+            self.message,
             column + 1,
             " ".repeat(column)
         );

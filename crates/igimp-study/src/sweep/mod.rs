@@ -241,12 +241,12 @@ impl Sweep {
             title: String::new(),
             input: String::new(),
         };
-        let (marker, own) = (root.join(MARKER), Owner::of(&claim, root, false));
+        let (marker, owner) = (root.join(MARKER), Owner::of(&claim, root, false));
         match Owner::read(&marker) {
-            // Many tasks begin at once: what is there already is not written again.
-            Some(found) if found == own => Ok(lock),
+            // Many tasks begin at once: a marker that is there is not written again.
+            Some(found) if found == owner => Ok(lock),
             Some(found)
-                if found.case != own.case
+                if found.case != owner.case
                     && replace != Replace::Everything
                     && self.holds_tasks() =>
             {
@@ -258,7 +258,7 @@ impl Sweep {
                 }
                 .into())
             }
-            _ => sign(&own, &marker).map(|()| lock),
+            _ => sign(&owner, &marker).map(|()| lock),
         }
     }
 
@@ -388,14 +388,14 @@ struct Ready {
 }
 
 /// Says whose tasks a folder holds; many may say so at once, and get into each other's way.
-fn sign(own: &Owner, marker: &Path) -> Result<(), CaseError> {
-    let mut written = own.write(marker);
+fn sign(owner: &Owner, marker: &Path) -> Result<(), CaseError> {
+    let mut written = owner.write(marker);
     for _ in 0..20 {
-        if written.is_ok() || Owner::read(marker).as_ref() == Some(own) {
+        if written.is_ok() || Owner::read(marker).as_ref() == Some(owner) {
             return Ok(());
         }
         std::thread::sleep(Duration::from_millis(20));
-        written = own.write(marker);
+        written = owner.write(marker);
     }
     Ok(written?)
 }

@@ -80,11 +80,11 @@ impl Sweep {
             Ok(pool) => pool.install(|| tasks.par_iter().map(needs).collect::<Result<_, _>>())?,
             Err(_) => tasks.iter().map(needs).collect::<Result<_, _>>()?,
         };
-        let largest = |what: usize| {
-            let most = all.iter().max_by(|a, b| a.1[what].total_cmp(&b.1[what]));
+        let largest = |index: usize| {
+            let most = all.iter().max_by(|a, b| a.1[index].total_cmp(&b.1[index]));
             most.map(|&(task, needs)| Largest {
                 task,
-                estimate: needs[what],
+                estimate: needs[index],
             })
         };
         let both = largest(0).zip(largest(1));

@@ -161,7 +161,7 @@ impl Sweep {
         })
     }
 
-    /// Comments on where a file comes from, and on what it asks for.
+    /// Comments on the origin of a file, and on the resources that it asks for.
     fn head(&self, demand: &Resources) -> String {
         let file = self.file.display().to_string();
         format!(
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn an_array_has_no_number_beyond_what_slurm_takes() {
+    fn an_array_has_no_number_beyond_those_of_slurm() {
         let tasks = [999, 1000, 1001, 1003, 2500].map(task);
         let tasks: Vec<&Task> = tasks.iter().collect();
         assert_eq!(

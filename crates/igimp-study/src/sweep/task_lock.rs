@@ -1,7 +1,7 @@
 //! A task that a scheduler may begin several times, at several places and at once: it is computed once, goes on
 //! where it was stopped, and is never computed by two at a time.
 //!
-//! The lock of the task's folder is what tells them apart, and the state of the task is asked for again once
+//! The lock of the task's folder tells them apart, and the state of the task is asked for again once
 //! the lock is held. A task that was killed leaves no lock: the system lets go of it.
 
 use std::path::Path;

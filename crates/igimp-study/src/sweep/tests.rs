@@ -1,5 +1,5 @@
-//! GOAL: tasks are what the file says, problems are told with their place, and a table is made of
-//! what is there.
+//! GOAL: tasks are those of the file, problems are printed with their place, and a table is made of
+//! the results that are there.
 
 use igimp_model::check::{Band, Check, ToldUnit};
 use igimp_results::summary::{CheckRow, SafetySummary, StageSummary, Standing, Summary};
@@ -76,7 +76,7 @@ fn a_single_value_of_a_zip_is_that_of_all_tasks() {
 }
 
 #[test]
-fn problems_are_told_with_their_place() {
+fn problems_are_printed_with_their_place() {
     insta::assert_snapshot!(
         parse(&GRID.replace("folder", "foldr")).unwrap_err(),
         @r#"
@@ -171,7 +171,7 @@ fn summary(fos: f64) -> Summary {
 }
 
 #[test]
-fn the_table_has_what_is_there() {
+fn the_table_has_the_results_that_are_there() {
     let scratch = Scratch::new("collect");
     let text = GRID.replace("\"out\"", &format!("{:?}", scratch.0.display().to_string()));
     let mut sweep = parse(&text).unwrap();

@@ -1,4 +1,4 @@
-//! What a run costs and whether its steps were accepted rightly, gathered from its events.
+//! The cost of a run, and whether its steps were accepted rightly, gathered from its events.
 
 use igimp_assembly::AssemblyError;
 use igimp_cases::run::{Event, Model};
@@ -26,7 +26,7 @@ pub(crate) struct Effort {
     pub(crate) worst_at_round_off: f64,
     /// Steps whose equilibrium was computed again.
     pub(crate) rechecked: usize,
-    /// What should not have been accepted, in words.
+    /// Steps that should not have been accepted, in words.
     pub(crate) violations: Vec<String>,
     /// The last step that was not accepted.
     pub(crate) last_cut: Option<Cut>,
@@ -93,7 +93,7 @@ pub(crate) struct Follower<'c> {
     before: Option<Body<2>>,
     /// Of the rigid bodies of the case.
     outlines: Vec<Outline>,
-    /// What was gathered.
+    /// The gathered effort.
     pub(crate) effort: Effort,
 }
 
@@ -145,7 +145,7 @@ impl<'c> Follower<'c> {
         }
         self.bodies(accepted);
         let effort = &mut self.effort;
-        // A ghost penalty holds soil beside what the particles and the bodies carry.
+        // A ghost penalty adds to the forces of particles and bodies.
         let again = self.before.as_ref().filter(|before| {
             report.ghost_penalty == 0.0 && before.rigid.len() == accepted.body.rigid.len()
         });
@@ -180,12 +180,12 @@ impl<'c> Follower<'c> {
         let all = after.rigid.len() == self.outlines.len();
         let there = std::iter::zip(&self.case.rigid, &self.outlines);
         let there = there.filter(|(part, _)| all || part.from_start);
-        let own: Vec<&Outline> = there.map(|(_, outline)| outline).collect();
+        let outlines: Vec<&Outline> = there.map(|(_, outline)| outline).collect();
         let before = self.before.as_ref();
         // Bodies that came in with this step have no way behind them.
         let before = before.filter(|before| before.rigid.len() == after.rigid.len());
         let before = before.map(|before| (&before.particles, &before.rigid[..]));
-        let found = reach(&own, before, (&after.particles, &after.rigid));
+        let found = reach(&outlines, before, (&after.particles, &after.rigid));
         let effort = &mut self.effort;
         effort.nearest = match (effort.nearest, found.nearest) {
             (Some(a), Some(b)) => Some(a.min(b)),

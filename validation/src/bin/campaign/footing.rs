@@ -42,7 +42,7 @@ impl Footing {
         STIFFNESSES.iter().flat_map(|&e| of(e)).collect()
     }
 
-    /// The shipped footing with what differs.
+    /// The shipped footing with the changes.
     ///
     /// # Panics
     /// If the case is not shipped: it is part of the program.

@@ -36,14 +36,14 @@ const BROKEN: u8 = 1;
 const BAD_INPUT: u8 = 2;
 const INPUT_OUTPUT: u8 = 4;
 
-/// What any run of the campaign may take.
+/// The budget of any run of the campaign.
 const BUDGET: Budget = Budget {
     corrections: 20_000,
     time: Duration::from_secs(900),
     grace: Duration::from_secs(120),
 };
 
-/// What a run of random bodies may take.
+/// The budget of a run of random bodies.
 const SMALL_BUDGET: Budget = Budget {
     corrections: 5_000,
     time: Duration::from_secs(120),
@@ -212,7 +212,7 @@ fn run_text(name: &str, text: &str, budget: Budget) -> Watched {
     }
 }
 
-/// A run in a line, with what was wrong in lines below.
+/// A run in a line, with its problems in lines below.
 fn line(watched: &Watched) -> String {
     let effort = &watched.effort;
     let mut text = format!(

@@ -44,7 +44,7 @@ fn between(page: &str, name: &str, text: &str) -> Option<String> {
 mod tests {
     use super::*;
 
-    /// GOAL: only what stands between the marks is replaced.
+    /// GOAL: only the text between the marks is replaced.
     /// ORACLE: the page by hand.
     #[test]
     fn the_rest_of_the_page_stays() {

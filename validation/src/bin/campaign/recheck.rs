@@ -14,7 +14,7 @@ use crate::bodies::forces::{Begun, carriers, forces};
 /// Size of the round-off in the strain of a particle \[-\].
 const STRAIN_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 
-/// What was found.
+/// The result of the check.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Equilibrium {
     /// Out-of-balance force over external force and reactions \[-\].
@@ -39,7 +39,7 @@ struct Squares {
     external: f64,
 }
 
-/// Computes the equilibrium of a step again, from the body before it and what it accepted.
+/// Computes the equilibrium of a step again, from the body before it and the accepted one.
 /// `None` if the particles have no place on the grid.
 pub(crate) fn equilibrium(
     case: &Case<2>,
@@ -127,8 +127,8 @@ fn of_soil(
             let g = solved(&delta, support.grad);
             let g_bar = solved(&delta_bar, support.grad_bar);
             for a in 0..2 {
-                let own = sigma[a][0] * g[0] + sigma[a][1] * g[1];
-                out.internal[support.node][a] += volume * (own + mean * (g_bar[a] - g[a]));
+                let force = sigma[a][0] * g[0] + sigma[a][1] * g[1];
+                out.internal[support.node][a] += volume * (force + mean * (g_bar[a] - g[a]));
                 out.external[support.node][a] +=
                     before.mass[particle] * support.value * conditions.loads.gravity[a];
                 slopes += support.grad[a] * support.grad[a];

@@ -146,7 +146,7 @@ pub(crate) fn causes(runs: &[&Watched]) -> String {
     text + "\n"
 }
 
-/// Median, 90 % and largest of what runs take.
+/// Median, 90 % and largest of the effort of runs.
 pub(crate) fn effort(runs: &[&Watched]) -> String {
     let each =
         |of: &dyn Fn(&Watched) -> f64| -> Vec<f64> { runs.iter().map(|run| of(run)).collect() };
@@ -210,7 +210,7 @@ fn by_stiffness(runs: &[(Slope, Watched)]) -> String {
     text + "\n"
 }
 
-/// What every run has to keep, and how many did not.
+/// The rules of every run, and how many runs broke them.
 pub(crate) fn invariants(runs: &[&Watched]) -> String {
     let count = |of: &dyn Fn(&Watched) -> bool| runs.iter().filter(|run| of(run)).count();
     let sum = |of: &dyn Fn(&Watched) -> usize| runs.iter().map(|run| of(run)).sum::<usize>();
@@ -251,7 +251,7 @@ pub(crate) fn footings_csv(runs: &[(Footing, Watched)]) -> String {
     text
 }
 
-/// A row a footing, and what was asked of all.
+/// A row a footing, and the rules for all.
 pub(crate) fn footings(runs: &[(Footing, Watched)]) -> String {
     let mut text = String::new();
     if let Some((footing, watched)) = runs.first() {

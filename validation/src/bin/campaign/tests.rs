@@ -1,4 +1,4 @@
-//! A reduced campaign: what every run has to keep, on a few small slopes and a short, coarse
+//! A reduced campaign: the rules of every run, on a few small slopes and a short, coarse
 //! footing.
 
 use std::time::Duration;

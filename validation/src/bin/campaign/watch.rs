@@ -16,12 +16,12 @@ use igimp_results::tables::table::Table;
 
 use crate::effort::{Cut, Effort, Follower};
 
-/// What a run may take.
+/// The budget of a run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Budget {
     /// Corrections, those of steps that were not accepted included.
     pub(crate) corrections: usize,
-    /// Wall-clock time after which the run is told to end.
+    /// Wall-clock time after which the run is asked to end.
     pub(crate) time: Duration,
     /// Time after that in which it has to do so.
     pub(crate) grace: Duration,
@@ -41,9 +41,9 @@ pub(crate) enum End {
     OtherFailure,
     /// Reached its end.
     Completed,
-    /// Used up its budget of corrections or time, and ended when it was told.
+    /// Used up its budget of corrections or time, and ended when it was asked to.
     Budget,
-    /// Did not end when it was told.
+    /// Did not end when it was asked to.
     Hangs,
     /// Panicked.
     Panics,
@@ -73,7 +73,7 @@ impl End {
     }
 }
 
-/// What is known of a run when it is over.
+/// The record of a run when it is over.
 #[derive(Clone, Debug)]
 pub(crate) struct Watched {
     /// How it ended.
@@ -88,7 +88,7 @@ pub(crate) struct Watched {
     pub(crate) effort: Effort,
     /// Share of the last stage that was reached \[-\].
     pub(crate) reached: f64,
-    /// What a strength reduction found.
+    /// The result of a strength reduction.
     pub(crate) safety: Option<SafetySummary>,
     /// Curves of the case.
     pub(crate) curves: Vec<Table>,
@@ -119,7 +119,7 @@ impl Watched {
         Self::disorderly(End::Refused, chain(error), 0.0)
     }
 
-    /// Whether the run kept what every run has to keep: it ended, with a reason, accepted no step above the
+    /// Whether the run kept the rules of every run: it ended, with a reason, accepted no step above the
     /// tolerance that is not at round-off, and carried no soil into a rigid body.
     pub(crate) fn is_sound(&self) -> bool {
         self.end.is_orderly()
@@ -153,7 +153,7 @@ pub(crate) fn watch(case: Case<2>, budget: Budget) -> Watched {
     }
 }
 
-/// What a panic says.
+/// The message of a panic.
 fn message(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str);
     text.or_else(|| panic.downcast_ref::<&str>().copied())

@@ -1,5 +1,5 @@
 //! Remedies for small cuts on a block whose sides reach any distance into the next cells: how it settles
-//! under its own weight, and what holds it up when its base is let down.
+//! under its own weight, and its support when its base is let down.
 
 use igimp_assembly::{Method, SmallCuts};
 use igimp_cases::CaseError;
@@ -68,7 +68,7 @@ pub(crate) fn settling(study: &mut Study) -> Result<(), CaseError> {
         let mut table = Table::new(format!("small_cuts_block_{name}"), &header);
         for (k, &offset) in OFFSETS.iter().enumerate() {
             let mut row = vec![offset];
-            row.extend(by_remedy.iter().map(|own| of(&own[k])));
+            row.extend(by_remedy.iter().map(|blocks| of(&blocks[k])));
             table.push(row);
         }
         // Without a remedy the others hang on round-off.
@@ -83,8 +83,8 @@ pub(crate) fn settling(study: &mut Study) -> Result<(), CaseError> {
         let lines = remedies.iter().zip(&by_remedy);
         lines
             .filter(|((name, ..), _)| drawn.contains(name))
-            .map(|((name, ..), own)| {
-                let points = OFFSETS.iter().zip(*own).skip(1);
+            .map(|((name, ..), blocks)| {
+                let points = OFFSETS.iter().zip(*blocks).skip(1);
                 let points = points.map(|(&offset, one)| [offset, of(one)]).collect();
                 Series::new(*name, points, SeriesStyle::LineAndMarkers(LineStyle::Solid))
             })
@@ -113,7 +113,7 @@ pub(crate) fn settling(study: &mut Study) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// The same block with its base let down: what holds it up beside its base?
+/// The same block with its base let down: does anything else hold it up?
 pub(crate) fn sinking(study: &mut Study) -> Result<(), CaseError> {
     let offsets = &OFFSETS[1..];
     let mut header = vec!["offset_[cells]".to_owned()];

@@ -1,4 +1,4 @@
-//! A bar that is pushed through deep clay, which loses strength as it is sheared: what a T-bar measures.
+//! A bar that is pushed through deep clay, which loses strength as it is sheared: the measurement of a T-bar.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -12,7 +12,7 @@ use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, corners};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A smooth bar, bonded, is pushed by its diameter through deep, weightless Tresca soil with E/s_u = 300, on ten cells, the geometry moving with it, from a case file: once in clay that keeps its strength, and in clay that loses it by Einav and Randolph (2005). The mean resistance from 0.6 diameters on, in clay that keeps its strength, is held against the exact one, and the others over it against the factor of Zhou and Randolph (2009).";
 const DEEP: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -165,14 +165,14 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         .collect::<Result<Vec<_>, CaseError>>()?;
     let means: Vec<f64> = computed
         .iter()
-        .map(|own| mean(&own.curve("resistance").points(0, 1)))
+        .map(|result| mean(&result.curve("resistance").points(0, 1)))
         .collect();
-    for ((loss, own), found) in clays.iter().zip(&computed).zip(&means) {
+    for ((loss, result), found) in clays.iter().zip(&computed).zip(&means) {
         let variant = match loss {
             None => "strength that stays".to_owned(),
             Some(Loss { left, strain }) => format!("δ = {left}, ξ_95 = {strain}"),
         };
-        let run = study.run_to_end(RunRecord::new(variant, &own.report, own.elapsed));
+        let run = study.run_to_end(RunRecord::new(variant, &result.report, result.elapsed));
         let band = Band::Relative(BAND);
         match loss {
             None => study.check(run, "V/(D s_u) [-]", DEEP.says(PI + 6.0), band, *found),

@@ -20,7 +20,7 @@ use crate::continuum::laboratory::run;
 use crate::harness::oracle::{Expected, Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A circular footing on weightless Tresca soil, smooth and rough, and a rough square one, pushed down by contact in a quarter, on the given geometry, with shared strain and sharp edges: bearing capacity over s_u, mesh by mesh, and by two meshes.";
 const SMOOTH: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -105,7 +105,7 @@ impl Footing {
     /// The push on so many cells per width with its edge at a place of its cell, and settlement and load by step.
     fn push(self, cells: usize, place: f64) -> Result<(RunRecord, Table), CaseError> {
         let h = 1.0 / cells as f64;
-        // The cell at the axis is as wide as what is left, 0.6 to 1.6 times the others.
+        // The cell at the axis is as wide as the rest, 0.6 to 1.6 times the others.
         let edge = 0.5 - place * h;
         let mut first = edge - (edge / h).floor() * h;
         if first < 0.6 * h {
@@ -134,7 +134,7 @@ impl Footing {
             weightless(&quarter.grid, &constraints, &law, motion)
         };
         let name = self.name().replace(' ', "_");
-        let (of, told) = if place.total_cmp(&PLACE).is_eq() {
+        let (of, label) = if place.total_cmp(&PLACE).is_eq() {
             (String::new(), String::new())
         } else {
             (
@@ -154,7 +154,7 @@ impl Footing {
         let mut method = Method::shared_strain();
         method.geometry = Geometry::Given;
         let (run, _) = run(
-            format!("{}, B/h = {cells}{told}", self.name()),
+            format!("{}, B/h = {cells}{label}", self.name()),
             &mut body,
             &method,
             &MarchSettings::steps(STEPS),

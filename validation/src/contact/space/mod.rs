@@ -1,4 +1,4 @@
-//! Contact in space: what the plane is held against, turned about all axes.
+//! Contact in space: the checks of the plane, turned about all axes.
 
 pub(crate) mod circle;
 mod patch;
@@ -14,7 +14,7 @@ use igimp_shape::{Axis, Grid, ShapeError};
 use crate::continuum::laboratory::filled;
 use crate::harness::study::{Level, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "Contact in space, in the bands of the plane: a smooth plate that is turned about the vertical presses a block evenly, with its surface anywhere in its cell; below a plate that is turned about all axes the error falls with the cell; a block slides down an incline in any direction at tan β = μ, and a plate that is pressed and pushed in any direction at H = μ V + a A.";
 
 /// Level ground with its surface at z = 0, in a quarter with planes of symmetry at x = 0 and y = 0, and the

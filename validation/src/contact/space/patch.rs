@@ -169,15 +169,15 @@ fn turned(angle: f64, cells: usize) -> Result<(RunRecord, [f64; 2]), CaseError> 
     let exact = YOUNG * (1.0 - strain).ln() / (1.0 - strain).powi(3);
     let (mut square, mut mean, mut volume) = (0.0, 0.0, 0.0);
     for (particle, sigma) in body.particles.sigma.iter().enumerate() {
-        let own = body.particles.volume0[particle];
+        let volume0 = body.particles.volume0[particle];
         for a in 0..3 {
             for b in a..3 {
                 let off = sigma[a][b] - if a == b { exact } else { 0.0 };
-                square += own * off * off;
+                square += volume0 * off * off;
             }
-            mean += own * sigma[a][a] / 3.0;
+            mean += volume0 * sigma[a][a] / 3.0;
         }
-        volume += own;
+        volume += volume0;
     }
     let rms = (square / volume).sqrt() / exact.abs();
     Ok((run, [rms, (mean / volume / exact - 1.0).abs()]))

@@ -161,7 +161,7 @@ fn pushed(
         &load_path,
         &mut observe,
     );
-    Ok((run, found.map(|own| own / (friction * pressed + adhesion))))
+    Ok((run, found.map(|f| f / (friction * pressed + adhesion))))
 }
 
 /// Both checks.

@@ -20,7 +20,7 @@ use crate::continuum::laboratory::run;
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 
-/// What the book says of the study.
+/// The book's description of the study.
 const ABOUT: &str = "A rigid smooth sphere is pressed onto an elastic half-space, in a quarter. The radius of contact is Hertz's for the force that was needed; largest pressure and approach, which err by a share of the cell, are told beside it.";
 const HERTZ: Oracle = Oracle {
     kind: OracleKind::Exact,
@@ -35,7 +35,7 @@ const FAR: f64 = 30.0 * CONTACT;
 const MODULUS: f64 = 1.0;
 const POISSON: f64 = 0.3;
 
-/// What was found: force, radius of contact and largest pressure, and r, p by contact node.
+/// Results: force, radius of contact and largest pressure, and r, p by contact node.
 struct Found {
     run: RunRecord,
     load: f64,
@@ -85,10 +85,10 @@ fn press(cells: usize) -> Result<Found, CaseError> {
     let (mut sum, mut moment) = (0.0, 0.0);
     let mut profile = Vec::new();
     for (x, node) in closed(&body.rigid) {
-        let own = x[0].hypot(x[1]);
+        let radius = x[0].hypot(x[1]);
         sum += node.pressure * node.area;
-        moment += node.pressure * node.area * own * own;
-        profile.push([own, node.pressure]);
+        moment += node.pressure * node.area * radius * radius;
+        profile.push([radius, node.pressure]);
     }
     profile.sort_by(|a, b| a[0].total_cmp(&b[0]));
     Ok(Found {
@@ -104,9 +104,9 @@ fn press(cells: usize) -> Result<Found, CaseError> {
 /// The largest pressure of Hertz's p² = p₀² (1 − r²/a²), by least squares over the part with at least a third of the
 /// largest pressure.
 fn largest(profile: &[[f64; 2]]) -> f64 {
-    let most = profile.iter().fold(0.0, |most: f64, own| most.max(own[1]));
+    let most = profile.iter().fold(0.0, |most: f64, row| most.max(row[1]));
     let (mut n, mut sx, mut sy, mut sxx, mut sxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for [r, p] in profile.iter().filter(|own| own[1] > most / 3.0) {
+    for [r, p] in profile.iter().filter(|row| row[1] > most / 3.0) {
         let (x, y) = (r * r, p * p);
         n += 1.0;
         sx += x;
@@ -151,12 +151,12 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             100.0 * off[2]
         );
         study.notes.push(note);
-        // The error of pressure and approach is a share of the cell: told by two meshes.
+        // The error of pressure and approach is a share of the cell: two meshes give it.
         if let Some(before) = errors.rows.last() {
-            let [coarse, own] = [before[0], cells as f64];
-            let limit = |k: usize| off[k] + (off[k] - before[k + 1]) * coarse / (own - coarse);
+            let [coarse, fine] = [before[0], cells as f64];
+            let limit = |k: usize| off[k] + (off[k] - before[k + 1]) * coarse / (fine - coarse);
             study.notes.push(format!(
-                "contact-sphere, extrapolated from a/h = {coarse} and {own}: p₀ is off by {:+.2} %, δ by {:+.2} %",
+                "contact-sphere, extrapolated from a/h = {coarse} and {fine}: p₀ is off by {:+.2} %, δ by {:+.2} %",
                 100.0 * limit(1),
                 100.0 * limit(2)
             ));

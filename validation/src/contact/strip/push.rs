@@ -33,7 +33,7 @@ pub(super) enum Scheme {
     Rounded,
 }
 
-/// What is done to the strip.
+/// The load on the strip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Load {
     /// Pushed down, its edges so many cells beyond lines of the grid.
@@ -57,7 +57,7 @@ pub(super) struct Push {
 }
 
 impl Push {
-    /// What it is called.
+    /// Its name.
     pub(super) fn variant(&self) -> String {
         let kind = if self.rough { "rough" } else { "smooth" };
         let load = match self.load {
@@ -96,7 +96,7 @@ impl Push {
             let reach = 14.0_f64.max(1.5 * self.cells as f64).ceil() * h;
             return graded(h, [-reach, reach], [-3.5, 3.5], 1.15);
         };
-        // The cell at the axis is as wide as what is left, 0.6 to 1.6 times the others.
+        // The cell at the axis is as wide as the rest, 0.6 to 1.6 times the others.
         let edge = 0.5 - place * h;
         let mut first = edge - (edge / h).floor() * h;
         if first < 0.6 * h {

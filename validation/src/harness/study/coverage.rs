@@ -9,7 +9,7 @@ use crate::harness::study::Study;
 /// Least orders that are tried beside the one that is thought possible \[-\].
 const OTHERS: [f64; 4] = [0.75, 2.0 / 3.0, 0.5, 1.0 / 3.0];
 
-/// What is known of a result: how it converges, and where it lies.
+/// Knowledge of a result: how it converges, and where it lies.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Known {
     /// How results of its kind converge.
@@ -56,7 +56,7 @@ impl Extrapolated {
 }
 
 impl Study {
-    /// Extrapolates a result that is known, and keeps what comes of it; none for fewer than two finite values.
+    /// Extrapolates a result that is known, and keeps the estimate; none for fewer than two finite values.
     pub(crate) fn extrapolate(
         &mut self,
         name: impl Into<String>,
@@ -109,7 +109,7 @@ pub(crate) fn median(values: &mut [f64]) -> f64 {
     }
 }
 
-/// The coverage over all results of some studies, by what converges alike, and those that are not covered; none where
+/// The coverage over all results of some studies, by kind of convergence, and those that are not covered; none where
 /// nothing was extrapolated.
 pub(crate) fn note(studies: &[Study]) -> Option<String> {
     let all = || studies.iter().flat_map(|study| &study.extrapolated);
@@ -123,25 +123,25 @@ pub(crate) fn note(studies: &[Study]) -> Option<String> {
     let mut text = "mesh error: known answers within the uncertainty, median width of it [%]; the same with orders from \
          3/4, 2/3, 1/2, 1/3 on\n"
         .to_owned();
-    let told = |(count, covered, width): (usize, usize, f64)| {
+    let share = |(count, covered, width): (usize, usize, f64)| {
         format!("{covered} of {count}, {:.2}", 100.0 * width)
     };
     let mut line = |name: &str, of: &[&Extrapolated]| {
         let others = OTHERS.map(|slowest| {
             let found: Vec<_> = (of.iter())
-                .filter_map(|own| own.with_slowest(slowest))
+                .filter_map(|result| result.with_slowest(slowest))
                 .collect();
-            told(counted(found.iter()))
+            share(counted(found.iter()))
         });
-        let own = told(counted(of.iter().copied()));
-        let _ = writeln!(text, "  {name}: {own}; {}", others.join("; "));
+        let usual = share(counted(of.iter().copied()));
+        let _ = writeln!(text, "  {name}: {usual}; {}", others.join("; "));
     };
     for (name, convergence) in kinds {
-        let own: Vec<_> = all()
+        let of_kind: Vec<_> = all()
             .filter(|result| result.known.convergence == convergence)
             .collect();
-        if !own.is_empty() {
-            line(name, &own);
+        if !of_kind.is_empty() {
+            line(name, &of_kind);
         }
     }
     line("all", &all().collect::<Vec<_>>());

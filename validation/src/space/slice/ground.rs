@@ -10,7 +10,7 @@ use crate::runs::Computed;
 /// A case of both: `(x, y)` stands for a point, `@across` for the thickness of a body, `@m` for the unit of a force per metre.
 struct Pair {
     name: &'static str,
-    /// What comes after grid, materials and supports.
+    /// The case file after grid, materials and supports.
     text: &'static str,
     /// Whether members of reinforcement are held against those of the plane.
     is_reinforced: bool,
@@ -255,8 +255,8 @@ impl Pair {
                 ("@m", "/m"),
             ]
         };
-        for (what, by) in words {
-            text = text.replace(what, by);
+        for (mark, by) in words {
+            text = text.replace(mark, by);
         }
         let y = if in_space { ", \"0.5 m\", " } else { ", " };
         let lines = text.lines().map(|line| match line.split_once("(\"") {
@@ -282,11 +282,11 @@ fn of_sorted(mut plane: Vec<f64>, mut space: Vec<f64>) -> f64 {
     if space.len() != 2 * plane.len() {
         return f64::INFINITY;
     }
-    let largest = plane.iter().fold(0.0_f64, |most, own| most.max(own.abs()));
+    let largest = plane.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
     let apart = space
         .iter()
         .enumerate()
-        .map(|(k, own)| (own - plane[k / 2]).abs());
+        .map(|(k, v)| (v - plane[k / 2]).abs());
     apart.fold(0.0, f64::max) / largest.max(f64::MIN_POSITIVE)
 }
 
@@ -300,7 +300,7 @@ pub(crate) fn add(study: &mut Study) -> Result<(), CaseError> {
         let [displacement, stress] = differences(plane.particles(), space.particles());
         let mut found = vec![("displacement", displacement), ("stress", stress)];
         let (flat, deep) = (plane.particles(), space.particles());
-        if flat.pore_pressure.iter().any(|own| *own != 0.0) {
+        if flat.pore_pressure.iter().any(|p| *p != 0.0) {
             let sum = |given: &[f64], excess: &[f64]| {
                 let both = std::iter::zip(given, excess);
                 both.map(|(given, excess)| given + excess).collect()

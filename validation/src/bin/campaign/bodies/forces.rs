@@ -1,4 +1,4 @@
-//! What rigid bodies do to the nodes of the grid in an accepted step, computed again from the traction
+//! Forces of rigid bodies on the nodes of the grid in an accepted step, computed again from the traction
 //! that the step left at the knots (theory, eqs. 45 and 48), from outlines, poses and particles: nothing
 //! of the code of contact is used, but the places of the knots.
 
@@ -30,14 +30,14 @@ pub(crate) struct Begun<'a> {
 pub(crate) fn carriers(stencils: &Stencils<2>, nodes: usize) -> Vec<bool> {
     let mut is_carrier = vec![false; nodes];
     for node in 0..nodes {
-        for carrier in stencils.carriers(node).filter(|own| own.node != node) {
+        for carrier in stencils.carriers(node).filter(|other| other.node != node) {
             is_carrier[carrier.node] = true;
         }
     }
     is_carrier
 }
 
-/// What is averaged around a knot.
+/// Averages around a knot.
 #[derive(Default)]
 struct Around {
     area: f64,
@@ -132,15 +132,15 @@ pub(crate) fn forces(begun: &Begun<'_>, after: &[RigidBody<2>], u: &[[f64; 2]]) 
         let knots = body.surface.knots();
         for (knot, sums) in around {
             let area = sums.area.min(tents[knot]);
-            let (own, side) = (&left[knot], knots[knot].1);
-            let shear = if own.is_closed {
-                own.shear[0]
+            let (state, side) = (&left[knot], knots[knot].1);
+            let shear = if state.is_closed {
+                state.shear[0]
             } else {
                 let motion = &begun.conditions.motions[slot];
                 shear_by_law(body, motion, (knot, side), &sums, tents[knot], u)
             };
             for (factor, by_node, turned) in [
-                (own.pressure, &sums.opening, sums.turned[0]),
+                (state.pressure, &sums.opening, sums.turned[0]),
                 (shear, &sums.slip, sums.turned[1]),
             ] {
                 for (&node, share) in by_node {
@@ -179,7 +179,7 @@ fn shear_by_law(
 ) -> f64 {
     let before = &body.contact.knots[knot];
     let bonds = body.interfaces[side].tension != Tension::None && !before.is_broken;
-    let is_pushed = |own: &Drive| matches!(own, Drive::Loaded(force) if force.abs() > 0.0);
+    let is_pushed = |drive: &Drive| matches!(drive, Drive::Loaded(force) if force.abs() > 0.0);
     let is_laid = motion.displacement.iter().any(is_pushed)
         && sums.first_gap() < LAID * sums.cell / sums.area;
     let touches = bonds || is_laid;
@@ -256,11 +256,11 @@ fn sides(body: &RigidBody<2>) -> Vec<Side> {
     let all = body.surface.knots();
     let count = body.surface.side_count();
     let of = |number: usize| {
-        let own = all
+        let set = all
             .iter()
             .enumerate()
             .filter(move |(_, knot)| knot.1 == number);
-        own.map(|(index, knot)| (index, knot.0)).collect::<Vec<_>>()
+        set.map(|(index, knot)| (index, knot.0)).collect::<Vec<_>>()
     };
     if count == 1 {
         let knots = of(0);
@@ -334,16 +334,16 @@ fn sides_near(body: &RigidBody<2>, sides: &[Side], x: [f64; 2]) -> Vec<(usize, f
         let turn = &body.pose.turn;
         [0, 1].map(|a| turn[a][0] * v[0] + turn[a][1] * v[1])
     };
-    let own = in_frame(&body.pose, x);
+    let local = in_frame(&body.pose, x);
     // All segments of a circle are one side.
     if sides[0].normal.is_none() {
         let radius = body.surface.bounds().1[0];
-        let length = own[0].hypot(own[1]);
-        return vec![(0, length - radius, turned(own.map(|x| x / length)))];
+        let length = local[0].hypot(local[1]);
+        return vec![(0, length - radius, turned(local.map(|x| x / length)))];
     }
     let of = sides.iter().filter_map(|side| {
         let (normal, at) = (side.normal?, side.knots[0].1);
-        let height = normal[0] * (own[0] - at[0]) + normal[1] * (own[1] - at[1]);
+        let height = normal[0] * (local[0] - at[0]) + normal[1] * (local[1] - at[1]);
         Some((side.number, height, turned(normal)))
     });
     of.collect()
@@ -386,7 +386,7 @@ fn faces(particles: &Particles<2>, body: &RigidBody<2>, sides: &[Side]) -> Vec<F
     faces
 }
 
-/// What is around the knots of a body that turns by an angle in the step \[rad\].
+/// Averages around the knots of a body that turns by an angle in the step \[rad\].
 fn around_knots(
     begun: &Begun<'_>,
     slot: usize,
@@ -462,9 +462,9 @@ fn add_way(
     (body, first, place): (&RigidBody<2>, usize, [f64; 2]),
 ) {
     let mut add = |node: usize, by: [f64; 2]| {
-        let own = by_node.entry(node).or_insert([0.0; 2]);
-        own[0] += weight * by[0];
-        own[1] += weight * by[1];
+        let sum = by_node.entry(node).or_insert([0.0; 2]);
+        sum[0] += weight * by[0];
+        sum[1] += weight * by[1];
     };
     for &(node, share) in nodes {
         add(node, direction.map(|n| share * n));

@@ -27,10 +27,10 @@ impl Outline {
             },
             Some(RigidShape::Polygon(corners)) => {
                 let [x, y] = part.reference;
-                let own: Vec<[f64; 2]> = corners.iter().map(|at| [at[0] - x, at[1] - y]).collect();
+                let rel: Vec<[f64; 2]> = corners.iter().map(|at| [at[0] - x, at[1] - y]).collect();
                 let radius = part.rounding * cell;
                 Self {
-                    core: inset(&anticlockwise(own), radius),
+                    core: inset(&anticlockwise(rel), radius),
                     radius,
                 }
             }

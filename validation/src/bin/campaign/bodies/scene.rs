@@ -6,7 +6,7 @@ use super::shape::{Kind, Shape};
 use super::site::{Site, corners_text};
 use crate::random::Random;
 
-/// Strength of the soil, and what forces are measured by in elastic soil \[kPa\].
+/// Strength of the soil, and the unit of forces in elastic soil \[kPa\].
 const STRENGTH: f64 = 10.0;
 
 /// A law of the soil.
@@ -50,7 +50,7 @@ pub(crate) enum Place {
 /// One body of a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
-    /// What it looks like.
+    /// Its kind.
     pub(crate) kind: Kind,
     /// Where it starts.
     pub(crate) place: Place,
@@ -166,8 +166,8 @@ fn part(
     };
     if random.chance(0.5) {
         let side = random.integer(1, sides);
-        let own = interface(random);
-        let _ = writeln!(text, "sides = [{{ side = {side}, interface = {own} }}]");
+        let keys = interface(random);
+        let _ = writeln!(text, "sides = [{{ side = {side}, interface = {keys} }}]");
     }
     if random.chance(0.3) {
         let weight = STRENGTH * shape.width() * random.uniform(0.1, 0.5);

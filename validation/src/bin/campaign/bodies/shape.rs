@@ -212,9 +212,9 @@ fn notched(random: &mut Random) -> Vec<[f64; 2]> {
 fn is_sound(corners: &[[f64; 2]], rounding: f64) -> bool {
     let core = inset(corners, rounding);
     let keeps = std::iter::zip(edges(corners), edges(&core)).all(|((a, b), (c, d))| {
-        let (along, own) = ([b[0] - a[0], b[1] - a[1]], [d[0] - c[0], d[1] - c[1]]);
+        let (along, inner) = ([b[0] - a[0], b[1] - a[1]], [d[0] - c[0], d[1] - c[1]]);
         let length = along[0].hypot(along[1]);
-        (along[0] * own[0] + along[1] * own[1]) / length > LEAST_SIDE
+        (along[0] * inner[0] + along[1] * inner[1]) / length > LEAST_SIDE
     });
     keeps && thickness(corners) > LEAST_THICKNESS
 }

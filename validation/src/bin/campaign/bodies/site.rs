@@ -145,7 +145,7 @@ impl Site {
         polygon.splice(3..3, [right, b, a, left]);
     }
 
-    /// Divides the soil along a body below its surface into what lies left of it and right of it.
+    /// Divides the soil along a body below its surface into the parts left and right of it.
     fn bury(&mut self, outline: &[[f64; 2]]) {
         let count = outline.len();
         let by_height = |a: &usize, b: &usize| outline[*a][1].total_cmp(&outline[*b][1]);

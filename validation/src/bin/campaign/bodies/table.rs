@@ -91,17 +91,17 @@ fn is_loaded(scene: &Scene, watched: &Watched) -> bool {
 fn ends(runs: &[(Scene, Watched)]) -> String {
     let mut counts: BTreeMap<End, [usize; LAWS.len()]> = BTreeMap::new();
     for (scene, watched) in runs {
-        let own = counts.entry(watched.end).or_default();
-        for (count, law) in own.iter_mut().zip(LAWS) {
+        let by_law = counts.entry(watched.end).or_default();
+        for (count, law) in by_law.iter_mut().zip(LAWS) {
             *count += usize::from(scene.law == law);
         }
     }
     let laws = LAWS.map(Law::label).join(" | ");
     let mut text = format!("| end of the run | {laws} | all |\n|---|---|---|---|---|---|\n");
-    for (end, own) in counts {
-        let all: usize = own.iter().sum();
-        let own = own.map(|count| count.to_string()).join(" | ");
-        let _ = writeln!(text, "| {} | {own} | {all} |", end.label());
+    for (end, by_law) in counts {
+        let all: usize = by_law.iter().sum();
+        let by_law = by_law.map(|count| count.to_string()).join(" | ");
+        let _ = writeln!(text, "| {} | {by_law} | {all} |", end.label());
     }
     text + "\n"
 }

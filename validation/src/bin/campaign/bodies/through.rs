@@ -22,12 +22,12 @@ pub(crate) fn outlines(case: &Case<2>) -> Vec<Outline> {
     parts.map(|part| Outline::of(part, x.min(y))).collect()
 }
 
-/// What a step did to the particles near rigid bodies.
+/// Particles near rigid bodies after a step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reach {
     /// The smallest distance of a centre from an outline, in half-lengths as seeded \[-\].
     pub(crate) nearest: Option<f64>,
-    /// What should not be, in words.
+    /// Violations, in words.
     pub(crate) violations: Vec<String>,
 }
 
