@@ -25,7 +25,7 @@ const CUT_MOST: f64 = 10.0;
 const REGION: f64 = 1e3;
 /// Penalty on jumps of the gradient at cells that are cut \[-\].
 const GHOST: f64 = 0.01;
-/// Share of what heads could drive through a cell that counts as flow \[-\]: below it round-off would decide.
+/// Share of the flow that heads could drive through a cell that counts \[-\]: below it round-off would decide.
 const AT_REST: f64 = 0.1;
 /// Equations of a cell or of two.
 struct Local<'a> {

@@ -21,7 +21,7 @@ const ACCURACY: f64 = 2e-3;
 const EMPTY: f64 = 1e-9;
 /// Share of the first stretch of time that is tried first \[-\].
 const FIRST: f64 = 1e-3;
-/// Share of a stretch of time below which a step is not cut for its error: what is faster counts as sudden \[-\].
+/// Share of a stretch of time below which a step is not cut for its error: faster changes count as sudden \[-\].
 const SUDDEN: f64 = 1e-5;
 /// The same for a step that finds no balance \[-\].
 const SHORTEST: f64 = 1e-9;
@@ -29,7 +29,7 @@ const SHORTEST: f64 = 1e-9;
 const OWING: f64 = 1e-3;
 /// Least and largest change from step to step \[-\].
 const CHANGES: [f64; 2] = [0.1, 4.0];
-/// Steps aim at this share of what the error would allow \[-\].
+/// Steps aim at this share of the allowed error \[-\].
 const SAFETY: f64 = 0.9;
 
 /// A value in time on the faces of a condition, linear between its samples and constant beyond.

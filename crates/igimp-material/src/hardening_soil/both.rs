@@ -100,7 +100,7 @@ impl<'a> Both<'a> {
         let low = s - hyperbola.attraction;
         let up = low + hyperbola.asymptote * share * s;
         let stress = circle.stress([up, low], multiplier, y);
-        // Rates of the stress by x and by μ: of its ends, and of what is between them.
+        // Rates of the stress by x and by μ: of its ends, and between them.
         let aside = softened.aside();
         let between = [
             aside * (multiplier_by * y + multiplier * y_by),

@@ -348,7 +348,7 @@ impl Softening {
         (mut held, mut strained): (Held, Strained),
     ) -> Result<(f64, Held), MaterialError> {
         let before = self.plastic_strain(history);
-        // A rate goes with the step alone, which may be small beside what was before.
+        // A rate goes with the step alone, which may be small beside that of earlier steps.
         let origin = if moment.rate.is_some() { before } else { 0.0 };
         let begin = before - origin;
         // It is a difference of strains, whose round-off is in it.

@@ -64,7 +64,7 @@ impl RigidSolid {
     }
 }
 
-/// Second moments of unit mass with its centre at `centre`, of which `own` are those about it along the axes \[m²\].
+/// Second moments of unit mass with its centre at `centre`, of which `second` are those about it along the axes \[m²\].
 fn shifted(centre: [f64; 3], second: [f64; 3]) -> [[f64; 3]; 3] {
     std::array::from_fn(|a| {
         std::array::from_fn(|b| centre[a] * centre[b] + if a == b { second[a] } else { 0.0 })
