@@ -56,11 +56,11 @@ fn is_the_work_of_the_stress_on_plastic_strain() {
                 .map(|(tau, eps)| tau * eps)
                 .sum();
             let volume: f64 = flow.iter().sum();
-            let told = law.dissipation(&flow).unwrap();
+            let rate = law.dissipation(&flow).unwrap();
             let size: f64 = flow.iter().map(|eps| eps.abs()).sum();
-            assert!((told.power - work).abs() < 1e-9 * work, "{}", law.name());
+            assert!((rate.power - work).abs() < 1e-9 * work, "{}", law.name());
             assert!(
-                (told.dilation - volume).abs() < 1e-9 * size,
+                (rate.dilation - volume).abs() < 1e-9 * size,
                 "{}",
                 law.name()
             );
