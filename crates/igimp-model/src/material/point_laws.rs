@@ -27,7 +27,7 @@ pub struct PointError {
     pub source: MaterialError,
 }
 
-/// What the materials of a case are at places.
+/// The materials of a case by place.
 struct Places<'a, const D: usize> {
     case: &'a Case<D>,
     ground: Ground<D>,

@@ -125,7 +125,7 @@ fn bedding_turns_the_flow() {
     conditions.faces = vec![
         faces("left", [0.0, 0.0], [0.0, 1.0], OnFaces::Head(1.0)),
         faces("right", [1.0, 0.0], [1.0, 1.0], OnFaces::Head(0.0)),
-        // What leaves through top and bottom where the head has no slope along y.
+        // The flow through top and bottom where the head has no slope along y.
         faces(
             "top",
             [0.1, 1.0],
