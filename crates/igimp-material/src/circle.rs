@@ -63,7 +63,7 @@ pub(crate) fn turned(tangent: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     [last, middle, first]
 }
 
-/// What a return goes by: the multiplier Λ and sin ψ, as functions of an unknown x of the law.
+/// The flow of a return: the multiplier Λ and sin ψ, as functions of an unknown x of the law.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flow {
     /// Λ \[-\].

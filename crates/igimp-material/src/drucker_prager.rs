@@ -38,8 +38,8 @@ pub enum Cone {
 ///
 /// Trial states beyond the end of the cone go to its apex p = c cot φ with a tangent of zero, with ψ = 0 too.
 ///
-/// [`with_rate`](Self::with_rate) makes friction grow with the speed of shear in steps that take time. What is said of its strength
-/// elsewhere is that of slow shear: f of a state that flows fast is positive.
+/// [`with_rate`](Self::with_rate) makes friction grow with the speed of shear in steps that take time. Its strength elsewhere
+/// is that of slow shear: f of a state that flows fast is positive.
 ///
 /// ```
 /// use igimp_material::{
@@ -179,9 +179,9 @@ impl DruckerPrager {
             self.cone,
         )?;
         let law = match self.rate {
-            Some((own, _)) if friction_angle > 0.0 => {
+            Some((rate, _)) if friction_angle > 0.0 => {
                 let ratio = friction_angle.tan() / self.strength.friction_angle.tan();
-                law.with_rate(own.times(ratio))?
+                law.with_rate(rate.times(ratio))?
             }
             _ => law,
         };
@@ -197,7 +197,7 @@ impl DruckerPrager {
         let stiffness = 3.0 * self.elasticity.shear();
         let strength = self.shear - self.slope * p;
         match &self.rate {
-            Some((own, growth)) if duration > 0.0 && strength > 0.0 => {
+            Some((rate, growth)) if duration > 0.0 && strength > 0.0 => {
                 let cone = SlowCone {
                     excess,
                     strength,
@@ -205,7 +205,7 @@ impl DruckerPrager {
                     growth: *growth,
                     stiffness,
                 };
-                own.sheared(&cone, duration)
+                rate.sheared(&cone, duration)
             }
             _ => Sheared::slowly(
                 excess / (stiffness + self.elasticity.bulk() * self.slope * self.flow),

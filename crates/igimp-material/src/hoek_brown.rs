@@ -25,7 +25,7 @@ const CLOSE: f64 = 1e-9;
 /// all is the apex.
 const LEAST_SHARE: f64 = 1e-9;
 
-/// What the strength of a rock mass is made of (Hoek, Carranza-Torres and Corkum 2002).
+/// Parameters of the strength of a rock mass (Hoek, Carranza-Torres and Corkum 2002).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HoekBrownParameters {
     /// Uniaxial compressive strength of intact rock $`\sigma_{ci}`$ \[stress\].
@@ -101,7 +101,7 @@ pub struct HoekBrown {
     parameters: HoekBrownParameters,
     /// m_b, s and a.
     powers: [f64; 3],
-    /// What the envelope of shear strength is divided by.
+    /// Divisor of the envelope of shear strength.
     srf: f64,
 }
 
@@ -123,12 +123,12 @@ struct Found {
     touching: Touching,
     /// Λ \[-\], and its derivative by the base.
     multiplier: [f64; 2],
-    /// What is left of the circle beyond the strength \[stress\], and its derivative.
+    /// Excess of the circle beyond the strength \[stress\], and its derivative.
     excess: [f64; 2],
 }
 
 impl Found {
-    /// What the tangent goes by.
+    /// The flow for the tangent.
     fn flow(&self) -> Flow {
         let [y, y_rate] = self.touching.dilatancy;
         let [g_u, g_w] = self.circle.paces(y);
@@ -268,8 +268,8 @@ impl HoekBrown {
             return Ok(None);
         }
         let excess = |base: f64| {
-            let own = self.excess(&circle, base);
-            (own, own.excess)
+            let found = self.excess(&circle, base);
+            (found, found.excess)
         };
         root(self.least_base(), self.first_base(&circle), excess)
             .map(Some)
@@ -373,16 +373,16 @@ impl HoekBrown {
     }
 }
 
-/// What stands at the base where `of` has a root, of which it says the value, positive below the root, and the slope: by Newton's method
+/// The result of `of` at its root, where `of` gives its gap, positive below the root, and the slope: by Newton's method
 /// for the root of the base, along which it is nearly straight at the tip too, while its corrections at least halve, else between bounds.
 fn root<T>(least: f64, first: f64, of: impl Fn(f64) -> (T, [f64; 2])) -> Option<T> {
     let (mut low, mut high) = (least, f64::INFINITY);
     let (mut base, mut step) = (first, f64::INFINITY);
     let mut is_last = false;
     for _ in 0..MOST_CORRECTIONS {
-        let (own, [gap, slope]) = of(base);
+        let (result, [gap, slope]) = of(base);
         if is_last {
-            return Some(own);
+            return Some(result);
         }
         if gap > 0.0 {
             low = base;
@@ -458,8 +458,8 @@ impl ConstitutiveModel for HoekBrown {
 }
 
 impl Strength for HoekBrown {
-    /// $`(1 - \sin\varphi)`$ times $`\sigma_1 - \sigma_3`$ less what strength admits at σ3, compression positive, with φ of the pyramid that
-    /// touches there: what f of that pyramid is. Beyond the tensile strength t, $`-\sigma_3 - t`$.
+    /// $`(1 - \sin\varphi)`$ times $`\sigma_1 - \sigma_3`$ less its limit at σ3, compression positive, with φ of the pyramid that
+    /// touches there: f of that pyramid. Beyond the tensile strength t, $`-\sigma_3 - t`$.
     fn yield_function(&self, tau: &Principal, _history: &History) -> f64 {
         let [first, _, last] = sorted(tau, &descending(tau));
         match self.admitted(-first) {
@@ -475,7 +475,7 @@ impl Strength for HoekBrown {
         uniaxial + self.tensile_strength() + 2.0 * largest(tau)
     }
 
-    /// The difference of major and minor stress over what strength admits at the minor one; 1 at the apex and beyond.
+    /// The difference of major and minor stress over its limit at the minor one; 1 at the apex and beyond.
     fn utilisation(&self, tau: &Principal, _history: &History) -> f64 {
         let [first, _, last] = sorted(tau, &descending(tau));
         let admitted = self.admitted(-first).map_or(0.0, |[admitted, _]| admitted);

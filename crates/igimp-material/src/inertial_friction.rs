@@ -21,7 +21,7 @@ pub struct InertialFriction {
     pub grain_density: f64,
 }
 
-/// What a cone is where shear begins to grow it, at the pressure of its step.
+/// The cone where shear begins to grow it, at the pressure of its step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SlowCone {
     /// $`q^{tr}`$ beyond the strength of slow shear \[stress\]. Positive.
@@ -32,7 +32,7 @@ pub(crate) struct SlowCone {
     pub(crate) pressure: f64,
     /// $`(M_2 - M)/M`$ \[-\].
     pub(crate) growth: f64,
-    /// What a plastic strain of one takes off q, 3 G \[stress\].
+    /// Fall of q with a plastic strain of one, 3 G \[stress\].
     pub(crate) stiffness: f64,
 }
 

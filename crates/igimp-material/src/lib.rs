@@ -13,7 +13,7 @@
 //! | laws whose strength goes with plastic strain, the direction of stress, the rate of strain | [`Softening`], [`Curve`], [`Directions`], [`RateEffect`]; [`InertialFriction`] |
 //! | soil whose strength and stiffness vary | [`Ratios`], [`ScaledLaw`] |
 //! | from principal space to tensors | [`lift_finite`], [`lift_small`], [`Lifted`], [`SpatialTangent`] |
-//! | what can go wrong | [`MaterialError`] |
+//! | errors | [`MaterialError`] |
 //!
 //! Tension and extension are positive. Stress is Kirchhoff stress τ and strain the elastic Hencky
 //! strain; with small strain read Cauchy stress and linear strain. Angles are in radians.
@@ -35,7 +35,7 @@
 //! let largest_shear = (0.25 * (xx - yy).powi(2) + xy * xy).sqrt();
 //! assert!((largest_shear - 1.0).abs() < 1e-12);
 //! assert!(lifted.regime.is_plastic() && lifted.history.eps_p_eq > 0.0);
-//! let b_e = lifted.b_e(); // what the next step starts from
+//! let b_e = lifted.b_e(); // the start of the next step
 //! assert!((b_e[2][2] - 1.0).abs() < 1e-12);
 //! # Ok::<(), igimp_material::MaterialError>(())
 //! ```

@@ -154,19 +154,19 @@ impl PlaneStrength {
 
     /// The same, with the tangent.
     fn by_circle(&self, moduli: &Moduli, trial: &Principal) -> Option<Returned> {
-        let own = self.circle(moduli, trial)?;
+        let state = self.circle(moduli, trial)?;
         let y = self.sin_dilation;
-        let tangent = own.circle.tangent(&Flow {
-            multiplier: own.multiplier,
-            multiplier_by: own.multiplier_by,
+        let tangent = state.circle.tangent(&Flow {
+            multiplier: state.multiplier,
+            multiplier_by: state.multiplier_by,
             dilatancy: [y, 0.0],
             unknown_by: [0.0; 2],
         });
         Some(Returned {
-            tau: mirrored(&own.stress),
-            delta_eps_p: mirrored(&own.circle.plastic_strain(own.multiplier, y)),
+            tau: mirrored(&state.stress),
+            delta_eps_p: mirrored(&state.circle.plastic_strain(state.multiplier, y)),
             tangent: turned(&tangent),
-            regime: own.circle.planes.regime(),
+            regime: state.circle.planes.regime(),
         })
     }
 }

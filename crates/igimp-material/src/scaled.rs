@@ -54,7 +54,7 @@ impl Default for Ratios {
 /// A law with strength and stiffness that are multiples of those of another, without making that one anew.
 ///
 /// With s the ratio of strength and e that of stiffness, the answer to a trial strain ε is that of the other law to
-/// ε e/s, with stress times s, tangent times e and plastic strain times s/e: what the law with those parameters answers.
+/// ε e/s, with stress times s, tangent times e and plastic strain times s/e: the answer of the law with those parameters.
 ///
 /// ```
 /// use igimp_material::{
@@ -131,8 +131,8 @@ impl<L: Deref<Target = dyn ConstitutiveModel>> ScaledLaw<L> {
             },
             regime: answer.regime,
             nonlocal: NonlocalRates {
-                plastic_by_strain: nonlocal.plastic_by_strain.map(|own| own * ratio),
-                stress_by_nonlocal: (nonlocal.stress_by_nonlocal).map(|own| own * strength),
+                plastic_by_strain: nonlocal.plastic_by_strain.map(|rate| rate * ratio),
+                stress_by_nonlocal: (nonlocal.stress_by_nonlocal).map(|rate| rate * strength),
                 ..nonlocal
             },
         }
@@ -215,8 +215,8 @@ where
         }
     }
 
-    /// The other law has its strains over a time that is as many times longer, so that rates are those of the soil, and is told how
-    /// many times they are those of the soil.
+    /// The other law has its strains over a time that is as many times longer, so that rates are those of the soil. The
+    /// context holds the multiple.
     fn return_map(
         &self,
         eps_e_trial: &Principal,
@@ -225,13 +225,13 @@ where
     ) -> Result<ReturnMap, MaterialError> {
         let ratio = self.strain_ratio();
         let trial = eps_e_trial.map(|strain| strain * ratio);
-        let own = self.unscaled_history(*history);
+        let unscaled = self.unscaled_history(*history);
         let context = PointContext {
             duration: context.duration * ratio,
             strain_ratio: context.strain_ratio * ratio,
             ..*context
         };
-        let answer = self.law.return_map(&trial, &own, &context)?;
+        let answer = self.law.return_map(&trial, &unscaled, &context)?;
         Ok(self.scaled_answer(&answer, history))
     }
 
@@ -297,26 +297,26 @@ where
     }
 
     fn shear_strength(&self) -> Option<ShearStrength> {
-        let own = self.law.shear_strength()?;
+        let strength = self.law.shear_strength()?;
         Some(ShearStrength {
-            cohesive: self.ratios.strength * own.cohesive,
-            ..own
+            cohesive: self.ratios.strength * strength.cohesive,
+            ..strength
         })
     }
 
     fn shear_strength_at(&self, history: &History) -> Option<ShearStrength> {
-        let own = (self.law).shear_strength_at(&self.unscaled_history(*history))?;
+        let strength = (self.law).shear_strength_at(&self.unscaled_history(*history))?;
         Some(ShearStrength {
-            cohesive: self.ratios.strength * own.cohesive,
-            ..own
+            cohesive: self.ratios.strength * strength.cohesive,
+            ..strength
         })
     }
 
     fn dissipation(&self, rate: &Principal) -> Option<Dissipation> {
-        let own = self.law.dissipation(rate)?;
+        let dissipation = self.law.dissipation(rate)?;
         Some(Dissipation {
-            power: self.ratios.strength * own.power,
-            ..own
+            power: self.ratios.strength * dissipation.power,
+            ..dissipation
         })
     }
 

@@ -10,7 +10,7 @@ use crate::spectral::principal::{Principal, largest};
 use crate::{Elasticity, Regime};
 
 /// Share of the stress scale by which a returned stress may exceed a plane: round-off, and less
-/// than what counts as on the surface before a return.
+/// than the share that counts as on the surface before a return.
 const ROUND_OFF: f64 = 1e-13;
 
 /// A part of a surface, by its planes.
@@ -23,7 +23,7 @@ pub(crate) enum Part {
 }
 
 impl Part {
-    /// The part with what a return to it needs.
+    /// The part with the data of a return to it.
     fn region(self, elasticity: &Elasticity, planes: &[Plane]) -> Region {
         let pair = |of: [usize; 2]| of.map(|plane| planes[plane]);
         match self {
@@ -45,7 +45,7 @@ pub(crate) struct Outline<'a> {
     pub(crate) parts: &'a [Part],
 }
 
-/// A surface with what returns to its parts need: for many of them.
+/// A surface with the data of returns to its parts: for many of them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PlanarSurface {
     planes: Vec<Plane>,
@@ -152,8 +152,8 @@ fn region_of<R: Borrow<Region>>(
 ) -> (R, Principal) {
     let mut best: Option<(f64, R, Principal)> = None;
     let mut last = None;
-    for own in regions {
-        let region = own.borrow();
+    for candidate in regions {
+        let region = candidate.borrow();
         let depth = region.depth(trial);
         let tau = region.project(trial);
         // Round-off may put a state on the common wall of two regions outside both: then the
@@ -161,11 +161,11 @@ fn region_of<R: Borrow<Region>>(
         let is_nearer = best.as_ref().is_none_or(|(deepest, ..)| depth > *deepest);
         if is_nearer && admits(planes, &tau) {
             if depth >= 0.0 {
-                return (own, tau);
+                return (candidate, tau);
             }
-            best = Some((depth, own, tau));
+            best = Some((depth, candidate, tau));
         } else {
-            last = Some((own, tau));
+            last = Some((candidate, tau));
         }
     }
     best.map(|(_, region, tau)| (region, tau))

@@ -39,7 +39,7 @@ fn laws() -> Vec<Arc<dyn ConstitutiveModel>> {
     ]
 }
 
-// GOAL: what a law says that flow dissipates is what its stress does on its plastic strain, and the volume of
+// GOAL: the dissipation of flow by a law is the work of its stress on its plastic strain, and the volume of
 // that flow is that of the plastic strain.
 // ORACLE: τ : Δε_p of a return to the surface, with associated flow the stress that belongs to the flow.
 #[test]
@@ -56,11 +56,11 @@ fn is_the_work_of_the_stress_on_plastic_strain() {
                 .map(|(tau, eps)| tau * eps)
                 .sum();
             let volume: f64 = flow.iter().sum();
-            let told = law.dissipation(&flow).unwrap();
+            let rate = law.dissipation(&flow).unwrap();
             let size: f64 = flow.iter().map(|eps| eps.abs()).sum();
-            assert!((told.power - work).abs() < 1e-9 * work, "{}", law.name());
+            assert!((rate.power - work).abs() < 1e-9 * work, "{}", law.name());
             assert!(
-                (told.dilation - volume).abs() < 1e-9 * size,
+                (rate.dilation - volume).abs() < 1e-9 * size,
                 "{}",
                 law.name()
             );
@@ -68,7 +68,7 @@ fn is_the_work_of_the_stress_on_plastic_strain() {
     }
 }
 
-// GOAL: a law without a limit dissipates nothing that could be told.
+// GOAL: a law without a limit has no dissipation.
 // ORACLE: it has no strength.
 #[test]
 fn is_unknown_of_elastic_soil() {

@@ -42,7 +42,7 @@ impl fmt::Display for Band {
     }
 }
 
-/// A unit in which numbers are told that are kept in SI units.
+/// A unit in which numbers are printed that are kept in SI units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ToldUnit {
     /// Its name, such as `kPa`.
@@ -52,7 +52,7 @@ pub struct ToldUnit {
 }
 
 impl ToldUnit {
-    /// A number in SI units as it is told: in this unit, with its name.
+    /// A number in SI units as it is printed: in this unit, with its name.
     pub fn told(&self, value: f64) -> String {
         format!("{} {}", short(value / self.in_si), self.name)
     }
@@ -76,7 +76,7 @@ pub struct Check {
     /// The computed value, in the same unit; NaN is `null` in JSON.
     #[serde(deserialize_with = "or_not_a_number")]
     pub measured: f64,
-    /// The unit in which the case states what is accepted; none: plain numbers. Numbers here are in SI units all the same.
+    /// The unit in which the case states the band; none: plain numbers. Numbers here are in SI units all the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<ToldUnit>,
 }
@@ -87,7 +87,7 @@ impl Check {
         self.band.holds(self.expected, self.measured)
     }
 
-    /// A value of this check as it is told, in the unit of the case; a dash for one that is not a number.
+    /// A value of this check as it is printed, in the unit of the case; a dash for one that is not a number.
     pub fn told(&self, value: f64) -> String {
         match &self.unit {
             _ if value.is_nan() => "-".to_owned(),
@@ -96,7 +96,7 @@ impl Check {
         }
     }
 
-    /// The band as it is told, in the unit of the case.
+    /// The band as it is printed, in the unit of the case.
     pub fn told_band(&self) -> String {
         let Some(ToldUnit { name, in_si }) = &self.unit else {
             return self.band.to_string();
@@ -123,10 +123,10 @@ pub fn or_not_a_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64
 mod tests {
     use super::*;
 
-    /// GOAL: a check is told in the unit of its case, and a value that is not a number is no number of it.
+    /// GOAL: a check is printed in the unit of its case, and a value that is not a number is no number of it.
     /// ORACLE: by hand, with a pound-force per square foot of 47.88026 Pa (NIST SP 811).
     #[test]
-    fn a_check_is_told_in_its_unit() {
+    fn a_check_is_printed_in_its_unit() {
         let unit = Some(ToldUnit {
             name: "psf".to_owned(),
             in_si: 47.88026,

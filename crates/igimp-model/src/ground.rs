@@ -1,4 +1,4 @@
-//! The ground as a case draws it: its surface, and what its weight is at a place.
+//! The ground as a case draws it: its surface, and its weight at a place.
 
 use std::sync::Arc;
 
@@ -84,7 +84,7 @@ impl<const D: usize> Ground<D> {
     /// The level of the surface above or below a place: the highest soil on its upright line \[m\], if there is any.
     pub fn surface(&self, place: &[f64; D]) -> Option<f64> {
         let place = self.within(place);
-        let tops = self.layers.iter().filter_map(|own| own.region.top(&place));
+        let tops = self.layers.iter().filter_map(|l| l.region.top(&place));
         tops.reduce(f64::max)
     }
 
@@ -92,12 +92,12 @@ impl<const D: usize> Ground<D> {
     fn within(&self, place: &[f64; D]) -> [f64; D] {
         let crossed = |layer: &Layer<D>| !layer.region.crossings(place).is_empty();
         let mut within = *place;
-        for (axis, own) in within.iter_mut().enumerate().take(D - 1) {
+        for (axis, x) in within.iter_mut().enumerate().take(D - 1) {
             for layer in &self.layers {
                 let (lower, upper) = layer.region.bounds();
                 let off = BESIDE * (upper[axis] - lower[axis]);
                 if (place[axis] - upper[axis]).abs() < off && !self.layers.iter().any(crossed) {
-                    *own = upper[axis] - off;
+                    *x = upper[axis] - off;
                 }
             }
         }
@@ -118,8 +118,8 @@ impl<const D: usize> Ground<D> {
         layers
             .map(|layer| match &layer.profile {
                 None => sum_above(&*layer.region, place, |level| level) * layer.unit_weight,
-                Some(own) => sum_above(&*layer.region, place, |level| {
-                    own.integral(place, level, self)
+                Some(profile) => sum_above(&*layer.region, place, |level| {
+                    profile.integral(place, level, self)
                 }),
             })
             .sum()
@@ -138,7 +138,7 @@ impl<const D: usize> Ground<D> {
                 let level = level.min(table);
                 let dry = match &layer.profile {
                     None => layer.unit_weight * level,
-                    Some(own) => own.integral(place, level, self),
+                    Some(profile) => profile.integral(place, level, self),
                 };
                 saturated * level - dry
             })
@@ -147,8 +147,8 @@ impl<const D: usize> Ground<D> {
     }
 
     /// The vertical effective stress σ′_v0 of level ground at a place, compression positive \[Pa\] (theory, eq. 36a): the
-    /// weight above less the pressure of water at rest, that of a level \[m\] or else of the water at the start. What
-    /// stands on the surface presses on it as much as it adds to the pressure below. Not below zero.
+    /// weight above less the pressure of water at rest, that of a level \[m\] or else of the water at the start. Water
+    /// that stands on the surface presses on it as much as it adds to the pressure below. Not below zero.
     pub fn effective_stress(&self, place: &[f64; D], water_level: Option<f64>) -> f64 {
         let weight = self.weight_above(place);
         let [x, level] = front(place);

@@ -1,4 +1,4 @@
-//! A problem as data: what a case file says, with names resolved and numbers in SI units.
+//! A problem as data: the content of a case file, with names resolved and numbers in SI units.
 //!
 //! Lengths are in m, stresses in Pa, unit weights in N/m³, angles in rad, forces in N/m (plane
 //! strain, per metre run). The second axis points up; gravity acts along its negative direction.
@@ -142,7 +142,7 @@ impl<const D: usize> Case<D> {
 
     /// The same problem on a grid whose cells are cut into `n` in each direction.
     ///
-    /// Places, lengths and steps stay. What a file states by the cell (particles, small cuts, the stride
+    /// Places, lengths and steps stay. Numbers that a file states by the cell (particles, small cuts, the stride
     /// of a run-out) goes by the small cells.
     #[must_use]
     pub fn refined(&self, n: usize) -> Self {
@@ -173,13 +173,13 @@ pub enum AnyCase {
     Space(Case<3>),
 }
 
-/// Does the same with a case of any dimension: `in_any_dimension!(any, case => what(case))`.
+/// Does the same with a case of any dimension: `in_any_dimension!(any, case => run(case))`.
 #[macro_export]
 macro_rules! in_any_dimension {
-    ($any:expr, $case:ident => $what:expr) => {
+    ($any:expr, $case:ident => $body:expr) => {
         match $any {
-            $crate::AnyCase::Plane($case) => $what,
-            $crate::AnyCase::Space($case) => $what,
+            $crate::AnyCase::Plane($case) => $body,
+            $crate::AnyCase::Space($case) => $body,
         }
     };
 }
@@ -365,7 +365,7 @@ pub struct SolverSettings {
     pub cut_factor: f64,
     /// Linear solver.
     pub linear: SolverKind,
-    /// Memory for its factors; none: what the environment says, or else a share of what the computer has.
+    /// Memory for its factors; none: that of the environment, or else a share of the computer's.
     pub memory: Option<MemoryLimit>,
 }
 

@@ -38,8 +38,8 @@ pub enum LoadKind<const D: usize> {
         /// Traction at factor 1 \[Pa\], its components.
         traction: [f64; D],
     },
-    /// A dead pressure on a level circle or polygon in space, raised by load stages. What of it lies beyond the grid, as
-    /// behind a plane of symmetry, is left out.
+    /// A dead pressure on a level circle or polygon in space, raised by load stages. Its part beyond the grid, as behind a
+    /// plane of symmetry, is left out.
     Patch {
         /// Its area in plan.
         plan: Plan,
@@ -72,7 +72,7 @@ pub enum Plan {
 }
 
 impl Plan {
-    /// Lower and upper corner of the rectangle around what of it lies in a box given by two corners, of which only x and
+    /// Lower and upper corner of the rectangle around its part in a box given by two corners, of which only x and
     /// y count \[m\].
     pub fn bounds<const D: usize>(
         &self,
@@ -114,7 +114,7 @@ impl Plan {
             let to = [place(0, i + 1), place(1, j + 1), 1.0];
             self.within(from, to)
         });
-        let parts = parts.map(|own| (own.volume, [own.centroid[0], own.centroid[1]]));
+        let parts = parts.map(|part| (part.volume, [part.centroid[0], part.centroid[1]]));
         parts.filter(|(area, _)| *area > 0.0).collect()
     }
 

@@ -48,7 +48,7 @@ pub struct Material {
     pub given: Option<GivenLaw>,
 }
 
-/// A law of a program's own. It is known by what its `Debug` prints: a run is taken up again only with a law
+/// A law of a program's own. It is known by the text of its `Debug`: a run is taken up again only with a law
 /// that prints the same.
 #[derive(Clone, Debug)]
 pub struct GivenLaw(pub SharedLaw);
@@ -88,7 +88,7 @@ impl Material {
     fn dilating_up_to(mut self, most: f64) -> Self {
         self.strength = self.strength.dilating_up_to(most);
         if let Some(curves) = &mut self.softening {
-            curves.dilation = curves.dilation.filter(|own| own.residual < most);
+            curves.dilation = curves.dilation.filter(|goes| goes.residual < most);
         }
         self
     }
@@ -111,7 +111,7 @@ impl Material {
     /// Whether its strength goes with the rate of strain, in stages that take time.
     pub fn goes_with_rate(&self) -> bool {
         let cone_does = matches!(self.strength, Strength::DruckerPrager { rate: Some(_), .. });
-        cone_does || self.softening.is_some_and(|own| own.rate.is_some())
+        cone_does || self.softening.is_some_and(|curves| curves.rate.is_some())
     }
 
     /// The constitutive law; where strength, friction or stiffness vary, that of the greatest, of which particles have multiples.
@@ -139,7 +139,7 @@ impl Material {
         let law = (self.law_on(cell)).map_err(|error| format!(": {error}"))?;
         let (Some(least), Some(greatest)) = (
             self.profiles.friction.as_ref().and_then(Profile::least),
-            (self.strength.friction_angle()).filter(|own| *own > 0.0),
+            (self.strength.friction_angle()).filter(|angle| *angle > 0.0),
         ) else {
             return Ok(());
         };

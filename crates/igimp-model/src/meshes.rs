@@ -1,4 +1,4 @@
-//! The meshes of a study, and what keeps them meshes of one problem.
+//! The meshes of a study, and the differences of their problems.
 
 use igimp_text::short;
 
@@ -59,7 +59,7 @@ pub fn differences<const D: usize>(case: &Case<D>) -> Vec<String> {
     let (Some(&first), Some(&last)) = (parts.first(), parts.last()) else {
         return Vec::new();
     };
-    let mut told = Vec::new();
+    let mut remarks = Vec::new();
     let keeps_its_place = |end: f64| {
         let share = offset(case, end);
         parts.iter().all(|&parts| {
@@ -69,7 +69,7 @@ pub fn differences<const D: usize>(case: &Case<D>) -> Vec<String> {
     };
     for end in footing_ends(case) {
         if !keeps_its_place(end) {
-            told.push(format!(
+            remarks.push(format!(
                 "the edge of the footing at x = {} m has another place in its cell on every mesh: the \
                  meshes are those of footings of different width",
                 short(end)
@@ -79,7 +79,7 @@ pub fn differences<const D: usize>(case: &Case<D>) -> Vec<String> {
     for part in &case.rigid {
         for end in upright_sides(case, part) {
             if !keeps_its_place(end) {
-                told.push(format!(
+                remarks.push(format!(
                     "the side of the rigid body `{}` at x = {} m has another place in its cell on every \
                      mesh: it acts wider or narrower by another share of the cell on each",
                     part.name,
@@ -99,13 +99,13 @@ pub fn differences<const D: usize>(case: &Case<D>) -> Vec<String> {
                 })
         });
         if moves {
-            told.push(format!(
+            remarks.push(format!(
                 "box `{}` holds more nodes at its edges on the finer meshes: it is larger there",
                 held.name
             ));
         }
     }
-    told
+    remarks
 }
 
 /// The ends of rigid footings that do not lie at a side of the grid \[m\].

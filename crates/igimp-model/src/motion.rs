@@ -1,4 +1,4 @@
-//! What moves soil in time, and when it has come to rest.
+//! Motion of soil in time, and when it has come to rest.
 
 pub(crate) mod calm;
 pub(crate) mod ground_motion;

@@ -100,7 +100,7 @@ pub enum Quantity {
     Top,
     /// Time since the first stage that takes some \[s\].
     Time,
-    /// Water that leaves the ground in the flow of a condition of the water; or of its sections one, and what passes it towards
+    /// Water that leaves the ground in the flow of a condition of the water; or the flow through one of its sections towards
     /// the positive axis \[m²/s; m³/s in space\].
     Discharge(usize, Option<usize>),
     /// Kinetic energy, in stages that take time \[J/m; J in space\].

@@ -15,7 +15,7 @@ pub struct ReinforcementPart<const D: usize> {
     pub capacity: f64,
     /// Bond per length \[N/m², in space N/m\].
     pub bond: f64,
-    /// Force that its plate, or what it is fastened to, carries at the head and at the end \[N/m, in space N\].
+    /// Force that its plate, or its fastening, carries at the head and at the end \[N/m, in space N\].
     pub fastened: [f64; 2],
     /// Length from the head on that has no bond and is one bar \[m\].
     pub free_length: f64,
@@ -58,7 +58,7 @@ pub fn distance<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     way[..D - 1]
         .iter()
         .rev()
-        .fold(way[D - 1], |so_far, own| own.hypot(so_far))
+        .fold(way[D - 1], |so_far, side| side.hypot(so_far))
 }
 
 /// Kinds of reinforcement.

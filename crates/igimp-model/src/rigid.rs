@@ -110,7 +110,7 @@ impl<const D: usize> RigidPart<D> {
     pub fn moments_of_inertia(&self, gravity: f64) -> [[f64; 3]; 3] {
         let mass = self.mass(gravity);
         let squared = self.shape.squared_gyration(&self.shape.centroid());
-        squared.map(|row| row.map(|own| mass * own))
+        squared.map(|row| row.map(|square| mass * square))
     }
 
     /// From its reference point to its centre of mass, as it starts \[m\]; none where they differ by round-off.
@@ -119,9 +119,9 @@ impl<const D: usize> RigidPart<D> {
         let places = lower.iter().chain(&upper).chain(&self.reference);
         let largest = places.fold(0.0, |most: f64, x| most.max(x.abs()));
         std::array::from_fn(|axis| {
-            let own = self.centre_of_mass[axis] - self.reference[axis];
-            if own.abs() > 1e-12 * largest {
-                own
+            let arm = self.centre_of_mass[axis] - self.reference[axis];
+            if arm.abs() > 1e-12 * largest {
+                arm
             } else {
                 0.0
             }
@@ -196,8 +196,8 @@ impl RigidForm<2> for RigidShape {
         match self {
             Self::Polygon(corners) => {
                 let [x, y] = about;
-                let own: Vec<_> = corners.iter().map(|at| [at[0] - x, at[1] - y]).collect();
-                Surface::polygon(&own, rounding, cell)
+                let shifted: Vec<_> = corners.iter().map(|at| [at[0] - x, at[1] - y]).collect();
+                Surface::polygon(&shifted, rounding, cell)
             }
             Self::Circle { radius, .. } => Surface::circle(*radius, cell),
         }
@@ -245,11 +245,11 @@ impl RigidForm<2> for RigidShape {
     fn squared_gyration(&self, about: &[f64; 2]) -> [[f64; 3]; 3] {
         let polar = match self {
             Self::Polygon(corners) => {
-                let own = |at: &[f64; 2]| [at[0] - about[0], at[1] - about[1]];
+                let off = |at: &[f64; 2]| [at[0] - about[0], at[1] - about[1]];
                 let next = corners.iter().cycle().skip(1);
                 let (mut area, mut moment) = (0.0, 0.0);
                 for (p, q) in std::iter::zip(corners, next) {
-                    let (p, q) = (own(p), own(q));
+                    let (p, q) = (off(p), off(q));
                     let cross = p[0] * q[1] - p[1] * q[0];
                     let squares = p[0] * p[0] + p[1] * p[1] + q[0] * q[0] + q[1] * q[1];
                     area += 0.5 * cross;
@@ -270,10 +270,10 @@ impl RigidForm<2> for RigidShape {
     fn words(&self) -> [String; 2] {
         let point = |[x, y]: [f64; 2]| format!("({}, {})", short(x), short(y));
         match self {
-            Self::Polygon(own) => {
+            Self::Polygon(points) => {
                 let (lower, upper) = self.bounds();
                 let [width, height] = [0, 1].map(|axis| short(upper[axis] - lower[axis]));
-                let corners: Vec<String> = own.iter().copied().map(point).collect();
+                let corners: Vec<String> = points.iter().copied().map(point).collect();
                 [corners.join(" "), format!("{width} × {height}")]
             }
             Self::Circle { centre, radius } => [
@@ -344,7 +344,7 @@ pub enum Adhesion {
     Share(f64),
 }
 
-/// How a stage moves a rigid body. What it does not mention goes on as before.
+/// How a stage moves a rigid body. All else goes on as before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidMove {
     /// Index of the body.
@@ -373,7 +373,7 @@ pub enum RigidDrive {
     /// A further displacement \[m\] or rotation \[rad\] by the end of the stage.
     By(f64),
     /// A force \[N/m\] or moment about the reference point \[N\] at the end of the stage, on the whole
-    /// body, raised evenly from what acted before. It stays; zero leaves the body free.
+    /// body, raised evenly from the one before. It stays; zero leaves the body free.
     Force(f64),
 }
 

@@ -1,4 +1,4 @@
-//! Stages: what happens, in order.
+//! Stages of a case, in order.
 
 pub(crate) mod driven;
 
@@ -42,8 +42,8 @@ impl Stage {
     /// How long it lasts; zero in statics \[s\].
     pub fn duration(&self) -> f64 {
         match (&self.kind, &self.consolidation) {
-            (StageKind::Dynamic(own), _) => own.duration,
-            (_, own) => own.as_ref().map_or(0.0, |own| own.duration),
+            (StageKind::Dynamic(motion), _) => motion.duration,
+            (_, flow) => flow.as_ref().map_or(0.0, |flow| flow.duration),
         }
     }
 }
@@ -179,7 +179,7 @@ pub struct Dynamic {
     /// The share of its largest value to which kinetic energy has to fall for the stage to end \[-\]; none: it lasts its whole
     /// duration.
     pub at_rest: Option<f64>,
-    /// What lies beyond the walls of the grid.
+    /// The ground beyond the walls of the grid.
     pub walls: StageWalls,
     /// Motion of the ground that the body stands on; none: it stands still.
     pub ground_motion: Option<GroundMotion>,
@@ -189,7 +189,7 @@ pub struct Dynamic {
     pub newmark_from: Option<usize>,
 }
 
-/// What lies beyond the walls of the grid during motion.
+/// The ground beyond the walls of the grid during motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StageWalls {
     /// Walls with dashpots, by axis and whether it is the upper end.
@@ -226,7 +226,7 @@ pub fn search_of(
         }
         let of_state = |&stage: &usize| {
             let mut state = from(stage);
-            while let Some(search) = state.filter(|&own| is_search(own)) {
+            while let Some(search) = state.filter(|&before| is_search(before)) {
                 state = from(search);
             }
             is_search(stage) && state == at

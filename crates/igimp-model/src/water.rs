@@ -1,4 +1,4 @@
-//! Water in the ground: conditions that stages move between, and what materials do with it.
+//! Water in the ground: conditions that stages move between, and the drainage of materials.
 
 pub(crate) mod seepage;
 
@@ -19,11 +19,11 @@ impl<const D: usize> Case<D> {
             Some(from) => self.bodies_after(from),
             None => self.bodies.iter().map(|body| body.from_start).collect(),
         };
-        if let StageKind::Construction(own) = &stage.kind {
-            for &body in &own.place {
+        if let StageKind::Construction(plan) = &stage.kind {
+            for &body in &plan.place {
                 there[body] = true;
             }
-            for &body in &own.remove {
+            for &body in &plan.remove {
                 there[body] = false;
             }
         }
@@ -43,8 +43,8 @@ impl<const D: usize> Case<D> {
         let mut at = stage;
         while let Some(stage) = at {
             let stage = &self.stages[stage];
-            if let StageKind::Construction(own) = &stage.kind
-                && let Some((_, material)) = own.materials.iter().find(|(other, _)| *other == body)
+            if let StageKind::Construction(plan) = &stage.kind
+                && let Some((_, material)) = plan.materials.iter().find(|(other, _)| *other == body)
             {
                 return *material;
             }
@@ -61,7 +61,7 @@ impl<const D: usize> Case<D> {
             None => (!self.water.is_empty()).then_some(0),
         };
         match &stage.kind {
-            StageKind::Construction(own) => own.water.or(before),
+            StageKind::Construction(plan) => plan.water.or(before),
             _ => before,
         }
     }
@@ -69,7 +69,7 @@ impl<const D: usize> Case<D> {
     /// Whether there is water in pores, given or held by undrained soil: only then do total and effective stress differ.
     pub fn has_pore_water(&self) -> bool {
         let holds = |drainage: Drainage| matches!(drainage, Drainage::Undrained { .. });
-        !self.water.is_empty() || self.materials.iter().any(|own| holds(own.drainage))
+        !self.water.is_empty() || self.materials.iter().any(|soil| holds(soil.drainage))
     }
 }
 
@@ -124,7 +124,7 @@ impl PoreSource {
                 let level = level.or_else(|| terrain.height_at(nearest()));
                 Some(level.unwrap_or(f64::NEG_INFINITY))
             }
-            Self::Drained(own) => Some(own.level(&in_space(place))),
+            Self::Drained(drained) => Some(drained.level(&in_space(place))),
             Self::Dry | Self::Points(_) | Self::Ratio(_) | Self::Seepage(_) => None,
         }
     }
@@ -149,7 +149,7 @@ impl Drained {
     /// A table at `inside` within the ground that is made of regions, and at `outside`, not above it, over lower ground \[m\].
     pub fn new(inside: f64, outside: f64, ground: Vec<Arc<dyn Region<3>>>) -> Self {
         let mut within = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-        for (lower, upper) in ground.iter().map(|own| own.bounds()) {
+        for (lower, upper) in ground.iter().map(|region| region.bounds()) {
             for axis in 0..3 {
                 within[0][axis] = within[0][axis].min(lower[axis]);
                 within[1][axis] = within[1][axis].max(upper[axis]);
@@ -181,7 +181,7 @@ impl Drained {
     fn level(&self, place: &[f64; 3]) -> f64 {
         let [lower, upper] = &self.within;
         let place = std::array::from_fn(|axis| place[axis].max(lower[axis]).min(upper[axis]));
-        let tops = self.ground.iter().filter_map(|own| own.top(&place));
+        let tops = self.ground.iter().filter_map(|region| region.top(&place));
         tops.fold(self.outside, f64::max).min(self.inside)
     }
 }

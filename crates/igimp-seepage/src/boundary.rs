@@ -1,4 +1,4 @@
-//! What holds at the faces of the ground: the condition of a box, free water, or nothing that is said.
+//! Conditions at the faces of the ground: that of a box, free water, or none that is stated.
 
 use igimp_shape::Grid;
 
@@ -8,7 +8,7 @@ use crate::ground::{Cell, Facet};
 /// Faces that rise less than this are upright or hang over \[-\].
 const UPRIGHT: f64 = 1e-6;
 
-/// What holds at a facet.
+/// The condition at a facet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum At {
     /// This head \[m\].
@@ -20,7 +20,7 @@ pub(crate) enum At {
     Closed,
 }
 
-/// A facet with what holds there, and the condition that says so.
+/// A facet with its condition, and the owner of that.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Held<const D: usize> {
     pub(crate) cell: usize,
@@ -36,7 +36,7 @@ pub(crate) fn reach<const D: usize>(grid: &Grid<D>) -> f64 {
     1e-6 * spans.fold(f64::INFINITY, f64::min)
 }
 
-/// What holds at the facets, in the order of cells.
+/// The conditions at the facets, in the order of cells.
 pub(crate) fn held<const D: usize>(
     cells: &[Cell<D>],
     conditions: &Conditions<D>,
@@ -45,11 +45,11 @@ pub(crate) fn held<const D: usize>(
 ) -> Vec<Held<D>> {
     let reach = reach(grid);
     let mut held = Vec::new();
-    for (cell, own) in cells.iter().enumerate() {
-        for facet in &own.facets {
+    for (index, cell) in cells.iter().enumerate() {
+        for facet in &cell.facets {
             let (at, owner) = at(facet, conditions, free, reach);
             held.push(Held {
-                cell,
+                cell: index,
                 facet: *facet,
                 at,
                 owner,
@@ -59,7 +59,7 @@ pub(crate) fn held<const D: usize>(
     held
 }
 
-/// What holds at a facet, and who says so.
+/// The condition at a facet, and its owner.
 fn at<const D: usize>(
     facet: &Facet<D>,
     conditions: &Conditions<D>,
@@ -75,13 +75,13 @@ fn at<const D: usize>(
         (At::Closed, faces + 1)
     };
     let mut boxes = (conditions.faces.iter().enumerate().rev())
-        .filter(|(_, own)| own.within.holds(&facet.x, reach))
+        .filter(|(_, face)| face.within.holds(&facet.x, reach))
         .peekable();
-    let says_nothing = |what: OnFaces| matches!(what, OnFaces::Head(head) if !is_below(head));
-    let is_above_level = boxes.peek().is_some_and(|(_, own)| says_nothing(own.what));
+    let says_nothing = |kind: OnFaces| matches!(kind, OnFaces::Head(head) if !is_below(head));
+    let is_above_level = boxes.peek().is_some_and(|(_, top)| says_nothing(top.what));
     // Above its level a head says nothing, and the box before it decides.
-    let last = boxes.find(|(_, own)| !says_nothing(own.what));
-    match last.map(|(index, own)| (index, own.what)) {
+    let last = boxes.find(|(_, face)| !says_nothing(face.what));
+    match last.map(|(index, face)| (index, face.what)) {
         None if is_above_level => return else_at,
         Some((index, OnFaces::Head(head))) => return (At::Head(head), index),
         Some((index, OnFaces::Inflow(inflow))) => return (At::Inflow(inflow), index),
@@ -92,7 +92,7 @@ fn at<const D: usize>(
     if let Some(level) = free(&facet.x).filter(wets) {
         return (At::Head(level), faces);
     }
-    match last.map(|(index, own)| (index, own.what)) {
+    match last.map(|(index, face)| (index, face.what)) {
         // No rain falls on upright faces and undersides: they are as if nothing were said.
         Some((index, OnFaces::Recharge(rain))) if rises > UPRIGHT => {
             (At::Open(rain * rises), index)

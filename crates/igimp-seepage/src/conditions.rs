@@ -1,4 +1,4 @@
-//! What a flow is given: soils, heads, flows, and what is asked of it.
+//! Conditions of a flow: soils, heads, flows, and the results that are asked for.
 
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ pub struct Soil {
     pub across: f64,
     /// Angle by which the bedding rises towards +x \[rad\].
     pub angle: f64,
-    /// What it keeps where it is not saturated.
+    /// Its curve of permeability and water where it is not saturated.
     pub curve: Curve,
     /// Share of its volume that it gives back as water where it drains \[-\]; flows in time need it.
     pub drainable: f64,
@@ -80,14 +80,14 @@ impl<const D: usize> Extent<D> {
     }
 }
 
-/// What holds on the faces of the ground within a box.
+/// The condition on the faces of the ground within a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OnFaces {
     /// Water of this head \[m\] stands before them; above its level they are as if nothing were said.
     Head(f64),
     /// So much water enters by the area of the face \[m/s\]; negative leaves.
     Inflow(f64),
-    /// So much rain falls by the area in plan on faces that rise \[m/s\]; what cannot enter runs off, and water may come out. Other
+    /// So much rain falls by the area in plan on faces that rise \[m/s\]; the excess runs off, and water may come out. Other
     /// faces are as if nothing were said.
     Recharge(f64),
     /// Water comes out where its pressure would be positive, and none enters: a seepage face, a filter.
@@ -96,7 +96,7 @@ pub enum OnFaces {
     Closed,
 }
 
-/// What holds within a box of the ground.
+/// The condition within a box of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum InGround {
     /// A head \[m\]: a well that is kept at its level, a spring.
@@ -116,7 +116,7 @@ pub struct Named<const D: usize, T> {
     pub name: String,
     /// Where it holds.
     pub within: Extent<D>,
-    /// What holds.
+    /// The condition.
     pub what: T,
 }
 

@@ -31,7 +31,7 @@ pub(crate) struct Pores {
     pub(crate) specific_storage: f64,
 }
 
-/// What the curves of a solution share.
+/// Settings that the curves of a solution share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Relative {
     /// Height over which a ramp falls \[m\].
@@ -70,11 +70,11 @@ impl Relative {
                 Slope(value, self.exponent * alpha * value)
             }
             Curve::VanGenuchten { alpha, n } => {
-                let own = van_genuchten(-alpha * psi, n);
-                let value = own.0.powf(self.exponent);
+                let base = van_genuchten(-alpha * psi, n);
+                let value = base.0.powf(self.exponent);
                 Slope(
                     value,
-                    -alpha * own.1 * self.exponent * value / own.0.max(f64::MIN_POSITIVE),
+                    -alpha * base.1 * self.exponent * value / base.0.max(f64::MIN_POSITIVE),
                 )
             }
         };
@@ -117,7 +117,7 @@ impl Relative {
 #[derive(Clone, Copy, Debug)]
 struct Slope(f64, f64);
 
-/// What soil keeps of its permeability along level lines and along upright ones \[-\].
+/// Share of its permeability that soil keeps along level lines and along upright ones \[-\].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shares {
     level: Slope,
@@ -125,7 +125,7 @@ pub(crate) struct Shares {
 }
 
 impl Shares {
-    /// What is kept of a permeability, symmetric as that is, and its slope by the pressure head (eq. 79b).
+    /// The part that is kept of a permeability, symmetric as that is, and its slope by the pressure head (eq. 79b).
     pub(crate) fn of<const D: usize>(&self, tensor: &[[f64; D]; D]) -> [[[f64; D]; D]; 2] {
         let Self { level, upright } = self;
         let between = (level.0 * upright.0).sqrt();

@@ -1,4 +1,4 @@
-//! What cannot be solved.
+//! Flows that cannot be solved.
 
 use igimp_linear::LinearSolverError;
 use thiserror::Error;
@@ -19,21 +19,21 @@ pub enum SeepageError {
     )]
     NotFed,
     /// A box of a condition touches no soil or no face.
-    #[error("`{name}` {what}")]
+    #[error("`{name}` {problem}")]
     Empty {
         /// Name of the condition.
         name: String,
-        /// What it misses.
-        what: &'static str,
+        /// The fault.
+        problem: &'static str,
     },
     /// A number that does not serve.
-    #[error("{what} is {value}, and has to be {wanted}")]
+    #[error("{quantity} is {value}, and has to be {wanted}")]
     Value {
         /// The number.
-        what: String,
+        quantity: String,
         /// Its value.
         value: f64,
-        /// What it has to be.
+        /// The range that it has to be in.
         wanted: &'static str,
     },
     /// Corrections that do not lead to a balance of water.

@@ -1,4 +1,4 @@
-//! What a flow answers: heads, pressures, velocities, discharges and the free surface.
+//! The result of a flow: heads, pressures, velocities, discharges and the free surface.
 
 mod sections;
 
@@ -14,9 +14,9 @@ use crate::system::{Flows, System, largest};
 pub struct Discharge {
     /// Its name.
     pub name: String,
-    /// What enters the ground there; of a section what passes towards the positive axis.
+    /// Water that enters the ground there; of a section the flow towards the positive axis.
     pub inflow: f64,
-    /// What leaves the ground there; of a section nothing.
+    /// Water that leaves the ground there; of a section none.
     pub outflow: f64,
 }
 
@@ -49,7 +49,7 @@ pub struct Seepage<const D: usize> {
     pub width: f64,
     /// Corrections that it took.
     pub corrections: usize,
-    /// Largest imbalance of a node over all that enters; at rest over a tenth of what its heads would drive through a cell \[-\].
+    /// Largest imbalance of a node over all that enters; at rest over a tenth of the flow that its heads would drive through a cell \[-\].
     pub residual: f64,
     /// Number of heads.
     pub unknowns: usize,
@@ -73,7 +73,7 @@ impl<const D: usize> Seepage<D> {
             is_ground[node] = true;
         }
         let through = Through::of(system, heads, &relative);
-        let sum = |own: &[f64]| own.iter().sum::<f64>();
+        let sum = |values: &[f64]| values.iter().sum::<f64>();
         let (inflow, outflow) = (sum(&flows.inwards), sum(&flows.outwards));
         Self {
             heads: by_node(system, heads),
@@ -84,7 +84,7 @@ impl<const D: usize> Seepage<D> {
             sections: sections::sections(system, heads, &relative),
             inflow,
             outflow,
-            outflow_at_lower_floor: dry.map(|own| sum(&own.outwards)),
+            outflow_at_lower_floor: dry.map(|dry| sum(&dry.outwards)),
             floor: relative.floor,
             width: relative.width,
             corrections,
@@ -149,14 +149,14 @@ pub(crate) fn interpolated<const D: usize>(grid: &Grid<D>, heads: &[f64], x: &[f
         return f64::NAN;
     };
     let basis = Basis::at(ends_of(grid, place), &x);
-    let mut own = [0.0; CORNERS];
+    let mut corners = [0.0; CORNERS];
     for (k, node) in nodes_of(grid, place).enumerate() {
-        own[k] = heads[node];
+        corners[k] = heads[node];
     }
-    basis.head(&own)
+    basis.head(&corners)
 }
 
-/// What passes through cells.
+/// The flow through cells.
 struct Through<const D: usize> {
     filled: Vec<f64>,
     velocities: Vec<[f64; D]>,
@@ -171,10 +171,10 @@ impl<const D: usize> Through<D> {
         };
         for cell in 0..system.cells.len() {
             let place = system.cells[cell].place;
-            let own = system.heads(cell, heads);
+            let corners = system.heads(cell, heads);
             let (mut sum, mut volume) = ([0.0; D], 0.0);
-            for point in system.points(cell, &own, relative) {
-                let velocity = system.velocity(cell, &point, &own, relative);
+            for point in system.points(cell, &corners, relative) {
+                let velocity = system.velocity(cell, &point, &corners, relative);
                 volume += point.volume;
                 for axis in 0..D {
                     sum[axis] += point.volume * velocity[axis];
@@ -187,12 +187,12 @@ impl<const D: usize> Through<D> {
     }
 }
 
-/// Flows with the names of who lets them in.
+/// Flows with the names of the conditions that let them in.
 fn discharges<const D: usize>(system: &System<'_, D>, flows: &Flows) -> Vec<Discharge> {
     let conditions = system.conditions;
-    let names = (conditions.faces.iter().map(|own| own.name.as_str()))
+    let names = (conditions.faces.iter().map(|face| face.name.as_str()))
         .chain(["free water", "open faces"])
-        .chain(conditions.regions.iter().map(|own| own.name.as_str()));
+        .chain(conditions.regions.iter().map(|region| region.name.as_str()));
     let of = |(k, name): (usize, &str)| Discharge {
         name: name.to_owned(),
         inflow: flows.inwards[k],
@@ -212,13 +212,13 @@ fn extend<const D: usize>(grid: &Grid<D>, heads: &mut [f64]) {
             for axis in 0..D {
                 for step in [-1, 1] {
                     let mut beside = place;
-                    let Some(own) = beside[axis].checked_add_signed(step) else {
+                    let Some(next) = beside[axis].checked_add_signed(step) else {
                         continue;
                     };
-                    if own >= grid.axes[axis].node_count() {
+                    if next >= grid.axes[axis].node_count() {
                         continue;
                     }
-                    beside[axis] = own;
+                    beside[axis] = next;
                     let head = heads[grid.node_index(beside)];
                     if !head.is_nan() {
                         sum += head;

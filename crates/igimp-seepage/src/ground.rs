@@ -1,6 +1,6 @@
-//! The ground on the grid: what soil each cell holds, and the faces of the ground within it.
+//! The ground on the grid: the soil in each cell, and the faces of the ground within it.
 //!
-//! Faces are found from the parts of bodies alone, by the theorem of Gauss: what the sides of a box leave open is the face
+//! Faces are found from the parts of bodies alone, by the theorem of Gauss: the open rest of the sides of a box is the face
 //! within it. So it does not matter whether a face lies on a line of the grid, and bodies that touch leave none between them.
 
 use igimp_geometry::region::Region;
@@ -48,7 +48,7 @@ pub type Scale<'a, const D: usize> = &'a (dyn Fn(&[f64; D]) -> f64 + Sync);
 /// A body as water sees it.
 #[derive(Clone, Copy)]
 pub struct SeepageBody<'a, const D: usize> {
-    /// What it fills.
+    /// The region that it fills.
     pub region: &'a dyn Region<D>,
     /// Its soil, by index.
     pub soil: usize,
@@ -119,15 +119,15 @@ impl<'a, const D: usize> Bodies<'a, D> {
         } else {
             (from[axis], to[axis]) = (at, at + thick);
         }
-        let own = self.within(from, to);
-        let mut moment = own.moment.map(|moment| moment / thick);
-        let area = own.volume / thick;
+        let slab = self.within(from, to);
+        let mut moment = slab.moment.map(|moment| moment / thick);
+        let area = slab.volume / thick;
         moment[axis] = area * at;
         (moment, area)
     }
 
     /// The faces of the ground at the sides of a box, and with `inside` those within it.
-    fn facets(&self, ends: [[f64; D]; 2], own: &Filling<D>, inside: bool) -> Vec<Facet<D>> {
+    fn facets(&self, ends: [[f64; D]; 2], filling: &Filling<D>, inside: bool) -> Vec<Facet<D>> {
         let [lower, upper] = ends;
         let sizes: [f64; D] = std::array::from_fn(|axis| upper[axis] - lower[axis]);
         let volume: f64 = sizes.iter().product();
@@ -135,7 +135,7 @@ impl<'a, const D: usize> Bodies<'a, D> {
         let mut open = [0.0; D];
         let mut moments = [[0.0; D]; D];
         for axis in 0..D {
-            moments[axis][axis] = own.volume;
+            moments[axis][axis] = filling.volume;
             for is_upper in [false, true] {
                 let side = Side { axis, is_upper };
                 let sign = if is_upper { 1.0 } else { -1.0 };
@@ -153,17 +153,17 @@ impl<'a, const D: usize> Bodies<'a, D> {
                         x: std::array::from_fn(|d| (moment[d] - beyond[d]) / bare),
                         normal,
                         area: bare,
-                        soil: own.soil,
+                        soil: filling.soil,
                     });
                 }
             }
         }
-        let area = open.iter().map(|own| own * own).sum::<f64>().sqrt();
+        let area = open.iter().map(|x| x * x).sum::<f64>().sqrt();
         let largest = sizes
             .iter()
             .fold(0.0, |most: f64, size| most.max(volume / size));
         if inside && area > SMALL * largest {
-            let normal = open.map(|own| own / area);
+            let normal = open.map(|x| x / area);
             let centre = std::array::from_fn(|d| {
                 let along: f64 = (0..D).map(|axis| moments[d][axis] * normal[axis]).sum();
                 (along / area).clamp(lower[d], upper[d])
@@ -172,7 +172,7 @@ impl<'a, const D: usize> Bodies<'a, D> {
                 x: centre,
                 normal,
                 area,
-                soil: own.soil,
+                soil: filling.soil,
             });
         }
         facets
@@ -238,9 +238,9 @@ pub(crate) fn cells<const D: usize>(
         });
         let [lower, upper] = ends_of(grid, place);
         let touched = conditions.regions.iter();
-        let is_touched = { touched }.any(|own| own.within.meets(&lower, &upper));
+        let is_touched = { touched }.any(|region| region.within.meets(&lower, &upper));
         let is_whole = filled >= WHOLE && filling.bodies == 1 && !is_touched;
-        let mut own = Cell {
+        let mut cell = Cell {
             place,
             filled: filled.min(1.0),
             whole: is_whole.then_some(filling.soil),
@@ -250,15 +250,15 @@ pub(crate) fn cells<const D: usize>(
         };
         let body = &bodies.bodies[filling.body];
         if is_whole && body.scale.is_some() {
-            own.samples = gauss([lower, upper], &FOUR, filling.soil);
-            for point in &mut own.samples {
+            cell.samples = gauss([lower, upper], &FOUR, filling.soil);
+            for point in &mut cell.samples {
                 point.scale = body.scale_at(&point.x);
             }
         }
         if !is_whole || !is_inner {
-            subdivide(bodies, conditions, [lower, upper], &mut own, is_inner);
+            subdivide(bodies, conditions, [lower, upper], &mut cell, is_inner);
         }
-        cells.push(own);
+        cells.push(cell);
     }
     cells
 }
@@ -285,9 +285,9 @@ fn subdivide<const D: usize>(
                 to[axis] = at(k + 1);
             }
         }
-        let own = bodies.within(from, to);
+        let filled = bodies.within(from, to);
         let size: f64 = (0..D).map(|axis| to[axis] - from[axis]).product();
-        if own.volume <= 1e-12 * size {
+        if filled.volume <= 1e-12 * size {
             continue;
         }
         if cell.whole.is_none() {
@@ -311,10 +311,10 @@ fn subdivide<const D: usize>(
             }
         }
         if !is_inner {
-            let x = own.moment.map(|moment| moment / own.volume);
-            let (soil, _) = acting(conditions, &x, own.soil);
-            let filling = Filling { soil, ..own };
-            let is_cut = own.volume < WHOLE * size;
+            let x = filled.moment.map(|moment| moment / filled.volume);
+            let (soil, _) = acting(conditions, &x, filled.soil);
+            let filling = Filling { soil, ..filled };
+            let is_cut = filled.volume < WHOLE * size;
             let mut facets = bodies.facets([from, to], &filling, is_cut);
             for facet in &mut facets {
                 facet.area *= conditions.thickness(facet.x[0]);
@@ -331,9 +331,9 @@ fn acting<const D: usize>(
     soil: usize,
 ) -> (usize, Option<usize>) {
     let (mut soil, mut region) = (soil, None);
-    for (index, own) in conditions.regions.iter().enumerate() {
-        if own.within.holds(x, 0.0) {
-            match own.what {
+    for (index, named) in conditions.regions.iter().enumerate() {
+        if named.within.holds(x, 0.0) {
+            match named.what {
                 InGround::Soil(other) => soil = other,
                 _ => region = Some(index),
             }

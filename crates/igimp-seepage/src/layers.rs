@@ -23,7 +23,7 @@ pub(crate) fn laminate<const D: usize>(
     for point in points {
         let tensor = &tensors[point.soil];
         let share = point.volume / volume;
-        let tensor = tensor.map(|row| row.map(|own| point.scale * own));
+        let tensor = tensor.map(|row| row.map(|k| point.scale * k));
         let pull = apply(&tensor, &normal);
         let through = dot(&pull, &normal);
         resistance += share / through;
@@ -48,8 +48,8 @@ fn ascent<const D: usize>(points: &[Point<D>]) -> [f64; D] {
     let middle = |weight: &dyn Fn(&Point<D>) -> f64| -> [f64; D] {
         let all: f64 = points.iter().map(weight).sum();
         std::array::from_fn(|axis| {
-            let own = points.iter().map(|point| weight(point) * point.x[axis]);
-            own.sum::<f64>() / all
+            let terms = points.iter().map(|point| weight(point) * point.x[axis]);
+            terms.sum::<f64>() / all
         })
     };
     let (of_volume, of_scale) = (
@@ -62,15 +62,9 @@ fn ascent<const D: usize>(points: &[Point<D>]) -> [f64; D] {
 /// The direction from the middle of one soil to that of the others; none where they have the same.
 fn across<const D: usize>(points: &[Point<D>], first: usize) -> Option<[f64; D]> {
     let middle = |is_first: bool| -> [f64; D] {
-        let own = || {
-            points
-                .iter()
-                .filter(|point| (point.soil == first) == is_first)
-        };
-        let volume: f64 = own().map(|point| point.volume).sum();
-        std::array::from_fn(|axis| {
-            own().map(|point| point.volume * point.x[axis]).sum::<f64>() / volume
-        })
+        let side = || points.iter().filter(|p| (p.soil == first) == is_first);
+        let volume: f64 = side().map(|point| point.volume).sum();
+        std::array::from_fn(|axis| side().map(|p| p.volume * p.x[axis]).sum::<f64>() / volume)
     };
     direction(points, middle(true), middle(false))
 }
@@ -80,15 +74,13 @@ fn across<const D: usize>(points: &[Point<D>], first: usize) -> Option<[f64; D]>
 fn flattest<const D: usize>(points: &[Point<D>], first: usize) -> [f64; D] {
     let middle: [f64; D] = {
         let volume: f64 = points.iter().map(|point| point.volume).sum();
-        std::array::from_fn(|a| {
-            points.iter().map(|own| own.volume * own.x[a]).sum::<f64>() / volume
-        })
+        std::array::from_fn(|a| points.iter().map(|p| p.volume * p.x[a]).sum::<f64>() / volume)
     };
     let moment = |is_first: bool, a: usize, b: usize| {
-        let own = || points.iter().filter(|own| (own.soil == first) == is_first);
-        let volume: f64 = own().map(|own| own.volume).sum();
-        let sum: f64 = own()
-            .map(|own| own.volume * (own.x[a] - middle[a]) * (own.x[b] - middle[b]))
+        let side = || points.iter().filter(|p| (p.soil == first) == is_first);
+        let volume: f64 = side().map(|point| point.volume).sum();
+        let sum: f64 = side()
+            .map(|point| point.volume * (point.x[a] - middle[a]) * (point.x[b] - middle[b]))
             .sum();
         sum / volume
     };
@@ -97,7 +89,7 @@ fn flattest<const D: usize>(points: &[Point<D>], first: usize) -> [f64; D] {
     let size: f64 = (0..D)
         .map(|a| moment(true, a, a) + moment(false, a, a))
         .sum();
-    let largest = |own: &[f64; D]| own.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let largest = |row: &[f64; D]| row.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let Some(mut normal) = (difference.into_iter())
         .filter(|row| largest(row) > 1e-9 * size)
         .max_by(|a, b| largest(a).total_cmp(&largest(b)))
@@ -108,7 +100,7 @@ fn flattest<const D: usize>(points: &[Point<D>], first: usize) -> [f64; D] {
     for _ in 0..POWERS {
         let next = apply(&difference, &apply(&difference, &normal));
         let length = dot(&next, &next).sqrt();
-        normal = next.map(|own| own / length);
+        normal = next.map(|x| x / length);
     }
     normal
 }
@@ -133,7 +125,7 @@ fn direction<const D: usize>(
     let size = (points.iter())
         .flat_map(|point| (0..D).map(|axis| (point.x[axis] - from[axis]).abs()))
         .fold(0.0, f64::max);
-    (length > 1e-9 * size).then(|| apart.map(|own| own / length))
+    (length > 1e-9 * size).then(|| apart.map(|x| x / length))
 }
 
 fn is_same(a: f64, b: f64) -> bool {
@@ -169,13 +161,13 @@ mod tests {
                 })
                 .collect();
             let even = |k: f64| [[k, 0.0], [0.0, k]];
-            let own = laminate(&points, &[even(1.0), even(1e-4)]).unwrap();
-            let walls = points.iter().filter(|own| own.soil == 1).count() as f64;
+            let tensor = laminate(&points, &[even(1.0), even(1e-4)]).unwrap();
+            let walls = points.iter().filter(|point| point.soil == 1).count() as f64;
             let share = walls / points.len() as f64;
             let series = 1.0 / (share / 1e-4 + 1.0 - share);
             let beside = share * 1e-4 + 1.0 - share;
-            let across = dot(&apply(&own, &[cos, sin]), &[cos, sin]);
-            let along = dot(&apply(&own, &[-sin, cos]), &[-sin, cos]);
+            let across = dot(&apply(&tensor, &[cos, sin]), &[cos, sin]);
+            let along = dot(&apply(&tensor, &[-sin, cos]), &[-sin, cos]);
             assert!(
                 (across / series - 1.0).abs() < 0.05,
                 "{angle}: {across} {series}"

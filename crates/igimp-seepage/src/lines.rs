@@ -10,7 +10,7 @@ use crate::ground::ends_of;
 /// Steps of a flow line by the cell that it passes.
 const BY_CELL: f64 = 4.0;
 
-/// A line across a cell, and what passes it.
+/// A line across a cell, and the flow through it.
 type Pass = ([[f64; 2]; 2], f64);
 
 impl<const D: usize> Seepage<D> {
@@ -41,11 +41,11 @@ impl<const D: usize> Seepage<D> {
         let beyond = layer + usize::from(share > 0.0);
         let nodes = (0..grid.node_count()).map(|node| grid.node_place(node));
         let nodes: Vec<[usize; 2]> = nodes
-            .map(|own| [layer, beyond].map(|layer| self.grid.node_index(in_ground(own, layer))))
+            .map(|place| [layer, beyond].map(|layer| self.grid.node_index(in_ground(place, layer))))
             .collect();
         let cells = (0..grid.cell_count()).map(|cell| grid.cell_place(cell));
         let cells: Vec<usize> = cells
-            .map(|own| self.grid.cell_index(in_ground(own, layer)))
+            .map(|place| self.grid.cell_index(in_ground(place, layer)))
             .collect();
         let head = |pair: &[usize; 2]| {
             let [lower, upper] = pair.map(|node| self.heads[node]);
@@ -110,7 +110,7 @@ impl Seepage<2> {
 
     /// Lines of equal head \[m\] at so many levels between the highest and the lowest, as pieces within cells.
     pub fn equipotentials(&self, count: usize) -> Vec<[[f64; 2]; 2]> {
-        let heads = || std::iter::zip(&self.heads, &self.is_ground).filter(|(_, own)| **own);
+        let heads = || std::iter::zip(&self.heads, &self.is_ground).filter(|(_, ground)| **ground);
         let lowest = heads().fold(f64::INFINITY, |least, (head, _)| head.min(least));
         let highest = heads().fold(f64::NEG_INFINITY, |most, (head, _)| head.max(most));
         let levels = (1..=count)
@@ -173,7 +173,7 @@ impl Seepage<2> {
                 }
             }
         }
-        let mean = |(sum, count): ([f64; 2], f64)| sum.map(|own| own / f64::max(count, 1.0));
+        let mean = |(sum, count): ([f64; 2], f64)| sum.map(|v| v / f64::max(count, 1.0));
         std::iter::zip(sums, counts).map(mean).collect()
     }
 
@@ -222,7 +222,7 @@ impl Seepage<2> {
     fn trace(&self, start: [f64; 2], sense: f64, velocities: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let fastest = velocities
             .iter()
-            .map(|own| own[0].hypot(own[1]))
+            .map(|v| v[0].hypot(v[1]))
             .fold(0.0, f64::max);
         let cells = self.grid.axes.iter().map(igimp_shape::Axis::cell_count);
         let most = (BY_CELL * 4.0) as usize * cells.sum::<usize>();
@@ -240,7 +240,7 @@ impl Seepage<2> {
             let speed = velocity[0].hypot(velocity[1]);
             let size = (upper[0] - lower[0]).min(upper[1] - lower[1]) / BY_CELL;
             let moves = self.filled[cell] > 0.0 && speed > 1e-4 * fastest;
-            moves.then(|| velocity.map(|own| sense * own / speed * size))
+            moves.then(|| velocity.map(|v| sense * v / speed * size))
         };
         let mut line: Vec<[f64; 2]> = Vec::new();
         let mut x = start;

@@ -152,7 +152,7 @@ impl<'a, const D: usize> Search<'a, D> {
         Ok(())
     }
 
-    /// Residual with what goes into storage, and flows.
+    /// Residual with the flow into storage, and flows.
     fn residual(
         &self,
         heads: &[f64],
@@ -185,7 +185,7 @@ impl<'a, const D: usize> Search<'a, D> {
         }
     }
 
-    /// Takes as much of a correction as lessens the imbalance, or all of it where it is free; what then holds.
+    /// Takes as much of a correction as lessens the imbalance, or all of it where it is free; the balance after it.
     fn correct(
         &mut self,
         (step, before): (&[f64], f64),
@@ -196,7 +196,7 @@ impl<'a, const D: usize> Search<'a, D> {
         let kept = self.heads.clone();
         let moved = |share: f64| {
             let pairs = std::iter::zip(&kept, step);
-            let mut heads: Vec<f64> = pairs.map(|(head, own)| head - share * own).collect();
+            let mut heads: Vec<f64> = pairs.map(|(head, change)| head - share * change).collect();
             if let Some(storing) = storing.filter(|_| !relative.confined) {
                 let soils = &self.system.conditions.soils;
                 let is_sharp = soils.iter().any(|soil| soil.curve == Curve::Ramp);
@@ -204,7 +204,7 @@ impl<'a, const D: usize> Search<'a, D> {
             }
             heads
         };
-        let is_less = |own: &[f64], share: f64| norm(own) < (1.0 - 1e-2 * share) * before;
+        let is_less = |residual: &[f64], share: f64| norm(residual) < (1.0 - 1e-2 * share) * before;
         // All of it is mostly taken: its tangent is made at once.
         self.heads = moved(1.0);
         let whole = self.linearised(relative, storing);
@@ -230,10 +230,10 @@ impl<'a, const D: usize> Search<'a, D> {
         storing: Option<&Storing<'_>>,
     ) -> Result<Balanced, SeepageError> {
         // In time small imbalances of one sign would add up.
-        let off = |own: &Balanced| {
-            let sum = own.residual.iter().sum::<f64>().abs();
-            let sum = storing.map_or(0.0, |_| ALL_OVER_ONE * (sum - own.moved.all_round_off));
-            (own.beyond - own.moved.round_off).max(sum) / own.scale
+        let off = |state: &Balanced| {
+            let sum = state.residual.iter().sum::<f64>().abs();
+            let sum = storing.map_or(0.0, |_| ALL_OVER_ONE * (sum - state.moved.all_round_off));
+            (state.beyond - state.moved.round_off).max(sum) / state.scale
         };
         let mut found = self.linearised(relative, storing);
         for correction in 0..CORRECTIONS {
@@ -273,8 +273,8 @@ fn round_off(matrix: &TangentMatrix, heads: &[f64]) -> Vec<f64> {
 /// The largest of some imbalances without their signs, each less its round-off; infinite with one that is no number.
 fn largest_beyond(imbalances: &[f64], round_off: &[f64]) -> f64 {
     let pairs = std::iter::zip(imbalances, round_off);
-    pairs.fold(0.0, |most, (own, below)| {
-        let beyond = own.abs() - below;
+    pairs.fold(0.0, |most, (imbalance, below)| {
+        let beyond = imbalance.abs() - below;
         if beyond.is_nan() {
             f64::INFINITY
         } else {
@@ -284,7 +284,7 @@ fn largest_beyond(imbalances: &[f64], round_off: &[f64]) -> f64 {
 }
 
 fn norm(values: &[f64]) -> f64 {
-    let sum: f64 = values.iter().map(|own| own * own).sum();
+    let sum: f64 = values.iter().map(|value| value * value).sum();
     if sum.is_finite() {
         sum.sqrt()
     } else {
@@ -300,9 +300,9 @@ pub(crate) fn start_of<const D: usize>(system: &System<'_, D>) -> Option<f64> {
         At::Inflow(_) | At::Closed => None,
     });
     let within = system.conditions.regions.iter();
-    let within = within.filter_map(|own| match own.what {
+    let within = within.filter_map(|region| match region.what {
         InGround::Head(head) => Some(head),
-        InGround::Drain => Some(own.within.lower[D - 1]),
+        InGround::Drain => Some(region.within.lower[D - 1]),
         InGround::Inflow(_) | InGround::Soil(_) => None,
     });
     on_faces.chain(within).reduce(f64::max)
@@ -316,7 +316,7 @@ pub(crate) fn is_fed<const D: usize>(system: &System<'_, D>) -> bool {
         At::Closed => false,
     });
     let within = &system.conditions.regions;
-    let within = within.iter().any(|own| match own.what {
+    let within = within.iter().any(|region| match region.what {
         InGround::Head(_) => true,
         InGround::Inflow(inflow) => inflow > 0.0,
         InGround::Drain | InGround::Soil(_) => false,
@@ -326,9 +326,9 @@ pub(crate) fn is_fed<const D: usize>(system: &System<'_, D>) -> bool {
 
 /// Refuses numbers that do not serve.
 fn check<const D: usize>(conditions: &Conditions<D>) -> Result<(), SeepageError> {
-    let refuse = |what: String, value: f64, wanted| {
+    let refuse = |quantity: String, value: f64, wanted| {
         Err(SeepageError::Value {
-            what,
+            quantity,
             value,
             wanted,
         })
@@ -337,8 +337,8 @@ fn check<const D: usize>(conditions: &Conditions<D>) -> Result<(), SeepageError>
     for (index, soil) in conditions.soils.iter().enumerate() {
         for (name, value) in [("along", soil.along), ("across", soil.across)] {
             if !is_positive(value) {
-                let what = format!("the permeability {name} the bedding of soil {index}");
-                return refuse(what, value, "positive");
+                let quantity = format!("the permeability {name} the bedding of soil {index}");
+                return refuse(quantity, value, "positive");
             }
         }
         if !soil.angle.is_finite() {
@@ -365,31 +365,31 @@ fn check<const D: usize>(conditions: &Conditions<D>) -> Result<(), SeepageError>
 
 /// Refuses conditions that hold nowhere.
 fn check_places<const D: usize>(system: &System<'_, D>) -> Result<(), SeepageError> {
-    let refuse = |name: &str, what| {
+    let refuse = |name: &str, problem| {
         Err(SeepageError::Empty {
             name: name.to_owned(),
-            what,
+            problem,
         })
     };
     let reach = reach(system.grid);
-    let bare = |own: &Named<D, OnFaces>, held: &Held<D>| own.within.holds(&held.facet.x, reach);
-    for own in &system.conditions.faces {
-        if !system.held.iter().any(|held| bare(own, held)) {
+    let bare = |face: &Named<D, OnFaces>, held: &Held<D>| face.within.holds(&held.facet.x, reach);
+    for face in &system.conditions.faces {
+        if !system.held.iter().any(|held| bare(face, held)) {
             return refuse(
-                &own.name,
+                &face.name,
                 "holds no face of the ground: its box has to reach over one",
             );
         }
     }
-    for (index, own) in system.conditions.regions.iter().enumerate() {
+    for (index, region) in system.conditions.regions.iter().enumerate() {
         let points = system.cells.iter().flat_map(|cell| &cell.points);
-        let holds = |point: &crate::basis::Point<D>| match own.what {
-            InGround::Soil(_) => own.within.holds(&point.x, 0.0),
+        let holds = |point: &crate::basis::Point<D>| match region.what {
+            InGround::Soil(_) => region.within.holds(&point.x, 0.0),
             _ => point.region == Some(index),
         };
         if !points.into_iter().any(holds) {
             return refuse(
-                &own.name,
+                &region.name,
                 "holds no point of the ground: make its box as large as half a cell",
             );
         }

@@ -1,7 +1,7 @@
 //! A steady flow.
 //!
 //! Heads begin with those on a grid of cells twice as long, and these on one twice as long again. That changes how many corrections a
-//! flow takes, not what is found: heads on the grid that is asked for balance as ever.
+//! flow takes, not the result: heads on the grid that is asked for balance as ever.
 
 use igimp_shape::{Axis, Grid};
 
@@ -107,8 +107,8 @@ fn start<const D: usize>(
     find(&mut search, (bodies, free), tolerance, few).ok()?;
     let heads = by_node(&search.system, &search.heads);
     let at = |&node: &usize| interpolated(&grid, &heads, &fine.node_position(node));
-    let own = system.nodes.iter().map(at).collect();
-    Some((own, relative_of(&grid, &conditions)))
+    let heads = system.nodes.iter().map(at).collect();
+    Some((heads, relative_of(&grid, &conditions)))
 }
 
 /// Every second node of an axis, and its last.
@@ -126,11 +126,11 @@ mod tests {
     use crate::conditions::{Extent, InGround, Named, OnFaces, Soil};
     use crate::curve::Curve;
 
-    fn named<T>(name: &str, [lower, upper]: [[f64; 2]; 2], what: T) -> Named<2, T> {
+    fn named<T>(name: &str, [lower, upper]: [[f64; 2]; 2], condition: T) -> Named<2, T> {
         Named {
             name: name.to_owned(),
             within: Extent { lower, upper },
-            what,
+            what: condition,
         }
     }
 

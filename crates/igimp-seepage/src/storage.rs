@@ -27,7 +27,7 @@ const NEAR: f64 = 1e-6;
 /// Distance from such a node at which another counts as away from it, over that \[-\].
 const AWAY: f64 = 2.0;
 
-/// What goes into or out of storage \[m^D/s\].
+/// Flow into or out of storage \[m^D/s\].
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Moved {
     /// At all nodes together.
@@ -51,21 +51,21 @@ pub(crate) struct Storing<'a> {
 impl Storage {
     pub(crate) fn of<const D: usize>(system: &System<'_, D>) -> Self {
         let mut volumes = BTreeMap::new();
-        for (cell, own) in system.cells.iter().enumerate() {
-            let ends = ends_of(system.grid, own.place);
-            let corners = &system.corners[cell][..1 << D];
-            if let Some(soil) = own.whole {
-                let volume: f64 = system.grid.cell_size(own.place).iter().product();
+        for (index, cell) in system.cells.iter().enumerate() {
+            let ends = ends_of(system.grid, cell.place);
+            let corners = &system.corners[index][..1 << D];
+            if let Some(soil) = cell.whole {
+                let volume: f64 = system.grid.cell_size(cell.place).iter().product();
                 for (k, &unknown) in corners.iter().enumerate() {
                     // A third into the cell from its corner the thickness is the mean of it by the values of the node.
                     let [near, far] = [ends[k & 1][0], ends[1 - (k & 1)][0]];
                     let thick = system.conditions.thickness((2.0 * near + far) / 3.0);
-                    let own = volume / corners.len() as f64 * thick;
-                    *volumes.entry((unknown, soil)).or_insert(0.0) += own;
+                    let part = volume / corners.len() as f64 * thick;
+                    *volumes.entry((unknown, soil)).or_insert(0.0) += part;
                 }
                 continue;
             }
-            for point in &own.points {
+            for point in &cell.points {
                 let basis = Basis::at(ends, &point.x);
                 for (k, &unknown) in corners.iter().enumerate() {
                     *volumes.entry((unknown, point.body_soil)).or_insert(0.0) +=
@@ -92,8 +92,8 @@ impl Storage {
         let mut found = [vec![0.0; heads.len()], vec![0.0; heads.len()]];
         for &(unknown, soil, volume) in &self.shares {
             let psi = heads[unknown] - self.levels[unknown];
-            let [own, slope] = relative.content(&system.conditions.soils[soil].pores(), psi);
-            found[0][unknown] += volume * own;
+            let [content, slope] = relative.content(&system.conditions.soils[soil].pores(), psi);
+            found[0][unknown] += volume * content;
             found[1][unknown] += volume * slope;
         }
         found
@@ -149,12 +149,12 @@ impl Storage {
             return None;
         }
         let beside = psi + if gathers { 2.0 * near } else { -2.0 * near };
-        let first = self.shares.partition_point(|own| own.0 < unknown);
-        let own = self.shares[first..].iter();
+        let first = self.shares.partition_point(|share| share.0 < unknown);
+        let rest = self.shares[first..].iter();
         let of_soil = |&(_, soil, volume): &(usize, usize, f64)| {
             volume * relative.content(&system.conditions.soils[soil].pores(), beside)[1]
         };
-        Some(own.take_while(|own| own.0 == unknown).map(of_soil).sum())
+        Some(rest.take_while(|s| s.0 == unknown).map(of_soil).sum())
     }
 
     /// Volume of soil by unknown, each soil times a share \[m^D\].
@@ -168,7 +168,7 @@ impl Storage {
 }
 
 impl Storing<'_> {
-    /// Adds to a residual what goes into storage \[m^D/s\], to the tangent its slope.
+    /// Adds the flow into storage to a residual \[m^D/s\], its slope to the tangent.
     pub(crate) fn add<const D: usize>(
         &self,
         system: &System<'_, D>,
@@ -178,11 +178,11 @@ impl Storing<'_> {
     ) -> Moved {
         let [water, slopes] = self.storage.water(system, heads, relative);
         let mut moved = Moved::default();
-        for (unknown, own) in water.iter().enumerate() {
-            let rate = (own - self.before[unknown]) / self.duration;
+        for (unknown, stored) in water.iter().enumerate() {
+            let rate = (stored - self.before[unknown]) / self.duration;
             residual[unknown] += rate;
             moved.rate += rate.abs();
-            let size = own.abs() + slopes[unknown] * heads[unknown].abs();
+            let size = stored.abs() + slopes[unknown] * heads[unknown].abs();
             let round_off = ROUND_OFF * size / self.duration;
             moved.round_off = moved.round_off.max(round_off);
             moved.all_round_off += round_off;
@@ -197,7 +197,7 @@ impl Storing<'_> {
             let at_end = (self.storage).slope_at_end(system, at, relative, gathers);
             let slope = at_end.unwrap_or(*slope);
             let rows = pattern.coupled_to(unknown);
-            let place = rows.partition_point(|own| (*own as usize) < unknown);
+            let place = rows.partition_point(|row| (*row as usize) < unknown);
             values[pattern.first_value[unknown] + place] += slope / self.duration;
         }
         moved

@@ -25,7 +25,7 @@ const CUT_MOST: f64 = 10.0;
 const REGION: f64 = 1e3;
 /// Penalty on jumps of the gradient at cells that are cut \[-\].
 const GHOST: f64 = 0.01;
-/// Share of what heads could drive through a cell that counts as flow \[-\]: below it round-off would decide.
+/// Share of the flow that heads could drive through a cell that counts \[-\]: below it round-off would decide.
 const AT_REST: f64 = 0.1;
 /// Equations of a cell or of two.
 struct Local<'a> {
@@ -86,14 +86,14 @@ pub(crate) struct System<'a, const D: usize> {
     volumes: Vec<f64>,
 }
 
-/// Flows by who lets them in \[m^D/s\]: conditions on faces, free water, open faces, then regions; inwards positive.
+/// Flows by the condition that lets them in \[m^D/s\]: those on faces, free water, open faces, then regions; inwards positive.
 ///
-/// Of faces what enters and what leaves are told apart by node, for what passes single points scatters. A region has one flow.
+/// Of faces inflow and outflow are summed apart by node, for the flow at single points scatters. A region has one flow.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Flows {
     pub(crate) inwards: Vec<f64>,
     pub(crate) outwards: Vec<f64>,
-    /// What enters by who lets it in and by unknown, piece by piece.
+    /// Inflow by its condition and by unknown, piece by piece.
     pieces: Vec<(usize, usize, f64)>,
 }
 
@@ -106,21 +106,21 @@ impl Flows {
         }
     }
 
-    /// Adds up what enters by node, and takes it as entering or leaving.
+    /// Adds up the inflow by node, and takes it as entering or leaving.
     fn add_up(&mut self) {
         // The sort is stable: pieces of a node are added in the order of cells.
         self.pieces
             .sort_by_key(|&(owner, unknown, _)| (owner, unknown));
         let of_node = |a: &(usize, usize, f64), b: &(usize, usize, f64)| (a.0, a.1) == (b.0, b.1);
-        for own in self.pieces.chunk_by(of_node) {
-            let net: f64 = own.iter().map(|(_, _, inwards)| inwards).sum();
-            self.inwards[own[0].0] += net.max(0.0);
-            self.outwards[own[0].0] += (-net).max(0.0);
+        for chunk in self.pieces.chunk_by(of_node) {
+            let net: f64 = chunk.iter().map(|(_, _, inwards)| inwards).sum();
+            self.inwards[chunk[0].0] += net.max(0.0);
+            self.outwards[chunk[0].0] += (-net).max(0.0);
         }
         self.pieces = Vec::new();
     }
 
-    /// Adds what enters at an unknown; that of a region at any, the same for all of it.
+    /// Adds the inflow at an unknown; that of a region at any, the same for all of it.
     fn add(&mut self, owner: usize, unknown: usize, inwards: f64) {
         self.pieces.push((owner, unknown, inwards));
     }
@@ -148,11 +148,11 @@ impl<'a, const D: usize> System<'a, D> {
         }
         let corners: Vec<[usize; CORNERS]> = (cells.iter())
             .map(|cell| {
-                let mut own = [0; CORNERS];
+                let mut corners = [0; CORNERS];
                 for (k, node) in nodes_of(grid, cell.place).enumerate() {
-                    own[k] = unknown[node];
+                    corners[k] = unknown[node];
                 }
-                own
+                corners
             })
             .collect();
         let pairs = pairs(grid, &cells);
@@ -173,8 +173,8 @@ impl<'a, const D: usize> System<'a, D> {
                 } else {
                     &cell.points
                 };
-                let own = layers::laminate(points, &tensors)?;
-                tensors.push(own);
+                let tensor = layers::laminate(points, &tensors)?;
+                tensors.push(tensor);
                 Some(tensors.len() - 1)
             })
             .collect();
@@ -211,11 +211,11 @@ impl<'a, const D: usize> System<'a, D> {
 
     /// The heads at the corners of a cell.
     pub(crate) fn heads(&self, cell: usize, heads: &[f64]) -> [f64; CORNERS] {
-        let mut own = [0.0; CORNERS];
-        for (k, head) in own.iter_mut().enumerate().take(1 << D) {
+        let mut corners = [0.0; CORNERS];
+        for (k, head) in corners.iter_mut().enumerate().take(1 << D) {
             *head = heads[self.corners[cell][k]];
         }
-        own
+        corners
     }
 
     /// The points of a cell with their weights and soils: as many as the flow asks for.
@@ -225,13 +225,13 @@ impl<'a, const D: usize> System<'a, D> {
         heads: &[f64; CORNERS],
         relative: &Relative,
     ) -> Vec<Point<D>> {
-        let own = &self.cells[cell];
-        match own.whole {
+        let cell = &self.cells[cell];
+        match cell.whole {
             Some(soil) => {
-                let ends = ends_of(self.grid, own.place);
+                let ends = ends_of(self.grid, cell.place);
                 self.points_of_part((ends, soil), ends, heads, relative)
             }
-            None => own.points.clone(),
+            None => cell.points.clone(),
         }
     }
 
@@ -271,7 +271,7 @@ impl<'a, const D: usize> System<'a, D> {
         apply(&kept, &basis.slope(heads)).map(|slope| -slope)
     }
 
-    /// What soil within a cell keeps of its permeability \[m/s\] at a pressure head, and the slope of that \[1/s\].
+    /// The permeability \[m/s\] that soil within a cell keeps at a pressure head, and the slope of that \[1/s\].
     fn kept(
         &self,
         relative: &Relative,
@@ -296,12 +296,12 @@ impl<'a, const D: usize> System<'a, D> {
         }
         let mut facets = self.held.iter().enumerate().peekable();
         for cell in 0..self.cells.len() {
-            let own = self.heads(cell, heads);
+            let corners = self.heads(cell, heads);
             let mut local = Local::of(&self.corners[cell][..1 << D]);
-            self.volume(cell, &own, relative, (&mut local, &mut flows));
+            self.volume(cell, &corners, relative, (&mut local, &mut flows));
             while let Some((number, held)) = facets.next_if(|(_, held)| held.cell == cell) {
                 let driven = self.driven.get(number).copied();
-                self.face((held, driven), &own, relative, (&mut local, &mut flows));
+                self.face((held, driven), &corners, relative, (&mut local, &mut flows));
             }
             add(&local, &mut residual, matrix.as_deref_mut());
         }
@@ -318,7 +318,7 @@ impl<'a, const D: usize> System<'a, D> {
         (residual, flows)
     }
 
-    /// Flow through the soil of a cell, and what regions let in (eqs. 78 and 84).
+    /// Flow through the soil of a cell, and the inflow of regions (eqs. 78 and 84).
     fn volume(
         &self,
         cell: usize,
@@ -332,7 +332,7 @@ impl<'a, const D: usize> System<'a, D> {
             let basis = Basis::at(ends, &point.x);
             let (head, slope) = (basis.head(heads), basis.slope(heads));
             let [kept, fall] = self.kept(relative, (cell, point.soil), head - point.x[D - 1]);
-            let [flux, change] = [kept, fall].map(|own| apply(&own, &slope));
+            let [flux, change] = [kept, fall].map(|k| apply(&k, &slope));
             for i in 0..corners {
                 local.residual[i] += point.volume * dot(&flux, &basis.gradient[i]);
                 let pull = apply(&kept, &basis.gradient[i]);
@@ -354,7 +354,7 @@ impl<'a, const D: usize> System<'a, D> {
         }
     }
 
-    /// What a region takes from the ground at a point with this head \[m^D/s\], and its slope (eq. 84).
+    /// The outflow to a region at a point with this head \[m^D/s\], and its slope (eq. 84).
     fn of_region(&self, cell: usize, (point, region): (&Point<D>, usize), head: f64) -> (f64, f64) {
         let size = self.grid.cell_size(self.cells[cell].place);
         let least = size.into_iter().fold(f64::INFINITY, f64::min);
@@ -368,7 +368,7 @@ impl<'a, const D: usize> System<'a, D> {
         }
     }
 
-    /// What leaves a cell at its corners \[m^D/s\], and all that enters it from outside the ground.
+    /// Outflow of a cell at its corners \[m^D/s\], and all that enters it from outside the ground.
     pub(crate) fn exchange(
         &self,
         cell: usize,
@@ -390,8 +390,8 @@ impl<'a, const D: usize> System<'a, D> {
             });
         }
         let first = self.held.partition_point(|held| held.cell < cell);
-        let own = self.held[first..].iter().enumerate();
-        for (number, held) in own.take_while(|(_, held)| held.cell == cell) {
+        let rest = self.held[first..].iter().enumerate();
+        for (number, held) in rest.take_while(|(_, held)| held.cell == cell) {
             let driven = self.driven.get(first + number).copied();
             let before = local.residual;
             self.face((held, driven), heads, relative, (&mut local, &mut flows));
@@ -465,13 +465,13 @@ impl<'a, const D: usize> System<'a, D> {
                 let outflow = penalty * (head - wanted) - dot(&pull, &slope);
                 passes(-outflow);
                 for i in 0..corners {
-                    let own = dot(&pull, &basis.gradient[i]);
-                    local.residual[i] += area * (outflow * basis.value[i] - own * (head - wanted));
+                    let flux = dot(&pull, &basis.gradient[i]);
+                    local.residual[i] += area * (outflow * basis.value[i] - flux * (head - wanted));
                     for j in 0..corners {
                         let other = dot(&pull, &basis.gradient[j]);
                         local.tangent[i][j] += area
                             * ((penalty * basis.value[j] - other) * basis.value[i]
-                                - own * basis.value[j]);
+                                - flux * basis.value[j]);
                     }
                 }
             }
@@ -480,7 +480,7 @@ impl<'a, const D: usize> System<'a, D> {
                 let penalty = dot(&whole, &normal) * steepness;
                 let [pull, fall] = match driven {
                     Some(_) => [[0.0; D]; 2],
-                    None => kept(head - x[D - 1]).map(|own| apply(&own, &normal)),
+                    None => kept(head - x[D - 1]).map(|k| apply(&k, &normal)),
                 };
                 let driven = driven.unwrap_or(-dot(&pull, &slope));
                 let pressed = rain + driven + penalty * (head - x[D - 1]);
@@ -505,14 +505,14 @@ impl<'a, const D: usize> System<'a, D> {
             let Facet {
                 x, normal, soil, ..
             } = held.facet;
-            let own = self.heads(held.cell, heads);
+            let corners = self.heads(held.cell, heads);
             let basis = Basis::at(ends_of(self.grid, self.cells[held.cell].place), &x);
             let head = match held.at {
                 At::Head(wanted) => wanted,
-                _ => basis.head(&own),
+                _ => basis.head(&corners),
             };
             let [kept, _] = self.kept(relative, (held.cell, soil), head - x[D - 1]);
-            -dot(&apply(&kept, &normal), &basis.slope(&own))
+            -dot(&apply(&kept, &normal), &basis.slope(&corners))
         };
         self.held.iter().map(out).collect()
     }
@@ -563,15 +563,15 @@ impl<'a, const D: usize> System<'a, D> {
 
     /// The soil of a cell that has one only.
     fn some_soil(&self, cell: usize) -> usize {
-        let own = &self.cells[cell];
-        own.whole
-            .unwrap_or_else(|| own.points.first().map_or(0, |point| point.soil))
+        let cell = &self.cells[cell];
+        cell.whole
+            .unwrap_or_else(|| cell.points.first().map_or(0, |point| point.soil))
     }
 
     /// The flow that an imbalance is held against \[m^D/s\]: that through the ground or into storage, or where hardly any
-    /// water flows what its heads would drive through a cell.
+    /// water flows the flow that its heads would drive through a cell.
     pub(crate) fn scale(&self, heads: &[f64], flows: &Flows, moved: f64) -> f64 {
-        let sum = |own: &[f64]| own.iter().sum::<f64>();
+        let sum = |values: &[f64]| values.iter().sum::<f64>();
         let through = sum(&flows.inwards).max(sum(&flows.outwards)).max(moved);
         let soils = self.conditions.soils.iter();
         let permeability = soils.map(|soil| soil.along.max(soil.across));
@@ -585,11 +585,11 @@ impl<'a, const D: usize> System<'a, D> {
 
 /// The largest of some values without their signs; infinite with one that is no number.
 pub(crate) fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most, own| {
-        if own.is_nan() {
+    values.iter().fold(0.0, |most, value| {
+        if value.is_nan() {
             f64::INFINITY
         } else {
-            own.abs().max(most)
+            value.abs().max(most)
         }
     })
 }
@@ -606,7 +606,7 @@ fn add(local: &Local<'_>, residual: &mut [f64], matrix: Option<&mut TangentMatri
         let rows = pattern.coupled_to(column);
         let first = pattern.first_value[column];
         for (i, &row) in local.unknowns.iter().enumerate() {
-            let place = rows.partition_point(|own| (*own as usize) < row);
+            let place = rows.partition_point(|other| (*other as usize) < row);
             values[first + place] += local.tangent[i][j];
         }
     }
@@ -647,10 +647,10 @@ fn steep<const D: usize>(
     conditions: &Conditions<D>,
 ) -> Vec<f64> {
     let mut area = vec![0.0; cells.len()];
-    for own in held {
+    for face in held {
         // A face on the axis of revolution has no area.
-        if matches!(own.at, At::Head(_)) && own.facet.area > 0.0 {
-            area[own.cell] += own.facet.area / conditions.thickness(own.facet.x[0]);
+        if matches!(face.at, At::Head(_)) && face.facet.area > 0.0 {
+            area[face.cell] += face.facet.area / conditions.thickness(face.facet.x[0]);
         }
     }
     let volume = |cell: &Cell<D>| cell.filled * grid.cell_size(cell.place).iter().product::<f64>();
@@ -672,8 +672,8 @@ fn pattern<const D: usize>(
             lists[i].extend(b.iter().map(|&j| j as u32));
         }
     };
-    for own in corners {
-        join(&own[..1 << D], &own[..1 << D]);
+    for cell in corners {
+        join(&cell[..1 << D], &cell[..1 << D]);
     }
     for pair in pairs {
         let [a, b] = pair.cells.map(|cell| &corners[cell][..1 << D]);
@@ -689,12 +689,12 @@ fn pattern<const D: usize>(
         starts.push(coupled.len());
     }
     let block = |(index, &node): (usize, &usize)| {
-        let own = grid.node_place(node);
+        let indices = grid.node_place(node);
         NodeBlock {
             first: index,
             len: 1,
             free: 1,
-            place: std::array::from_fn(|axis| own.get(axis).copied().unwrap_or(0)),
+            place: std::array::from_fn(|axis| indices.get(axis).copied().unwrap_or(0)),
         }
     };
     let blocks = nodes.iter().enumerate().map(block).collect();

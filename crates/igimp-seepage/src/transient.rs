@@ -21,7 +21,7 @@ const ACCURACY: f64 = 2e-3;
 const EMPTY: f64 = 1e-9;
 /// Share of the first stretch of time that is tried first \[-\].
 const FIRST: f64 = 1e-3;
-/// Share of a stretch of time below which a step is not cut for its error: what is faster counts as sudden \[-\].
+/// Share of a stretch of time below which a step is not cut for its error: faster changes count as sudden \[-\].
 const SUDDEN: f64 = 1e-5;
 /// The same for a step that finds no balance \[-\].
 const SHORTEST: f64 = 1e-9;
@@ -29,7 +29,7 @@ const SHORTEST: f64 = 1e-9;
 const OWING: f64 = 1e-3;
 /// Least and largest change from step to step \[-\].
 const CHANGES: [f64; 2] = [0.1, 4.0];
-/// Steps aim at this share of what the error would allow \[-\].
+/// Steps aim at this share of the allowed error \[-\].
 const SAFETY: f64 = 0.9;
 
 /// A value in time on the faces of a condition, linear between its samples and constant beyond.
@@ -44,7 +44,7 @@ pub struct History {
 impl History {
     /// The value at a time.
     pub fn at(&self, time: f64) -> f64 {
-        let after = self.times.partition_point(|own| *own <= time);
+        let after = self.times.partition_point(|t| *t <= time);
         let sample = |k: usize| Some((*self.times.get(k)?, *self.values.get(k)?));
         match (after.checked_sub(1).and_then(sample), sample(after)) {
             (Some((from, a)), Some((to, b))) => a + (b - a) * (time - from) / (to - from),
@@ -54,7 +54,7 @@ impl History {
     }
 }
 
-/// What a flow in time is given beside its conditions.
+/// The course of a flow in time beside its conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
     /// By condition on faces: its head or its rain in time; none: it stays.
@@ -72,9 +72,9 @@ pub struct WaterBalance {
     pub entered: f64,
     /// Water that left.
     pub left: f64,
-    /// Water that the ground holds beyond what it held at the start.
+    /// Water that the ground holds beyond that at the start.
     pub stored: f64,
-    /// What of the three does not close, over all that moved \[-\].
+    /// Imbalance of the three, over all that moved \[-\].
     pub error: f64,
 }
 
@@ -104,7 +104,7 @@ pub fn march<const D: usize>(
     let mut search = Search::of(grid, bodies, conditions, free)?;
     let is_there = |&node: &usize| start.is_ground.get(node) == Some(&true);
     let nodes = &search.system.nodes;
-    let count = start.is_ground.iter().filter(|own| **own).count();
+    let count = start.is_ground.iter().filter(|there| **there).count();
     if nodes.len() != count || !nodes.iter().all(is_there) {
         return Err(SeepageError::OtherGround);
     }
@@ -174,7 +174,7 @@ impl<const D: usize> March<'_, '_, D> {
     fn run(&mut self) -> Result<(), SeepageError> {
         let mut stops: Vec<f64> = self.course.times.clone();
         let last = stops.last().copied().unwrap_or(0.0);
-        let changes = (self.course.histories.iter().flatten()).flat_map(|own| &own.times);
+        let changes = (self.course.histories.iter().flatten()).flat_map(|history| &history.times);
         stops.extend(changes.filter(|time| **time > 0.0 && **time < last));
         stops.sort_by(f64::total_cmp);
         stops.dedup();
@@ -194,13 +194,13 @@ impl<const D: usize> March<'_, '_, D> {
         loop {
             let left = stop - self.time;
             // No crumb is left for a last step.
-            let (own, is_last) = match *duration {
-                own if own >= left => (left, true),
-                own if 2.0 * own > left => (0.5 * left, false),
-                own => (own, false),
+            let (size, is_last) = match *duration {
+                size if size >= left => (left, true),
+                size if 2.0 * size > left => (0.5 * left, false),
+                size => (size, false),
             };
             let kept = self.search.heads.clone();
-            let step = self.step(own);
+            let step = self.step(size);
             let change = match &step {
                 Ok(step) => SAFETY * (ACCURACY / step.error.max(f64::MIN_POSITIVE)).sqrt(),
                 Err(SeepageError::NotFound { .. }) => 0.25,
@@ -208,19 +208,19 @@ impl<const D: usize> March<'_, '_, D> {
             };
             let [least, most] = CHANGES;
             // The heads of nodes that owe water are those of a pull that is none, and a state that is asked for is not one of them.
-            let owes = is_last && own > OWING * length && matches!(&step, Ok(step) if step.owes);
+            let owes = is_last && size > OWING * length && matches!(&step, Ok(step) if step.owes);
             let next = match &step {
-                Ok(_) if owes => 0.5 * own,
+                Ok(_) if owes => 0.5 * size,
                 Ok(_) => {
-                    let least_next = (SUDDEN * length).min(most * own);
-                    (own * change.clamp(least, most)).max(least_next)
+                    let least_next = (SUDDEN * length).min(most * size);
+                    (size * change.clamp(least, most)).max(least_next)
                 }
-                Err(_) => own * change,
+                Err(_) => size * change,
             };
             match step {
-                Ok(step) if !owes && (step.error <= ACCURACY || own <= SUDDEN * length) => {
+                Ok(step) if !owes && (step.error <= ACCURACY || size <= SUDDEN * length) => {
                     *duration = if is_last { next.max(*duration) } else { next };
-                    let time = if is_last { stop } else { self.time + own };
+                    let time = if is_last { stop } else { self.time + size };
                     let last = self.accept(step, time);
                     if let Some(last) = last.filter(|_| is_last) {
                         return Ok(last);
@@ -250,7 +250,7 @@ impl<const D: usize> March<'_, '_, D> {
         let before: Vec<f64> = std::iter::zip(&water, &half)
             .map(|(start, middle)| start + beyond * (middle - start))
             .collect();
-        let is_empty = |(own, all): (&f64, &f64)| *own < -*all * (1.0 + EMPTY);
+        let is_empty = |(volume, all): (&f64, &f64)| *volume < -*all * (1.0 + EMPTY);
         let end = self.time + duration;
         let lacks_water =
             !self.relative.confined && std::iter::zip(&before, &self.drainable).any(is_empty);
@@ -271,13 +271,13 @@ impl<const D: usize> March<'_, '_, D> {
         let mut error: f64 = 0.0;
         for (k, &head) in self.search.heads.iter().enumerate() {
             // Soil that drains counts by the level that its water stands for.
-            let own = if self.relative.confined || self.storage.pressure_head(k, head) >= 0.0 {
+            let gap = if self.relative.confined || self.storage.pressure_head(k, head) >= 0.0 {
                 head - start[k] - (middle[k] - start[k]) / STAGE
             } else {
                 let level = after[k] - water[k] - (half[k] - water[k]) / STAGE;
                 level / self.drainable[k].max(f64::MIN_POSITIVE) * self.relative.width
             };
-            error += self.volumes[k] * (own / self.span).powi(2);
+            error += self.volumes[k] * (gap / self.span).powi(2);
         }
         let volume: f64 = self.volumes.iter().sum();
         Ok(Step {
@@ -311,17 +311,17 @@ impl<const D: usize> March<'_, '_, D> {
 
     /// Takes a step, and writes down its balance.
     fn accept(&mut self, step: Step, time: f64) -> Option<Balanced> {
-        let mut own = (self.found.balance.last().copied()).unwrap_or_default();
+        let mut balance = (self.found.balance.last().copied()).unwrap_or_default();
         for (duration, stage) in &step.stages {
-            own.entered += duration * stage.flows.inwards.iter().sum::<f64>();
-            own.left += duration * stage.flows.outwards.iter().sum::<f64>();
+            balance.entered += duration * stage.flows.inwards.iter().sum::<f64>();
+            balance.left += duration * stage.flows.outwards.iter().sum::<f64>();
             self.moved += duration * stage.scale;
         }
         let pairs = std::iter::zip(&step.water, &self.water);
-        own.stored += pairs.map(|(after, before)| after - before).sum::<f64>();
-        own.time = time;
-        own.error = (own.stored - own.entered + own.left).abs() / self.moved;
-        self.found.balance.push(own);
+        balance.stored += pairs.map(|(after, before)| after - before).sum::<f64>();
+        balance.time = time;
+        balance.error = (balance.stored - balance.entered + balance.left).abs() / self.moved;
+        self.found.balance.push(balance);
         (self.time, self.water) = (time, step.water);
         self.search.heads = step.heads;
         step.stages.into_iter().next_back().map(|(_, last)| last)
@@ -336,8 +336,8 @@ impl<const D: usize> March<'_, '_, D> {
             ..
         } = &self.search;
         let parts = (&last.residual[..], &last.flows, None);
-        let own = Seepage::of(system, heads, self.relative, parts, *corrections);
-        self.found.states.push(own);
+        let state = Seepage::of(system, heads, self.relative, parts, *corrections);
+        self.found.states.push(state);
     }
 }
 
@@ -348,10 +348,10 @@ fn at_time<const D: usize>(
     time: f64,
 ) -> Conditions<D> {
     let mut now = conditions.clone();
-    for (own, history) in std::iter::zip(&mut now.faces, &course.histories) {
+    for (face, history) in std::iter::zip(&mut now.faces, &course.histories) {
         if let Some(history) = history {
             let value = history.at(time);
-            own.what = match own.what {
+            face.what = match face.what {
                 OnFaces::Recharge(_) => OnFaces::Recharge(value),
                 OnFaces::Inflow(_) => OnFaces::Inflow(value),
                 _ => OnFaces::Head(value),
@@ -364,17 +364,17 @@ fn at_time<const D: usize>(
 /// The span of all heads that are given, at the start and in time, no less than the height of a cell \[m\].
 fn span<const D: usize>(search: &Search<'_, D>, course: &Course, least: f64) -> f64 {
     let faces = std::iter::zip(&search.system.conditions.faces, &course.histories);
-    let in_time = faces.filter(|(own, _)| matches!(own.what, OnFaces::Head(_)));
+    let in_time = faces.filter(|(face, _)| matches!(face.what, OnFaces::Head(_)));
     let in_time = in_time.filter_map(|(_, history)| history.as_ref());
     let given = search.system.held.iter().filter_map(|held| match held.at {
         At::Head(head) => Some(head),
         _ => None,
     });
     let heads = (search.heads.iter().copied())
-        .chain(in_time.flat_map(|own| own.values.iter().copied()))
+        .chain(in_time.flat_map(|history| history.values.iter().copied()))
         .chain(given);
-    let [low, high] = heads.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], own| {
-        [own.min(low), own.max(high)]
+    let [low, high] = heads.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], head| {
+        [head.min(low), head.max(high)]
     });
     (high - low).max(least)
 }
@@ -387,7 +387,7 @@ fn check_soil<const D: usize>(
     let soil = &conditions.soils[index];
     if !(soil.specific_storage > 0.0 && soil.specific_storage.is_finite()) {
         return Err(SeepageError::Value {
-            what: format!("the specific storage of soil {index}"),
+            quantity: format!("the specific storage of soil {index}"),
             value: soil.specific_storage,
             wanted: "positive",
         });
@@ -395,7 +395,7 @@ fn check_soil<const D: usize>(
     let drains = soil.drainable > 0.0 && soil.drainable < 1.0;
     if !conditions.confined && !drains {
         return Err(SeepageError::Value {
-            what: format!("the drainable share of soil {index}"),
+            quantity: format!("the drainable share of soil {index}"),
             value: soil.drainable,
             wanted: "between 0 and 1",
         });
@@ -406,10 +406,10 @@ fn check_soil<const D: usize>(
 /// Refuses times that do not ascend.
 fn check_times(course: &Course) -> Result<(), SeepageError> {
     let histories = course.histories.iter().flatten();
-    for times in histories.map(|own| &own.times).chain([&course.times]) {
+    for times in histories.map(|h| &h.times).chain([&course.times]) {
         if let Some(pair) = times.windows(2).find(|pair| pair[1] <= pair[0]) {
             return Err(SeepageError::Value {
-                what: "a time".to_owned(),
+                quantity: "a time".to_owned(),
                 value: pair[1],
                 wanted: "after the one before",
             });
@@ -417,7 +417,7 @@ fn check_times(course: &Course) -> Result<(), SeepageError> {
     }
     match course.times.first() {
         Some(&first) if first <= 0.0 => Err(SeepageError::Value {
-            what: "the first time".to_owned(),
+            quantity: "the first time".to_owned(),
             value: first,
             wanted: "positive",
         }),

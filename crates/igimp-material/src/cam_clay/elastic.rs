@@ -44,12 +44,12 @@ impl Invariants {
 
 /// The norm of the deviator, and the deviator over it; nothing where it is round-off, whose direction would have a trace.
 fn directed(values: &Principal) -> (f64, Principal) {
-    let own = deviator(values);
-    let norm = dot(&own, &own).sqrt();
+    let dev = deviator(values);
+    let norm = dot(&dev, &dev).sqrt();
     if norm <= 4.0 * f64::EPSILON * largest(values) {
         return (0.0, [0.0; 3]);
     }
-    (norm, deviator(&own.map(|value| value / norm)))
+    (norm, deviator(&dev.map(|value| value / norm)))
 }
 
 /// The constants of the energy

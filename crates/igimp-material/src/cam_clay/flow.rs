@@ -11,7 +11,7 @@ const MOST: usize = 40;
 /// Size of the residual, in strain, of a return that is found: few digits above round-off.
 const TOLERANCE: f64 = 2e-15;
 
-/// What plastic flow goes by.
+/// Parameters of plastic flow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Flow {
     /// M \[-\].
@@ -170,19 +170,19 @@ impl Flow {
         log_p_c: f64,
         &[volume, shear, multiplier]: &Unknowns,
     ) -> System {
-        let own = elastic.relative(volume, shear);
+        let relative = elastic.relative(volume, shear);
         let Relative {
             eta,
             log_p_by,
             eta_by,
             ..
-        } = own;
+        } = relative;
         let square = self.critical_ratio * self.critical_ratio;
         let ([flow_v, flow_s], [v_eta, s_eta]) = self.direction(eta);
         let kappa = elastic.swelling;
         let bow = 2.0 * eta / (square + eta * eta);
         let outside =
-            self.log_equivalent(&own) - log_p_c - self.hardening * (trial.volume - volume);
+            self.log_equivalent(&relative) - log_p_c - self.hardening * (trial.volume - volume);
         System {
             residual: [
                 volume + multiplier * flow_v - trial.volume,
@@ -210,8 +210,8 @@ impl Flow {
     }
 
     /// The logarithm of the pressure on the hydrostatic axis of the surface through a state.
-    pub(super) fn log_equivalent(&self, own: &Relative) -> f64 {
-        own.log_p + (own.eta / self.critical_ratio).powi(2).ln_1p()
+    pub(super) fn log_equivalent(&self, relative: &Relative) -> f64 {
+        relative.log_p + (relative.eta / self.critical_ratio).powi(2).ln_1p()
     }
 
     fn returned(

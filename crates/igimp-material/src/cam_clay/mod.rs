@@ -14,7 +14,7 @@ use crate::{
 use elastic::{Invariants, PressureElasticity, assembled};
 use flow::Flow;
 
-/// What the law remembers: the pressure $`p_c`$ at the tip of the yield surface.
+/// The internal variable: the pressure $`p_c`$ at the tip of the yield surface.
 const VARIABLES: [InternalVariable; 1] = [InternalVariable {
     name: "preconsolidation pressure",
     unit: "Pa",
@@ -196,10 +196,10 @@ impl ConstitutiveModel for ModifiedCamClay {
 
     fn elastic_stiffness(&self, eps_e: &Principal, _history: &History) -> ElasticStiffness {
         let strain = Invariants::of_strain(eps_e);
-        let own = self.elastic.stress(strain.volume, strain.shear);
-        let shear = self.elastic.shear(own.p);
+        let stress = self.elastic.stress(strain.volume, strain.shear);
+        let shear = self.elastic.shear(stress.p);
         ElasticStiffness {
-            tangent: assembled(&own.stiffness, 2.0 * shear, &strain),
+            tangent: assembled(&stress.stiffness, 2.0 * shear, &strain),
             shear,
         }
     }
@@ -212,8 +212,8 @@ impl ConstitutiveModel for ModifiedCamClay {
     ) -> Result<ReturnMap, MaterialError> {
         let trial = Invariants::of_strain(eps_e_trial);
         let [p_c, ..] = history.internal;
-        let own = self.elastic.relative(trial.volume, trial.shear);
-        let log_equivalent = self.flow.log_equivalent(&own);
+        let relative = self.elastic.relative(trial.volume, trial.shear);
+        let log_equivalent = self.flow.log_equivalent(&relative);
         if !log_equivalent.is_finite() {
             return Err(MaterialError::NonFinite {
                 quantity: "trial stress",

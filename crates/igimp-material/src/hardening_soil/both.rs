@@ -8,7 +8,7 @@ use crate::circle::{Circle, Planes};
 use crate::elasticity::Moduli;
 use crate::spectral::principal::{Principal, deviator, dot, mean};
 
-/// Most corrections; what takes more is left to brackets.
+/// Most corrections; a return that takes more is left to brackets.
 const MOST_CORRECTIONS: usize = 12;
 
 /// Correction of the unknowns below which that is the last \[-\].
@@ -87,7 +87,7 @@ impl<'a> Both<'a> {
             shear: rates[1] * moduli.shear,
         };
         let p = mean(&self.trial);
-        let trial_by_mu = deviator(&self.trial).map(|own| rates[0] * p + rates[1] * own);
+        let trial_by_mu = deviator(&self.trial).map(|value| rates[0] * p + rates[1] * value);
         let moving = Circle::new(&by_mu, &trial_by_mu, self.planes);
         let steep = 1.0 + hyperbola.asymptote * share;
         let ([multiplier, multiplier_by], [y, y_by]) = (along.multiplier, along.dilatancy);
@@ -100,7 +100,7 @@ impl<'a> Both<'a> {
         let low = s - hyperbola.attraction;
         let up = low + hyperbola.asymptote * share * s;
         let stress = circle.stress([up, low], multiplier, y);
-        // Rates of the stress by x and by μ: of its ends, and of what is between them.
+        // Rates of the stress by x and by μ: of its ends, and between them.
         let aside = softened.aside();
         let between = [
             aside * (multiplier_by * y + multiplier * y_by),
@@ -134,8 +134,8 @@ impl<'a> Both<'a> {
         let failure = self.start.hyperbola.failure_ratio;
         let mut mu = 0.0;
         for _ in 0..MOST_CORRECTIONS {
-            let own = self.at(share, mu);
-            let ([first, second], [[a, b], [c, d]]) = (own.values, own.slopes);
+            let residuals = self.at(share, mu);
+            let ([first, second], [[a, b], [c, d]]) = (residuals.values, residuals.slopes);
             let [more, flow] = if share >= failure && first <= 0.0 {
                 [0.0, -second / d]
             } else {

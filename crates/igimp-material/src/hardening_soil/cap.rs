@@ -64,9 +64,9 @@ impl Hardening {
 impl Cap {
     /// The cap with which soil that is compressed without strain aside has this stiffness at this ratio of stresses (eq. 128b);
     /// none where no cap does.
-    pub(super) fn of(hyperbola: &Hyperbola, own: &Oedometer) -> Option<Self> {
-        let [axial, side] = [own.pressure, own.k0 * own.pressure];
-        let [axial_rate, side_rate] = [own.stiffness, own.k0 * own.stiffness];
+    pub(super) fn of(hyperbola: &Hyperbola, test: &Oedometer) -> Option<Self> {
+        let [axial, side] = [test.pressure, test.k0 * test.pressure];
+        let [axial_rate, side_rate] = [test.stiffness, test.k0 * test.stiffness];
         let s = hyperbola.confinement(side);
         let (p, q) = ((axial + 2.0 * side) / 3.0, axial - side);
         let (p_rate, q_rate) = ((axial_rate + 2.0 * side_rate) / 3.0, axial_rate - side_rate);
@@ -79,8 +79,8 @@ impl Cap {
         let strain = hyperbola.strain(s, share);
         let shear = (strain.by_s * side_rate + strain.by_share * share_rate).max(0.0);
         let [y, _] = hyperbola.dilatancy(share);
-        let [young, poisson] = own.elastic;
-        // What elasticity and shear leave of a unit rate of axial strain.
+        let [young, poisson] = test.elastic;
+        // The rest of a unit rate of axial strain beside elasticity and shear.
         let axial_left =
             1.0 - (axial_rate - 2.0 * poisson * side_rate) / young - 0.5 * shear * (1.0 - y);
         let side_left =
@@ -94,7 +94,7 @@ impl Cap {
         let tip = (q * q / square + p * p).sqrt();
         let tip_rate = (q * q_rate / square + p * p_rate) / tip;
         let (attraction, power) = (hyperbola.attraction, hyperbola.power);
-        let reference = own.pressure + attraction;
+        let reference = test.pressure + attraction;
         Some(Self {
             steepness: square.sqrt(),
             flatness: square.recip(),
@@ -138,7 +138,7 @@ impl Cap {
             bulk: volume * moduli.bulk,
             shear: shear * moduli.shear,
         };
-        let stress = deviator(trial).map(|own| volume * p + shear * own);
+        let stress = deviator(trial).map(|s| volume * p + shear * s);
         (softened, stress)
     }
 
@@ -150,6 +150,6 @@ impl Cap {
     /// ∂f/∂σ of $`f = q^2/M^2 + p^2`$, without p where the trial stress has none \[stress\].
     pub(super) fn normal(&self, stress: &Principal, is_pressed: bool) -> Principal {
         let p = if is_pressed { mean(stress) } else { 0.0 };
-        deviator(stress).map(|own| 3.0 * self.flatness * own + 2.0 / 3.0 * p)
+        deviator(stress).map(|s| 3.0 * self.flatness * s + 2.0 / 3.0 * p)
     }
 }

@@ -1,7 +1,7 @@
 //! The hyperbola of shear hardening, its dilatancy and the stiffness that grows with the least compression (theory, eqs. 126 to
 //! 126d).
 
-/// What shear hardening goes by. Pressures are positive in compression; s is the least of them plus c cot φ.
+/// Parameters of shear hardening. Pressures are positive in compression; s is the least of them plus c cot φ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Hyperbola {
     /// c cot φ \[stress\].
@@ -76,7 +76,7 @@ impl Hyperbola {
         }
     }
 
-    /// By how much $`\sigma_1 - \sigma_3`$ exceeds what soil of this plastic shear strain bears \[stress\].
+    /// The excess of $`\sigma_1 - \sigma_3`$ over the strength of soil at this plastic shear strain \[stress\].
     pub(super) fn excess(&self, most: f64, least: f64, gamma_p: f64) -> f64 {
         let s = self.confinement(least);
         most - least - self.asymptote * s * self.share(s, gamma_p)

@@ -24,7 +24,7 @@ pub use parameters::HardeningSoilParameters;
 use returned::{Returned, Start};
 use shear::Shear;
 
-/// What the law remembers.
+/// The internal variables.
 const VARIABLES: [InternalVariable; 3] = [
     InternalVariable {
         name: "plastic shear strain",
@@ -89,7 +89,7 @@ pub struct HardeningSoil {
     cap: Cap,
     /// The elasticity at the reference.
     reference: Elasticity,
-    /// Whether hardening is over, as in a strength reduction: what yields is Mohr–Coulomb's surface.
+    /// Whether hardening is over, as in a strength reduction: the yield surface is Mohr–Coulomb's.
     is_perfect: bool,
     /// r of eq. 8c as given \[-\].
     dilatancy: f64,
@@ -166,28 +166,28 @@ impl HardeningSoil {
     }
 
     /// The history after a step.
-    fn after(&self, history: &History, own: &Returned, delta_eps_p: &Principal) -> History {
+    fn after(&self, history: &History, returned: &Returned, delta_eps_p: &Principal) -> History {
         let mut after = history.after(delta_eps_p);
         if self.is_perfect {
             return after;
         }
-        let sheared = if own.shear == Shear::Apex {
+        let sheared = if returned.shear == Shear::Apex {
             let [a, b, c] = *delta_eps_p;
             a.max(b).max(c) - a.min(b).min(c)
         } else {
-            own.delta_gamma
+            returned.delta_gamma
         };
         after.internal[0] += sheared;
-        after.internal[1] = own.preconsolidation;
-        let s = self.hyperbola.confinement(own.stress[2]);
+        after.internal[1] = returned.preconsolidation;
+        let s = self.hyperbola.confinement(returned.stress[2]);
         after.internal[2] = self.stiffness_ratio(s);
         after
     }
 }
 
 /// Which part of the surface a stress is on.
-fn regime(own: &Returned) -> Regime {
-    match (own.shear, own.is_capped) {
+fn regime(returned: &Returned) -> Regime {
+    match (returned.shear, returned.is_capped) {
         (Shear::Inside, false) => Regime::Elastic,
         (Shear::Inside, true) => Regime::Cap,
         (Shear::Apex, _) => Regime::Apex,
@@ -241,8 +241,8 @@ impl ConstitutiveModel for HardeningSoil {
         _: &PointContext,
     ) -> Result<ReturnMap, MaterialError> {
         let moduli = self.moduli(history);
-        let pressure = moduli.stress(eps_e_trial).map(|own| -own);
-        if !pressure.iter().all(|own| own.is_finite()) {
+        let pressure = moduli.stress(eps_e_trial).map(|stress| -stress);
+        if !pressure.iter().all(|p| p.is_finite()) {
             return Err(MaterialError::NonFinite {
                 quantity: "trial stress",
             });
@@ -256,12 +256,12 @@ impl ConstitutiveModel for HardeningSoil {
             gamma_p,
             preconsolidation,
         };
-        let own = start
+        let returned = start
             .returned(&sorted(&pressure, &order))
             .filter(Returned::is_finite)
             .ok_or(MaterialError::NotConverged { law: self.name() })?;
-        let regime = regime(&own);
-        let tau = unsorted(&own.stress, &order).map(|own| -own);
+        let regime = regime(&returned);
+        let tau = unsorted(&returned.stress, &order).map(|p| -p);
         let delta_eps_p = if regime.is_plastic() {
             let elastic = moduli.strain(&tau);
             std::array::from_fn(|a| eps_e_trial[a] - elastic[a])
@@ -269,14 +269,14 @@ impl ConstitutiveModel for HardeningSoil {
             [0.0; 3]
         };
         let mut tangent = [[0.0; 3]; 3];
-        for (a, row) in own.tangent.iter().enumerate() {
+        for (a, row) in returned.tangent.iter().enumerate() {
             tangent[order[a]] = unsorted(row, &order);
         }
         Ok(ReturnMap {
             tau,
             tangent,
             delta_eps_p,
-            history: self.after(history, &own, &delta_eps_p),
+            history: self.after(history, &returned, &delta_eps_p),
             regime,
             nonlocal: NonlocalRates::NONE,
         })
@@ -289,7 +289,7 @@ impl ConstitutiveModel for HardeningSoil {
     /// The plastic shear strain of which the stress is on the surface, and the preconsolidation by the ratio of overconsolidation
     /// from $`\sqrt{q^2/M^2 + p^2}`$ of the stress.
     fn initial_history(&self, sigma: &Principal) -> History {
-        let pressure = sigma.map(|own| -own);
+        let pressure = sigma.map(|stress| -stress);
         let [most, _, least] = sorted(&pressure, &descending(&pressure));
         let s = self.hyperbola.confinement(least);
         let borne = self.hyperbola.asymptote * s;
@@ -318,9 +318,9 @@ impl ConstitutiveModel for HardeningSoil {
 }
 
 impl Strength for HardeningSoil {
-    /// The larger of what $`\sigma_1 - \sigma_3`$ exceeds its hyperbola by, and what $`\sqrt{q^2/M^2 + p^2}`$ exceeds $`p_p`$ by.
+    /// The larger excess: of $`\sigma_1 - \sigma_3`$ over its hyperbola, or of $`\sqrt{q^2/M^2 + p^2}`$ over $`p_p`$.
     fn yield_function(&self, tau: &Principal, history: &History) -> f64 {
-        let pressure = tau.map(|own| -own);
+        let pressure = tau.map(|stress| -stress);
         let [most, _, least] = sorted(&pressure, &descending(&pressure));
         let [gamma_p, preconsolidation] = self.memory(history);
         let shear = self.hyperbola.excess(most, least, gamma_p);
@@ -329,14 +329,14 @@ impl Strength for HardeningSoil {
 
     /// Twice the largest principal stress in magnitude, c cot φ and $`\sqrt{q^2/M^2 + p^2}`$ together.
     fn stress_scale(&self, tau: &Principal) -> f64 {
-        let pressure = tau.map(|own| -own);
+        let pressure = tau.map(|stress| -stress);
         2.0 * largest(tau) + self.hyperbola.attraction + self.cap.equivalent(&pressure)
     }
 
     /// That of Mohr–Coulomb's law with c and φ: $`(\sigma_1 - \sigma_3) / (2c\cos\varphi + (\sigma_1 + \sigma_3)\sin\varphi)`$ of
     /// pressures.
     fn utilisation(&self, tau: &Principal, _history: &History) -> f64 {
-        let pressure = tau.map(|own| -own);
+        let pressure = tau.map(|stress| -stress);
         let [most, _, least] = sorted(&pressure, &descending(&pressure));
         let ratio = self.hyperbola.asymptote * self.hyperbola.failure_ratio;
         let sin = ratio / (ratio + 2.0);
@@ -367,11 +367,11 @@ impl Strength for HardeningSoil {
     /// never exceeds the reduced φ.
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
         positive("srf", srf)?;
-        let own = &self.parameters;
-        let friction_angle = (own.friction_angle.tan() / srf).atan();
+        let parameters = &self.parameters;
+        let friction_angle = (parameters.friction_angle.tan() / srf).atan();
         Ok(Arc::new(Self {
             is_perfect: true,
-            ..self.at_strength(own.cohesion / srf, friction_angle)
+            ..self.at_strength(parameters.cohesion / srf, friction_angle)
         }))
     }
 }

@@ -1,4 +1,4 @@
-//! Parameters of Hardening Soil, and what follows from them.
+//! Parameters of Hardening Soil, and values that follow from them.
 
 use super::cap::{Cap, Oedometer};
 use super::hyperbola::Hyperbola;
@@ -68,7 +68,7 @@ impl HardeningSoilParameters {
         }
     }
 
-    /// Refuses what no soil has.
+    /// Refuses values that no soil has.
     pub(super) fn check(&self) -> Result<(), MaterialError> {
         let within = |field, value: f64, low: f64, high: f64, words| {
             required(field, value, (low..high).contains(&value), words)

@@ -10,7 +10,7 @@ use crate::spectral::principal::{Principal, apply, dot, largest, mean};
 /// Most corrections of the flow of the cap; a bisection to the last bit takes no more.
 const MOST_CORRECTIONS: usize = 100;
 
-/// What a step begins with.
+/// The soil at the start of a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Start<'a> {
     pub(super) hyperbola: &'a Hyperbola,
@@ -41,7 +41,7 @@ impl Returned {
         // The preconsolidation of soil whose hardening is over is beyond all numbers, and has no cap.
         let memory = !self.is_capped || self.preconsolidation.is_finite();
         let values = self.tangent.as_flattened().iter().chain(&self.stress);
-        memory && self.delta_gamma.is_finite() && values.into_iter().all(|own| own.is_finite())
+        memory && self.delta_gamma.is_finite() && values.into_iter().all(|v| v.is_finite())
     }
 }
 
@@ -75,7 +75,7 @@ impl Start<'_> {
     fn without_cap(&self, moduli: &Moduli, trial: &Principal) -> Option<Returned> {
         let excess = self.hyperbola.excess(trial[0], trial[2], self.gamma_p);
         let round_off = ON_SURFACE * (largest(trial) + self.hyperbola.attraction);
-        let own = if excess <= round_off {
+        let sheared = if excess <= round_off {
             Sheared {
                 stress: *trial,
                 tangent: moduli.tangent(),
@@ -85,17 +85,17 @@ impl Start<'_> {
         } else {
             sheared(self.hyperbola, moduli, trial, self.gamma_p)?
         };
-        Some(self.sheared(&own))
+        Some(self.sheared(&sheared))
     }
 
     /// The answer of shear alone.
-    pub(super) fn sheared(&self, own: &Sheared) -> Returned {
+    pub(super) fn sheared(&self, sheared: &Sheared) -> Returned {
         Returned {
-            stress: own.stress,
-            tangent: own.tangent,
-            delta_gamma: own.delta_gamma,
+            stress: sheared.stress,
+            tangent: sheared.tangent,
+            delta_gamma: sheared.delta_gamma,
             preconsolidation: self.preconsolidation,
-            shear: own.shear,
+            shear: sheared.shear,
             is_capped: false,
         }
     }
@@ -107,7 +107,7 @@ impl Start<'_> {
         Some(self.capped(cap, hardening, answer, (mean(trial) > 0.0, mu)))
     }
 
-    /// The answer of shear after flow of the cap by μ, where that has a pressure or not, with what the cap says of it.
+    /// The answer of shear after flow of the cap by μ, where that has a pressure or not, with the cap's excess and its rates.
     pub(super) fn capped(
         &self,
         cap: &Cap,
@@ -121,13 +121,13 @@ impl Start<'_> {
         let equivalent = cap.equivalent(&answer.stress);
         let normal = cap.normal(&answer.stress, is_pressed);
         let per_volume = slope / self.moduli.bulk;
-        let own = cap.normal(&answer.stress, pressure > 0.0);
+        let gradient = cap.normal(&answer.stress, pressure > 0.0);
         let third = if is_pressed {
             per_volume * mu / 3.0
         } else {
             0.0
         };
-        let row: Principal = own.map(|by| 0.5 * by / equivalent - third);
+        let row: Principal = gradient.map(|by| 0.5 * by / equivalent - third);
         let column = apply(&answer.tangent, &normal).map(|by| 0.5 * by / self.moduli.bulk);
         let across: Principal =
             std::array::from_fn(|b| (0..3).map(|a| row[a] * answer.tangent[a][b]).sum());
@@ -146,14 +146,14 @@ impl Start<'_> {
         let (mut low, mut high) = (0.0, f64::INFINITY);
         let mut mu = 0.0;
         for _ in 0..MOST_CORRECTIONS {
-            let own = self.at(cap, &hardening, trial, mu)?;
-            let [excess, slope] = own.excess;
+            let capped = self.at(cap, &hardening, trial, mu)?;
+            let [excess, slope] = capped.excess;
             let next = mu - excess / slope;
-            let is_found = excess.abs() <= 8.0 * f64::EPSILON * own.answer.preconsolidation
+            let is_found = excess.abs() <= 8.0 * f64::EPSILON * capped.answer.preconsolidation
                 || (next - mu).abs() <= 2.0 * f64::EPSILON * mu
                 || high.is_finite() && high - low <= 2.0 * f64::EPSILON * high;
             if is_found {
-                return Some(closed(&own));
+                return Some(closed(&capped));
             }
             if excess > 0.0 {
                 low = mu;
@@ -173,10 +173,10 @@ impl Start<'_> {
 }
 
 /// The answer with the tangent along which the stress stays on the cap.
-pub(super) fn closed(own: &Capped) -> Returned {
-    let [column, across] = own.columns;
-    let hardness = -own.excess[1];
-    let mut answer = own.answer;
+pub(super) fn closed(capped: &Capped) -> Returned {
+    let [column, across] = capped.columns;
+    let hardness = -capped.excess[1];
+    let mut answer = capped.answer;
     for a in 0..3 {
         for b in 0..3 {
             answer.tangent[a][b] -= column[a] * across[b] / hardness;

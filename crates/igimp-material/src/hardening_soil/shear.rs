@@ -41,7 +41,7 @@ pub(super) struct Path<'a> {
     pub(super) gamma_p: f64,
 }
 
-/// What a share of the asymptote gives.
+/// Quantities at a share of the asymptote.
 pub(super) struct Along {
     /// Λ and its derivative by the share \[-\].
     pub(super) multiplier: [f64; 2],
@@ -99,8 +99,8 @@ impl Path<'_> {
             self.gamma_p,
         );
         for _ in 0..MOST_CORRECTIONS {
-            let own = self.at(share);
-            let [residual, slope] = own.residual;
+            let along = self.at(share);
+            let [residual, slope] = along.residual;
             if residual.is_nan() {
                 return None;
             }
@@ -111,7 +111,7 @@ impl Path<'_> {
             } else {
                 low = share;
             }
-            if residual.abs() <= 4.0 * f64::EPSILON * (self.gamma_p + own.multiplier[0].abs()) {
+            if residual.abs() <= 4.0 * f64::EPSILON * (self.gamma_p + along.multiplier[0].abs()) {
                 return Some(share);
             }
             let newton = share - residual / slope;
@@ -134,23 +134,23 @@ impl Path<'_> {
     }
 
     /// ∂(Λ, x)/∂(U, W) of the trial stress, with x held at failure.
-    fn derivatives(&self, share: f64, own: &Along) -> [[f64; 2]; 2] {
+    fn derivatives(&self, share: f64, along: &Along) -> [[f64; 2]; 2] {
         let k = self.hyperbola.asymptote;
-        let ([y, y_by], dilating) = (own.dilatancy, self.circle.dilating);
+        let ([y, y_by], dilating) = (along.dilatancy, self.circle.dilating);
         let [g_u, g_w] = self.circle.paces(y);
         let denominator = g_u + g_w + k * share * g_w;
         let circle = [1.0, -(1.0 + k * share)];
         if share >= self.hyperbola.failure_ratio {
             return [circle.map(|by| by / denominator), [0.0; 2]];
         }
-        let multiplier = own.multiplier[0];
+        let multiplier = along.multiplier[0];
         // -denominator dΛ + a dx = -(dU - (1 + k x) dW) and b dΛ + c dx = -s' dW.
         let denominator_by = (dilating[1] * (1.0 + k * share) - dilating[0]) * y_by + k * g_w;
         let from = self.hyperbola.confinement(self.circle.ends[1]);
         let a = -k * from - multiplier * denominator_by;
-        let by_s = own.strain_by[0];
+        let by_s = along.strain_by[0];
         let b = by_s * g_w - 1.0;
-        let c = by_s * multiplier * dilating[1] * y_by + own.strain_by[1];
+        let c = by_s * multiplier * dilating[1] * y_by + along.strain_by[1];
         let determinant = -denominator * c - a * b;
         let by = |index: usize| {
             let pressed = if index == 1 { by_s } else { 0.0 };
@@ -164,19 +164,19 @@ impl Path<'_> {
     }
 
     /// The stress of a share, and whether it is within the part of the surface of its planes with multipliers that are not negative.
-    pub(super) fn sheared(&self, share: f64, own: &Along) -> (Sheared, bool) {
-        let ([multiplier, _], [y, _]) = (own.multiplier, own.dilatancy);
+    pub(super) fn sheared(&self, share: f64, along: &Along) -> (Sheared, bool) {
+        let ([multiplier, _], [y, _]) = (along.multiplier, along.dilatancy);
         let [_, g_w] = self.circle.paces(y);
         let low = self.circle.ends[1] + multiplier * g_w;
         // By the circle, and not by the way from a trial stress that may be far larger: the stress is on the surface to the last bit.
         let up = low + self.hyperbola.asymptote * share * self.hyperbola.confinement(low);
         let stress = self.circle.stress([up, low], multiplier, y);
-        let is_positive = own.confinement[0] > 0.0 && multiplier >= 0.0;
+        let is_positive = along.confinement[0] > 0.0 && multiplier >= 0.0;
         let valid = is_positive && self.circle.holds(&stress, multiplier, y);
         let sheared = Sheared {
             stress,
             tangent: if valid {
-                self.circle.tangent(&self.flow(share, own))
+                self.circle.tangent(&self.flow(share, along))
             } else {
                 [[0.0; 3]; 3]
             },
@@ -186,19 +186,19 @@ impl Path<'_> {
         (sheared, valid)
     }
 
-    /// What the tangent goes by.
-    fn flow(&self, share: f64, own: &Along) -> Flow {
-        let [multiplier_by, unknown_by] = self.derivatives(share, own);
+    /// The flow for the tangent.
+    fn flow(&self, share: f64, along: &Along) -> Flow {
+        let [multiplier_by, unknown_by] = self.derivatives(share, along);
         Flow {
-            multiplier: own.multiplier[0],
+            multiplier: along.multiplier[0],
             multiplier_by,
-            dilatancy: own.dilatancy,
+            dilatancy: along.dilatancy,
             unknown_by,
         }
     }
 }
 
-/// Returns a trial stress beyond what soil of this plastic shear strain bears; none where the share was not found.
+/// Returns a trial stress beyond the strength of soil at this plastic shear strain; none where the share was not found.
 pub(super) fn sheared(
     hyperbola: &Hyperbola,
     moduli: &Moduli,
@@ -207,11 +207,11 @@ pub(super) fn sheared(
 ) -> Option<Sheared> {
     let mut beyond = true;
     for planes in Planes::ALL {
-        let (own, valid) = on(hyperbola, moduli, trial, gamma_p, planes)?;
+        let (state, valid) = on(hyperbola, moduli, trial, gamma_p, planes)?;
         if valid {
-            return Some(own);
+            return Some(state);
         }
-        let is_beyond = hyperbola.confinement(own.stress[2]) <= 0.0 || own.delta_gamma < 0.0;
+        let is_beyond = hyperbola.confinement(state.stress[2]) <= 0.0 || state.delta_gamma < 0.0;
         beyond &= is_beyond || planes == Planes::Main;
     }
     beyond.then_some(Sheared {

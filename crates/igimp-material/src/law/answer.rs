@@ -1,4 +1,4 @@
-//! What a law is told of a point and its step, and what it answers.
+//! The data of a point and its step for a law, and the answer.
 
 use super::history::History;
 use crate::Elasticity;
@@ -78,7 +78,7 @@ pub struct Nonlocal {
     pub over_nonlocal: f64,
 }
 
-/// What plastic strain and nonlocal strain are to each other at a point, at the end of a step.
+/// Rates of plastic strain and nonlocal strain by each other at a point, at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct NonlocalRates {
     /// Plastic strain of the step Δκ, that of the soil as nonlocal strain is \[-\].
@@ -101,7 +101,7 @@ impl NonlocalRates {
     };
 }
 
-/// What a law is told of a point and of its step, beside strain and history.
+/// The data of a point and of its step for a law, beside strain and history.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointContext {
     /// Duration of the step \[time\], zero in statics: for strength that goes with the rate of strain.
@@ -144,7 +144,7 @@ pub struct ReturnMap {
     pub history: History,
     /// Where on the yield surface the stress is.
     pub regime: Regime,
-    /// What plastic and nonlocal strain are to each other; zero where strength does not see the ground around.
+    /// Rates of plastic and nonlocal strain by each other; zero where strength does not see the ground around.
     pub nonlocal: NonlocalRates,
 }
 

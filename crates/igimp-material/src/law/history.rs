@@ -1,4 +1,4 @@
-//! What a law remembers from step to step.
+//! The memory of a law from step to step.
 
 use crate::spectral::principal::{Principal, deviator, dot};
 
@@ -25,8 +25,8 @@ impl History {
         }
     }
 
-    /// This history of a law with the variables `of` with what soil remembers that was of another law: each memory of the same name
-    /// is as it was, the others stay.
+    /// This history of a law with the variables `of`, for soil that was of another law: each memory of the same name is as it was,
+    /// the others stay.
     #[must_use]
     pub fn remembering(mut self, of: &[InternalVariable], before: &Remembered<'_>) -> Self {
         self.eps_p_eq = before.history.eps_p_eq;
@@ -49,7 +49,7 @@ impl History {
     }
 }
 
-/// What soil remembers as it comes to another law.
+/// The memory of soil as it comes to another law.
 #[derive(Clone, Copy, Debug)]
 pub struct Remembered<'a> {
     /// The variables of the law that it was of.
@@ -62,7 +62,7 @@ impl Remembered<'_> {
     /// The value that a variable of another law takes over; none: there is no memory of it.
     pub fn value_of(&self, variable: &InternalVariable) -> Option<f64> {
         let mut known = self.variables.iter();
-        let place = known.position(|own| own.is_remembered_as(variable))?;
+        let place = known.position(|earlier| earlier.is_remembered_as(variable))?;
         Some(self.history.internal[place])
     }
 }
@@ -76,7 +76,7 @@ pub struct InternalVariable {
     pub unit: &'static str,
     /// How it goes with the ratios of soil that varies in space.
     pub scaling: Scaling,
-    /// Whether it is found anew from the stress after every step, and is no memory of what was before.
+    /// Whether it is found anew from the stress after every step, and is no memory of earlier steps.
     pub follows_stress: bool,
 }
 

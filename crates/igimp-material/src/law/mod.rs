@@ -1,7 +1,7 @@
 //! The seam between laws and everything else: a pure function from trial strain to stress.
 //!
 //! The problem that every law solves is eq. 19a of the theory. A law lives in principal space, knows no rotation and no grid, and
-//! changes nothing: the same input gives the same output. [`PointContext`] holds what it is told of its step.
+//! changes nothing: the same input gives the same output. [`PointContext`] holds the data of its step.
 //! [`lift_finite`](crate::lift_finite) and [`lift_small`](crate::lift_small) carry it to tensors.
 
 mod answer;
@@ -141,7 +141,7 @@ pub trait ConstitutiveModel: Strength + Send + Sync + Debug {
         History::default()
     }
 
-    /// The history of soil that was of another law, `begun` being what [`initial_history`](Self::initial_history) says of its stress:
+    /// The history of soil that was of another law, `begun` being the [`initial_history`](Self::initial_history) of its stress:
     /// memories of the same name are as they were.
     fn remembering(&self, begun: History, before: &Remembered<'_>) -> History {
         begun.remembering(self.internal_variables(), before)
@@ -154,7 +154,7 @@ pub trait ConstitutiveModel: Strength + Send + Sync + Debug {
     /// where it keeps volume in spite of friction. The law at reduced strength has that of the
     /// law it was made of. Locking control goes by it (theory, eq. 8c).
     ///
-    /// A law without ψ says by the symmetry of its tangent what its flow is.
+    /// The symmetry of its tangent shows the flow of a law without ψ.
     fn dilatancy(&self) -> f64 {
         if self.has_symmetric_tangent() {
             1.0

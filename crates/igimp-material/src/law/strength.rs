@@ -26,7 +26,7 @@ pub struct Dissipation {
     pub dilation: f64,
 }
 
-/// The strength of a law: its yield surface, what it lends to limit analysis, and its reduction.
+/// The strength of a law: its yield surface, its part in limit analysis, and its reduction.
 pub trait Strength {
     /// Whether the law has a yield surface: locking of plastic flow concerns no other.
     fn yields(&self) -> bool {
@@ -46,7 +46,7 @@ pub trait Strength {
     /// limit on tension plays no part. Each law states the ratio.
     fn utilisation(&self, tau: &Principal, history: &History) -> f64;
 
-    /// The shear strength, for those who look at it; none for a law without a limit. Of one that softens or hardens it is the greatest.
+    /// The shear strength; none for a law without a limit. Of one that softens or hardens it is the greatest.
     fn shear_strength(&self) -> Option<ShearStrength> {
         None
     }
@@ -58,8 +58,8 @@ pub trait Strength {
     }
 
     /// Dissipation of plastic flow by the normality rule at the principal strain `rate` \[-\], whose own volume does
-    /// not matter; none for a law without a limit. With a limit on tension it is no less than what the law
-    /// dissipates.
+    /// not matter; none for a law without a limit. With a limit on tension it is no less than that of the
+    /// law.
     ///
     /// Of Coulomb's law, $`c \cos\varphi \sum_a |\dot\varepsilon_a|`$; a law with another surface has its own.
     fn dissipation(&self, rate: &Principal) -> Option<Dissipation> {
@@ -86,7 +86,7 @@ pub trait Strength {
     /// The law with its strength divided by the reduction factor `srf`: cohesion, undrained
     /// strength, yield stress, tension cut-off and tan φ. Elasticity stays; the dilation angle
     /// stays too but never exceeds the reduced friction angle. The history of a particle is not changed by a reduction: a
-    /// law whose internal variables are stresses divides what it reads of them by `srf` itself.
+    /// law whose internal variables are stresses divides the values that it reads by `srf` itself.
     ///
     /// # Errors
     /// [`MaterialError::InvalidParameter`] unless `srf` is positive and finite.

@@ -33,7 +33,7 @@ pub(super) enum Held {
     Pyramid(Changing),
 }
 
-/// What a return at a held strength says of plastic strain.
+/// A return at a held strength, with its plastic strain.
 pub(super) struct Answer {
     pub(super) map: ReturnMap,
     /// Plastic strain of the step \[-\].
@@ -60,7 +60,7 @@ impl Answer {
     pub(super) fn of_soil(self, ratio: f64) -> Self {
         Self {
             strain: self.strain / ratio,
-            by_trial: self.by_trial.map(|own| own / ratio),
+            by_trial: self.by_trial.map(|by| by / ratio),
             by_kappa: self.by_kappa / ratio,
             ..self
         }
@@ -101,11 +101,11 @@ impl Held {
                 });
             }
         }
-        let own = self.answer(elasticity, trial, &History::default())?;
+        let answer = self.answer(elasticity, trial, &History::default())?;
         Ok(Strained {
-            strain: own.strain,
-            by_kappa: own.by_kappa,
-            is_plastic: own.map.regime.is_plastic(),
+            strain: answer.strain,
+            by_kappa: answer.by_kappa,
+            is_plastic: answer.map.regime.is_plastic(),
         })
     }
 
@@ -117,7 +117,7 @@ impl Held {
     ) -> Result<ReturnMap, MaterialError> {
         match self {
             Self::Cylinder(law, _) => law.return_map(trial, history, &PointContext::STATIC),
-            Self::Pyramid(own) => own.strength.return_map(elasticity, trial, *history),
+            Self::Pyramid(changing) => changing.strength.return_map(elasticity, trial, *history),
         }
     }
 

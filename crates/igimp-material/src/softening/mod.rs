@@ -26,7 +26,7 @@ use held::{Answer, Held, Kind, Strained};
 pub use undrained::{Directions, RateEffect};
 use undrained::{Moment, NO_DIRECTION, angle_of_compression};
 
-/// The plastic strain κ that strength goes with, that of the soil: where strength and stiffness vary, curves are what was stated.
+/// The plastic strain κ that strength goes with, that of the soil: where strength and stiffness vary, curves are as stated.
 const PLASTIC: InternalVariable = InternalVariable {
     name: "softening strain",
     unit: "-",
@@ -129,7 +129,7 @@ impl Softening {
     /// Mohr–Coulomb, with a cut-off on tension \[stress\] that goes with the share of cohesion that is left.
     ///
     /// # Errors
-    /// [`MaterialError::InvalidParameter`] of what [`MohrCoulomb`] refuses, initial or residual, and of a curve along which
+    /// [`MaterialError::InvalidParameter`] of a value that [`MohrCoulomb`] refuses, initial or residual, and of a curve along which
     /// stress snaps back.
     pub fn mohr_coulomb(
         elasticity: Elasticity,
@@ -192,7 +192,7 @@ impl Softening {
         let angle = self
             .strongest
             .shear_strength()
-            .map_or(0.0, |own| own.friction_angle);
+            .map_or(0.0, |strength| strength.friction_angle);
         let is_undrained = !matches!(self.kind, Kind::MohrCoulomb { .. });
         let requirement =
             "absent: strength goes with direction and rate in soil by undrained strength alone";
@@ -214,15 +214,15 @@ impl Softening {
         self.directions.map(|_| usize::from(self.softens()))
     }
 
-    /// What strength goes with beside plastic strain, at a point and in a step.
+    /// The direction and rate that strength goes with, at a point and in a step.
     fn moment(&self, history: &History, context: &PointContext) -> Moment {
         let share = match (&self.directions, self.place_of_angle()) {
-            (Some(own), Some(place)) => own.share(history.internal[place]),
+            (Some(directions), Some(place)) => directions.share(history.internal[place]),
             _ => 1.0,
         };
         Moment {
             share,
-            rate: (self.rate).map(|own| (own, context.duration / context.strain_ratio)),
+            rate: (self.rate).map(|rate| (rate, context.duration / context.strain_ratio)),
             step: 0.0,
             strain_ratio: context.strain_ratio,
         }
@@ -231,14 +231,14 @@ impl Softening {
     /// κ at which a law of a point would have the strength that is left.
     fn measure(&self, kappa: f64, history: &History) -> f64 {
         match (&self.nonlocal, self.place_of_nonlocal()) {
-            (Some(own), Some(place)) => own.measure(kappa, history.internal[place]),
+            (Some(nonlocal), Some(place)) => nonlocal.measure(kappa, history.internal[place]),
             _ => kappa,
         }
     }
 
     /// How much of its own plastic strain the strength of a point goes with \[-\]: below zero it hardens where the ground softens.
-    fn own_share(&self) -> f64 {
-        self.nonlocal.map_or(1.0, |own| own.own_share())
+    fn local_share(&self) -> f64 {
+        self.nonlocal.map_or(1.0, |nonlocal| nonlocal.local_share())
     }
 
     /// κ of a history.
@@ -278,7 +278,7 @@ impl Softening {
     /// triaxial paths.
     fn without_snap_back(self) -> Result<Self, MaterialError> {
         let moment = Moment {
-            share: self.directions.map_or(1.0, |own| own.greatest()),
+            share: self.directions.map_or(1.0, |by| by.greatest()),
             ..Moment::AT_REST
         };
         let held = self.kind.held(self.elasticity, 0.0, &moment)?;
@@ -348,14 +348,14 @@ impl Softening {
         (mut held, mut strained): (Held, Strained),
     ) -> Result<(f64, Held), MaterialError> {
         let before = self.plastic_strain(history);
-        // A rate goes with the step alone, which may be small beside what was before.
+        // A rate goes with the step alone, which may be small beside that of earlier steps.
         let origin = if moment.rate.is_some() { before } else { 0.0 };
         let begin = before - origin;
         // It is a difference of strains, whose round-off is in it.
         let (noise, patience, threshold) = match &moment.rate {
-            Some((own, duration)) => {
+            Some((rate, duration)) => {
                 let noise = 4.0 * f64::EPSILON * largest(trial.0) / moment.strain_ratio;
-                (noise, 16, own.threshold(*duration))
+                (noise, 16, rate.threshold(*duration))
             }
             None => (0.0, 4, f64::INFINITY),
         };
@@ -383,7 +383,7 @@ impl Softening {
             } else {
                 high = kappa;
             }
-            // Newton's steps may come slowly from one side: now and then one halves what is left.
+            // Newton's steps may come slowly from one side: now and then one halves the rest.
             let halves = correction.is_multiple_of(patience) && high.is_finite();
             if !(next > low && next < high) || halves {
                 next = 0.5 * (low + high);
@@ -408,7 +408,7 @@ impl Softening {
         law.rate = self.rate;
         law.nonlocal = self.nonlocal;
         match self.directions {
-            Some(own) => law.with_directions(own),
+            Some(directions) => law.with_directions(directions),
             None => Ok(law),
         }
     }
@@ -485,7 +485,7 @@ impl ConstitutiveModel for Softening {
         history
     }
 
-    /// The tangent is that at held strength, and what the change of strength adds,
+    /// The tangent is that at held strength, and that of the change of strength,
     /// $`\partial\tau/\partial\kappa \otimes \mathrm{d}\kappa/\mathrm{d}\varepsilon`$ (theory, eq. 108). Strength by the ground
     /// around is that of eq. 105 with $`\hat\kappa = m\bar\kappa + (1 - m)\kappa`$ (theory, eq. 110c); a step without duration is at
     /// the reference rate.
@@ -527,7 +527,7 @@ impl Strength for Softening {
     fn yield_function(&self, tau: &Principal, history: &History) -> f64 {
         match self.held(history) {
             Ok(Held::Cylinder(law, _)) => law.yield_function(tau, history),
-            Ok(Held::Pyramid(own)) => own.strength.yield_function(tau),
+            Ok(Held::Pyramid(changing)) => changing.strength.yield_function(tau),
             Err(_) => f64::NAN,
         }
     }
@@ -541,17 +541,17 @@ impl Strength for Softening {
     fn utilisation(&self, tau: &Principal, history: &History) -> f64 {
         match self.held(history) {
             Ok(Held::Cylinder(law, _)) => law.utilisation(tau, history),
-            Ok(Held::Pyramid(own)) => own.strength.utilisation(tau),
+            Ok(Held::Pyramid(changing)) => changing.strength.utilisation(tau),
             Err(_) => f64::NAN,
         }
     }
 
     /// The greater of initial and residual strength, of active loading and at the reference rate.
     fn shear_strength(&self) -> Option<ShearStrength> {
-        let own = self.strongest.shear_strength()?;
+        let strength = self.strongest.shear_strength()?;
         Some(ShearStrength {
-            cohesive: own.cohesive / self.directions.map_or(1.0, |own| own.greatest()),
-            ..own
+            cohesive: strength.cohesive / self.directions.map_or(1.0, |by| by.greatest()),
+            ..strength
         })
     }
 

@@ -1,4 +1,4 @@
-//! Strength by the over-nonlocal measure of plastic strain: what a point is to the ground around it (theory, eqs. 110a to 110c).
+//! Strength by the over-nonlocal measure of plastic strain: a point and the ground around it (theory, eqs. 110a to 110c).
 
 use super::Softening;
 use crate::error::{positive, required};
@@ -20,18 +20,18 @@ impl Nonlocal {
 
     /// The measure $`m \bar\kappa + (1 - m) \kappa`$ \[-\] of a plastic strain and that of the ground around.
     pub(super) fn measure(&self, kappa: f64, around: f64) -> f64 {
-        self.over_nonlocal * around + self.own_share() * kappa
+        self.over_nonlocal * around + self.local_share() * kappa
     }
 
     /// The share 1 − m of a point's own plastic strain \[-\].
-    pub(super) fn own_share(&self) -> f64 {
+    pub(super) fn local_share(&self) -> f64 {
         1.0 - self.over_nonlocal
     }
 }
 
 impl Softening {
     /// The law with a strength that goes with the over-nonlocal measure of plastic strain in place of that of the point; the
-    /// nonlocal strain is an internal variable, and what it rises by in a step is given ([`nonlocal_rise`]).
+    /// nonlocal strain is an internal variable, and its rise in a step is given ([`nonlocal_rise`]).
     ///
     /// # Errors
     /// [`MaterialError::InvalidParameter`] of a length that is not positive, a share below 1, strength that stays or goes with a
@@ -52,13 +52,13 @@ impl Softening {
         (self.nonlocal).map(|_| 1 + usize::from(self.directions.is_some()))
     }
 
-    /// What is left of elastic stiffness beside softening by a point's own plastic strain \[-\]; above 1 it hardens.
+    /// The rest of elastic stiffness beside softening by a point's own plastic strain \[-\]; above 1 it hardens.
     pub(super) fn margin(&self, by_kappa: f64) -> f64 {
-        1.0 - self.own_share() * by_kappa
+        1.0 - self.local_share() * by_kappa
     }
 
-    /// The return at a point and in a step, with what plastic and nonlocal strain are to each other. The tangent is that at
-    /// held strength, and what the change of strength adds, $`\partial\tau/\partial\kappa \otimes \mathrm{d}\kappa/\mathrm{d}\varepsilon`$
+    /// The return at a point and in a step, with the rates of plastic and nonlocal strain. The tangent is that at
+    /// held strength, and that of the change of strength, $`\partial\tau/\partial\kappa \otimes \mathrm{d}\kappa/\mathrm{d}\varepsilon`$
     /// (theory, eqs. 108 and 110c).
     pub(super) fn returned(
         &self,
@@ -83,17 +83,17 @@ impl Softening {
         let trial = (eps_e_trial, &stress);
         let (kappa, held) = self.settled(trial, (history, moment), (held, first))?;
         let answer = (held.answer(&self.elasticity, eps_e_trial, history)?).of_soil(ratio);
-        let (margin, own) = (self.margin(answer.by_kappa), self.own_share());
+        let (margin, local) = (self.margin(answer.by_kappa), self.local_share());
         let mut map = answer.map;
         for (row, rate) in map.tangent.iter_mut().zip(answer.stress_rate) {
             for (entry, along) in row.iter_mut().zip(answer.by_trial) {
-                *entry += own * rate * along / margin;
+                *entry += local * rate * along / margin;
             }
         }
         if self.softens() {
             map.history.internal[0] = kappa;
         }
-        let around = self.nonlocal.map_or(0.0, |own| own.over_nonlocal);
+        let around = self.nonlocal.map_or(0.0, |nonlocal| nonlocal.over_nonlocal);
         map.nonlocal = NonlocalRates {
             plastic: answer.strain,
             plastic_by_strain: answer.by_trial.map(|along| along / margin),

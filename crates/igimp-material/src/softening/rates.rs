@@ -60,19 +60,19 @@ impl Changing {
     /// shear or to an edge beside it; else none.
     pub(crate) fn strain(&self, moduli: &Moduli, trial: &Principal) -> Option<[f64; 2]> {
         let Self { strength, rate } = self;
-        let own = strength.circle(moduli, trial)?;
+        let state = strength.circle(moduli, trial)?;
         let (sine, y, y_rate) = (
             strength.sin_friction,
             strength.sin_dilation,
             rate.sin_dilation,
         );
-        let ([up, low], [l_u, l_w]) = (own.ends, own.circle.dilating);
-        let [g_u, g_w] = own.circle.paces(y);
+        let ([up, low], [l_u, l_w]) = (state.ends, state.circle.dilating);
+        let [g_u, g_w] = state.circle.paces(y);
         let [upper, lower] = [1.0 - sine, 1.0 + sine];
-        let turned = own.multiplier * y_rate * (upper * l_u - lower * l_w);
+        let turned = state.multiplier * y_rate * (upper * l_u - lower * l_w);
         let multiplier_rate =
             (turned - rate.sin_friction * (up + low) - rate.shear) / (upper * g_u + lower * g_w);
-        let [kappa, by_multiplier, by_y] = own.circle.equivalent(own.multiplier, y);
+        let [kappa, by_multiplier, by_y] = state.circle.equivalent(state.multiplier, y);
         Some([kappa, by_multiplier * multiplier_rate + by_y * y_rate])
     }
 

@@ -82,7 +82,7 @@ pub(super) fn angle_of_compression(
     let level = (0..3).filter(|&i| i != vertical);
     let level = level
         .map(|i| axis[i] * axis[i])
-        .fold(0.0, |sum, own| sum + own);
+        .fold(0.0, |sum, square| sum + square);
     Some(level.sqrt().atan2(axis[vertical].abs()))
 }
 
@@ -114,7 +114,7 @@ impl RateEffect {
     }
 }
 
-/// What strength goes with beside plastic strain, in a step.
+/// The direction and rate that strength goes with, in a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moment {
     /// Share of the direction of stress \[-\].
@@ -139,7 +139,7 @@ impl Moment {
     /// A strength and its derivative by plastic strain, from those of its curve.
     pub(super) fn of(&self, [strength, slope]: [f64; 2]) -> [f64; 2] {
         let [factor, growth] = match self.rate {
-            Some((own, duration)) => own.at(self.step, duration),
+            Some((rate, duration)) => rate.at(self.step, duration),
             None => [1.0, 0.0],
         };
         [

@@ -32,7 +32,7 @@ pub(crate) fn principal_axes<const D: usize>(tensor: &Tensor) -> (Principal, Ten
         rotate(&mut a, &mut frame, [0, 1, 2]);
     } else if D == 3 {
         for _ in 0..SWEEPS {
-            // Sums, not maxima: they pass on what is not a number.
+            // Sums, not maxima: they pass on a NaN.
             let off = a[0][1].abs() + a[0][2].abs() + a[1][2].abs();
             let size = a[0][0].abs() + a[1][1].abs() + a[2][2].abs();
             if off <= 1e-3 * f64::EPSILON * size {

@@ -102,7 +102,7 @@ impl<const D: usize> Lifted<D> {
     }
 }
 
-/// A trial elastic strain in its principal axes: what a law is asked at.
+/// A trial elastic strain in its principal axes: the input of a law.
 #[derive(Clone, Debug)]
 pub struct TrialStrain {
     strain: Principal,

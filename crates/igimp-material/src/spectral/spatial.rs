@@ -52,21 +52,21 @@ impl<const D: usize> SpatialTangent<D> {
             std::array::from_fn(|i| std::array::from_fn(|j| frame[a][i] * frame[b][j]))
         };
         for a in 0..D {
-            let own = dyad(a, a);
+            let aa = dyad(a, a);
             let mut answer = [[0.0; D]; D];
             for b in 0..D {
                 add(&mut answer, normal[a][b], &dyad(b, b));
             }
-            tangent.add_product(&own, &answer);
+            tangent.add_product(&aa, &answer);
             add(
                 &mut tangent.trace_left,
                 normal[0][a] + normal[1][a] + normal[2][a],
-                &own,
+                &aa,
             );
             add(
                 &mut tangent.trace_right,
                 normal[a][0] + normal[a][1] + normal[a][2],
-                &own,
+                &aa,
             );
             for b in 0..a {
                 let (ab, ba) = (dyad(a, b), dyad(b, a));

@@ -9,7 +9,7 @@ use igimp_material::{
 
 use crate::random::Random;
 
-/// What the planes of Tresca and Mohr–Coulomb are made of; angles in radians.
+/// Parameters of the planes of Tresca and Mohr–Coulomb; angles in radians.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Planes {
     pub(crate) cohesion: f64,

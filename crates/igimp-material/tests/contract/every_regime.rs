@@ -16,7 +16,7 @@ pub(crate) const STATES: usize = if cfg!(debug_assertions) {
     1_000_000
 };
 
-/// A trial strain, what was before, and how long the step takes.
+/// A trial strain, the history before it, and the duration of the step.
 type State = (Principal, History, f64);
 
 /// A law with one set of parameters, and random states of it.
@@ -30,10 +30,10 @@ fn all() -> Vec<(&'static str, Vec<Tried>)> {
     let mut tried: Vec<(&'static str, Vec<Tried>)> = Vec::new();
     let mut add = |law: Arc<dyn ConstitutiveModel>, draw: Box<dyn Fn(&mut Random) -> State>| {
         let name = law.name();
-        let own = Tried { law, draw };
+        let case = Tried { law, draw };
         match tried.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, sets)) => sets.push(own),
-            None => tried.push((name, vec![own])),
+            Some((_, sets)) => sets.push(case),
+            None => tried.push((name, vec![case])),
         }
     };
     for entry in catalogue::all() {
@@ -57,30 +57,30 @@ fn all() -> Vec<(&'static str, Vec<Tried>)> {
         add(law, Box::new(draw));
     }
     for law in memory::laws() {
-        let own = law;
+        let copy = law;
         let draw = move |random: &mut Random| {
-            let (history, elastic) = memory::start(&own, random);
+            let (history, elastic) = memory::start(&copy, random);
             (memory::trial(&elastic, 0.3, random), history, 0.0)
         };
         add(Arc::new(law), Box::new(draw));
     }
     for law in hardening_soil::laws() {
-        let own = law;
+        let copy = law;
         let draw = move |random: &mut Random| {
-            let (history, elastic) = hardening_soil::start(&own, random);
+            let (history, elastic) = hardening_soil::start(&copy, random);
             (hardening_soil::trial(&elastic, random), history, 0.0)
         };
         add(Arc::new(law), Box::new(draw));
     }
     for (law, _) in undrained::laws() {
-        let own = law.clone();
-        let draw = move |random: &mut Random| undrained::state(&own, random);
+        let copy = law.clone();
+        let draw = move |random: &mut Random| undrained::state(&copy, random);
         add(Arc::new(law), Box::new(draw));
     }
     tried
 }
 
-/// What an answer has to be. A strength that goes with the rate is checked by `undrained`, where it is known.
+/// The demands on an answer. A strength that goes with the rate is checked by `undrained`, where it is known.
 fn check(law: &dyn ConstitutiveModel, (strain, history, duration): &State) -> Regime {
     let about = || format!("{law:?} {strain:?} {history:?} {duration:e}");
     let answer = law
@@ -88,8 +88,8 @@ fn check(law: &dyn ConstitutiveModel, (strain, history, duration): &State) -> Re
         .unwrap_or_else(|error| panic!("{} {error}", about()));
     let tangent: &Tensor = &answer.tangent;
     let mut numbers = tangent.as_flattened().iter().chain(&answer.tau);
-    assert!(numbers.all(|own| own.is_finite()), "{}", about());
-    assert!(answer.history.internal.iter().all(|own| own.is_finite()));
+    assert!(numbers.all(|v| v.is_finite()), "{}", about());
+    assert!(answer.history.internal.iter().all(|v| v.is_finite()));
     assert!(answer.history.eps_p_eq >= history.eps_p_eq, "{}", about());
     if *duration == 0.0 {
         let excess = law.yield_function(&answer.tau, &answer.history);
@@ -103,17 +103,17 @@ fn check(law: &dyn ConstitutiveModel, (strain, history, duration): &State) -> Re
 }
 
 /// GOAL: of random states of every law none has a number that is not finite, a stress beyond the surface by more than 1e-12 of the stresses
-/// it is a difference of, a tangent that is not finite, or negative plastic work; every law flows, and what is met is counted.
+/// it is a difference of, a tangent that is not finite, or negative plastic work; every law flows, and regimes are counted.
 #[test]
 fn no_state_of_any_law_goes_wrong() {
     for (name, sets) in all() {
         let mut met = [0_usize; 12];
         let each = STATES / sets.len() + 1;
-        for (set, own) in sets.iter().enumerate() {
+        for (set, tried) in sets.iter().enumerate() {
             let mut random = Random(90 + set as u64);
             for _ in 0..each {
-                let state = (own.draw)(&mut random);
-                met[usize::from(check(&*own.law, &state).code())] += 1;
+                let state = (tried.draw)(&mut random);
+                met[usize::from(check(&*tried.law, &state).code())] += 1;
             }
         }
         let named: Vec<String> = (met.iter().zip(0..))
@@ -122,7 +122,7 @@ fn no_state_of_any_law_goes_wrong() {
             .collect();
         println!("{name}: {}", named.join(", "));
         let flows = met[1..].iter().sum::<usize>();
-        let yields = sets.iter().any(|own| own.law.yields());
+        let yields = sets.iter().any(|tried| tried.law.yields());
         assert_eq!(flows > 0, yields, "{name}");
         // Two edges of planes, and of a cut-off all regimes beside the apex of soil without one.
         let least = match name {

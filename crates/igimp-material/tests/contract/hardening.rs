@@ -67,9 +67,9 @@ fn a_scaled_law_remembers_what_the_law_with_scaled_parameters_does() {
     }
 }
 
-/// GOAL: a reduction acts on what was remembered before it, and leaves the memory as it is.
+/// GOAL: a reduction acts on the memory from before it, and leaves the memory as it is.
 #[test]
-fn a_reduction_acts_on_what_is_remembered() {
+fn a_reduction_acts_on_the_memory() {
     let law = hardening(1.0, 1.0);
     let mut history = law.initial_history(&[0.0; 3]);
     history = law

@@ -1,4 +1,4 @@
-//! Hardening Soil: what `returns` and `tangents` ask of the others, and what its calibration promises.
+//! Hardening Soil: the demands of `returns` and `tangents` on the others, and the promises of its calibration.
 
 use igimp_material::{
     ConstitutiveModel, HardeningSoil, HardeningSoilParameters, History, MaterialError,
@@ -45,7 +45,7 @@ pub(crate) fn laws() -> Vec<HardeningSoil> {
             ..dense
         },
     ];
-    all.map(|own| HardeningSoil::new(own).unwrap()).to_vec()
+    all.map(|p| HardeningSoil::new(p).unwrap()).to_vec()
 }
 
 /// Soil that began with a stress, with its memory sheared and pressed further, and its elastic strain.
@@ -222,7 +222,7 @@ fn far_trial_states_are_answered_or_refused() {
             match law.return_map(&strain, &history, &PointContext::STATIC) {
                 Ok(answer) => {
                     let tangent = answer.tangent.as_flattened().iter();
-                    assert!(tangent.chain(&answer.tau).all(|own| own.is_finite()));
+                    assert!(tangent.chain(&answer.tau).all(|v| v.is_finite()));
                     let excess = law.yield_function(&answer.tau, &answer.history);
                     let far = law.elastic_stiffness(&strain, &history).shear * size(&strain);
                     // A stress that a far larger one was returned to has the digits that this leaves.
@@ -250,19 +250,19 @@ fn far_trial_states_are_answered_or_refused() {
 fn a_reduction_is_that_of_mohr_coulomb() {
     use igimp_material::{Elasticity, MohrCoulomb};
     for law in laws() {
-        let own = *law.parameters();
+        let soil = *law.parameters();
         let (srf, mut random) = (1.3, Random(55));
         let reduced = law.reduced(srf).unwrap();
-        let friction = (own.friction_angle.tan() / srf).atan();
+        let friction = (soil.friction_angle.tan() / srf).atan();
         for _ in 0..2_000 {
             let (history, elastic) = start(&law, &mut random);
             let strain = trial(&elastic, &mut random);
             let shear = law.elastic_stiffness(&elastic, &history).shear;
-            let young = 2.0 * (1.0 + own.poisson) * shear;
-            let elasticity = Elasticity::new(young, own.poisson).unwrap();
-            let dilation = own.dilation_angle.min(friction);
+            let young = 2.0 * (1.0 + soil.poisson) * shear;
+            let elasticity = Elasticity::new(young, soil.poisson).unwrap();
+            let dilation = soil.dilation_angle.min(friction);
             let oracle =
-                MohrCoulomb::new(elasticity, own.cohesion / srf, friction, dilation).unwrap();
+                MohrCoulomb::new(elasticity, soil.cohesion / srf, friction, dilation).unwrap();
             let (expected, answer) = (
                 oracle
                     .return_map(&strain, &history, &PointContext::STATIC)
@@ -280,13 +280,13 @@ fn a_reduction_is_that_of_mohr_coulomb() {
                     assert!(error < 1e-9 * shear || answer.regime != expected.regime);
                 }
             }
-            let bits = |own: &History| own.internal.map(f64::to_bits);
+            let bits = |history: &History| history.internal.map(f64::to_bits);
             assert_eq!(bits(&answer.history), bits(&history));
         }
         let (steeper, slope) = (reduced.at_friction(1.1).unwrap().unwrap(), friction.tan());
         let strength = steeper.shear_strength().unwrap();
         assert!((strength.friction_angle.tan() / slope - 1.1).abs() < 1e-12);
-        assert!((strength.cohesive - own.cohesion / srf).abs() <= 1e-12 * own.cohesion);
+        assert!((strength.cohesive - soil.cohesion / srf).abs() <= 1e-12 * soil.cohesion);
         assert!(law.reduced(-1.0).is_err());
     }
 }
@@ -300,16 +300,16 @@ fn refusals_have_words() {
         change(&mut parameters);
         HardeningSoil::new(parameters).unwrap_err().to_string()
     };
-    assert!(with(&|own| own.cohesion = -1.0).contains("`cohesion`"));
-    assert!(with(&|own| own.friction_angle = 0.0).contains("`friction_angle`"));
-    assert!(with(&|own| own.dilation_angle = 0.8).contains("`dilation_angle`"));
-    assert!(with(&|own| own.secant = 0.0).contains("`secant`"));
-    assert!(with(&|own| own.unloading = 40e6).contains("initial stiffness of the hyperbola"));
-    assert!(with(&|own| own.oedometer = 200e6).contains("that a cap can give"));
-    assert!(with(&|own| own.poisson = 0.5).contains("`poisson`"));
-    assert!(with(&|own| own.power = 1.1).contains("`power`"));
-    assert!(with(&|own| own.failure_ratio = 1.0).contains("`failure_ratio`"));
-    assert!(with(&|own| own.k0_normal = 1.0).contains("`k0_normal`"));
-    assert!(with(&|own| own.overconsolidation = 0.5).contains("at least 1"));
-    assert!(with(&|own| own.reference_pressure = f64::NAN).contains("`reference_pressure`"));
+    assert!(with(&|p| p.cohesion = -1.0).contains("`cohesion`"));
+    assert!(with(&|p| p.friction_angle = 0.0).contains("`friction_angle`"));
+    assert!(with(&|p| p.dilation_angle = 0.8).contains("`dilation_angle`"));
+    assert!(with(&|p| p.secant = 0.0).contains("`secant`"));
+    assert!(with(&|p| p.unloading = 40e6).contains("initial stiffness of the hyperbola"));
+    assert!(with(&|p| p.oedometer = 200e6).contains("that a cap can give"));
+    assert!(with(&|p| p.poisson = 0.5).contains("`poisson`"));
+    assert!(with(&|p| p.power = 1.1).contains("`power`"));
+    assert!(with(&|p| p.failure_ratio = 1.0).contains("`failure_ratio`"));
+    assert!(with(&|p| p.k0_normal = 1.0).contains("`k0_normal`"));
+    assert!(with(&|p| p.overconsolidation = 0.5).contains("at least 1"));
+    assert!(with(&|p| p.reference_pressure = f64::NAN).contains("`reference_pressure`"));
 }

@@ -154,12 +154,12 @@ fn tangents_are_derivatives() {
 #[test]
 fn triaxial_compression_fails_on_the_envelope() {
     for row in 0..ROCKS.len() {
-        let (law, own) = (rock(row), parameters(row));
-        let (sci, young) = (own.intact_strength, law.stiffness_bound().young());
+        let (law, p) = (rock(row), parameters(row));
+        let (sci, young) = (p.intact_strength, law.stiffness_bound().young());
         for confinement in [0.0, 0.01, 0.1, 1.0] {
             let confinement = confinement * sci;
             let expected =
-                sci * (own.ratio() * confinement / sci + own.cohesive_share()).powf(own.exponent());
+                sci * (p.ratio() * confinement / sci + p.cohesive_share()).powf(p.exponent());
             // Stress control: the axial strain that is too much, and the sides that keep their stress.
             let mut elastic = law.stiffness_bound().strain(&[-confinement; 3]);
             for _ in 0..400 {
@@ -197,7 +197,7 @@ fn triaxial_compression_fails_on_the_envelope() {
             }
             let tau = law.stiffness_bound().stress(&elastic);
             let q = tau[0] - tau[2];
-            let on = sci * (own.cohesive_share() - own.ratio() * tau[0] / sci).powf(own.exponent());
+            let on = sci * (p.cohesive_share() - p.ratio() * tau[0] / sci).powf(p.exponent());
             assert!((q - on).abs() < 1e-9 * sci, "{row} {confinement} {q} {on}");
             assert!(
                 (tau[0] + confinement).abs() < 1e-6 * sci && (q / expected - 1.0).abs() < 1e-4,
@@ -212,9 +212,9 @@ fn triaxial_compression_fails_on_the_envelope() {
 #[test]
 fn a_reduction_divides_the_envelope_of_shear() {
     for (row, srf, law) in laws() {
-        let own = parameters(row);
-        let (ratio, share, exponent) = (own.ratio(), own.cohesive_share(), own.exponent());
-        let sci = own.intact_strength;
+        let p = parameters(row);
+        let (ratio, share, exponent) = (p.ratio(), p.cohesive_share(), p.exponent());
+        let sci = p.intact_strength;
         // Normal and shear stress of the envelope by the minor stress (Hoek, Carranza-Torres and Corkum 2002, eqs. 8 and 9).
         let point = |minor: f64| {
             let base = ratio * minor / sci + share;
@@ -267,7 +267,7 @@ fn a_reduction_divides_the_envelope_of_shear() {
     }
 }
 
-/// GOAL: the answer goes with the order of the principal values, and what no rock has is refused by its name.
+/// GOAL: the answer goes with the order of the principal values, and values that no rock has are refused by name.
 #[test]
 fn order_does_not_matter_and_refusals_have_names() {
     for (row, srf, law) in laws() {
@@ -291,18 +291,18 @@ fn order_does_not_matter_and_refusals_have_names() {
         }
     }
     let with = |change: &dyn Fn(&mut HoekBrownParameters)| {
-        let mut own = parameters(1);
-        change(&mut own);
+        let mut p = parameters(1);
+        change(&mut p);
         let elasticity = Elasticity::new(1.0, 0.3).unwrap();
-        HoekBrown::new(elasticity, own).unwrap_err().to_string()
+        HoekBrown::new(elasticity, p).unwrap_err().to_string()
     };
     assert_eq!(
-        with(&|own| own.gsi = 0.0),
+        with(&|p| p.gsi = 0.0),
         "`gsi` = 0 must be above 0 and at most 100"
     );
-    assert!(with(&|own| own.disturbance = 1.1).contains("`disturbance`"));
-    assert!(with(&|own| own.intact_ratio = f64::NAN).contains("`intact_ratio`"));
-    assert!(with(&|own| own.intact_strength = 0.0).contains("`intact_strength`"));
-    assert!(with(&|own| own.dilation_angle = -0.1).contains("`dilation_angle`"));
+    assert!(with(&|p| p.disturbance = 1.1).contains("`disturbance`"));
+    assert!(with(&|p| p.intact_ratio = f64::NAN).contains("`intact_ratio`"));
+    assert!(with(&|p| p.intact_strength = 0.0).contains("`intact_strength`"));
+    assert!(with(&|p| p.dilation_angle = -0.1).contains("`dilation_angle`"));
     assert!(rock(0).reduced(f64::NAN).is_err());
 }

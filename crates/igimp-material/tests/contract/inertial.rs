@@ -51,7 +51,7 @@ fn friction(cone: Cone, rate: f64, pressure: f64) -> f64 {
 /// q, and the mean stress.
 fn invariants(tau: &Principal) -> [f64; 2] {
     let mean = tau.iter().sum::<f64>() / 3.0;
-    let s = tau.map(|own| own - mean);
+    let s = tau.map(|t| t - mean);
     [(1.5 * dot(&s, &s)).sqrt(), mean]
 }
 
@@ -130,7 +130,7 @@ fn friction_in_the_plane_is_the_sine_of_the_angle() {
 #[test]
 fn shear_from_rest_follows_its_equation() {
     let (rate, pressure, span) = (40.0, 500.0, 1.4e-5);
-    let [slow, fast] = [SLOW, BEADS.friction_angle].map(|own| slope(Cone::PlaneStrain, own));
+    let [slow, fast] = [SLOW, BEADS.friction_angle].map(|angle| slope(Cone::PlaneStrain, angle));
     let stiffness = 3.0_f64.sqrt() * elasticity().shear();
     let growth = |q: f64| {
         let over = (q / pressure - slow).max(0.0);
@@ -172,7 +172,7 @@ fn slow_and_fast_shear_have_cones() {
                 let (found, expected) =
                     (answer(&law, &trial, duration), answer(other, &trial, 0.0));
                 let off: Vec<f64> = (0..3).map(|a| found.tau[a] - expected.tau[a]).collect();
-                off.iter().all(|own| own.abs() < 1e-9 * scale)
+                off.iter().all(|x| x.abs() < 1e-9 * scale)
             };
             assert_eq!(answer(&law, &trial, 0.0), answer(&slow, &trial, 0.0));
             assert!(close(1e12, &slow));
@@ -249,10 +249,10 @@ fn stress_is_that_of_the_implicit_equation() {
             }
             other => panic!("{other:?}"),
         };
-        let own = invariants(&found.tau)[0];
+        let reached = invariants(&found.tau)[0];
         assert!(
-            (own - expected).abs() < 1e-10 * size(&stress),
-            "{cone:?} {duration}: {own} {expected}"
+            (reached - expected).abs() < 1e-10 * size(&stress),
+            "{cone:?} {duration}: {reached} {expected}"
         );
         assert!(
             law.yield_function(&stress, &found.history) > 0.0 || found.regime == Regime::Elastic
@@ -323,23 +323,26 @@ fn other_strengths_are_laws_of_their_parameters() {
         let law = DruckerPrager::new(elasticity, c, over(SLOW, factor), 0.0, cone);
         law.unwrap().with_rate(rate).unwrap()
     };
-    let own = law(COHESION, cone);
-    same(&*own.reduced(1.3).unwrap(), &made(COHESION / 1.3, 1.3, 1e6));
-    let with_more = own.at_friction(1.2).unwrap().unwrap();
+    let base = law(COHESION, cone);
+    same(
+        &*base.reduced(1.3).unwrap(),
+        &made(COHESION / 1.3, 1.3, 1e6),
+    );
+    let with_more = base.at_friction(1.2).unwrap().unwrap();
     same(&*with_more, &made(COHESION, 1.0 / 1.2, 1e6));
-    let none = own.at_friction(0.0).unwrap().unwrap();
+    let none = base.at_friction(0.0).unwrap().unwrap();
     let cylinder = DruckerPrager::new(elasticity(), COHESION, 0.0, 0.0, cone).unwrap();
     same(&*none, &cylinder);
     let ratios = Ratios {
         stiffness: 0.4,
         ..Ratios::ONE
     };
-    let whole: &dyn ConstitutiveModel = &own;
+    let whole: &dyn ConstitutiveModel = &base;
     let softer = ScaledLaw::new(whole, ratios).unwrap();
     same(&softer, &made(COHESION, 1.0, 0.4e6));
 }
 
-/// GOAL: what is not possible is refused by the name of its parameter.
+/// GOAL: impossible values are refused by the name of their parameter.
 #[test]
 fn parameters_out_of_range_are_named() {
     let field = |law: Result<DruckerPrager, MaterialError>| match law {

@@ -216,17 +216,17 @@ fn a_regularised_tangent_is_stiffer_where_soil_yields() {
             let strain = entry.general(&mut random);
             let state = Measure::Small.state(&strain, &random.rotation());
             let lift = |kind| -> Lifted<3> { Measure::Small.lift(&*entry.law, &state, kind) };
-            let own = lift(TangentKind::Consistent);
+            let full = lift(TangentKind::Consistent);
             let elastic = 0.3;
             let between = lift(TangentKind::Regularised { elastic });
-            assert_eq!(between.tau, own.tau);
-            if !own.regime.is_plastic() {
-                assert_eq!(between, own);
+            assert_eq!(between.tau, full.tau);
+            if !full.regime.is_plastic() {
+                assert_eq!(between, full);
                 continue;
             }
             let elasticity = entry.law.stiffness_bound();
             let stiffest = elasticity.bulk() + elasticity.shear();
-            let moduli = [own, lift(TangentKind::Elastic), between].map(|lifted| {
+            let moduli = [full, lift(TangentKind::Elastic), between].map(|lifted| {
                 lifted
                     .tangent()
                     .modulus
@@ -235,9 +235,9 @@ fn a_regularised_tangent_is_stiffer_where_soil_yields() {
                     .flatten()
                     .flatten()
             });
-            let [own, stiff, between] = moduli.map(Iterator::collect::<Vec<f64>>);
+            let [full, stiff, between] = moduli.map(Iterator::collect::<Vec<f64>>);
             for (component, between) in between.into_iter().enumerate() {
-                let expected = 0.7 * own[component] + 0.3 * stiff[component];
+                let expected = 0.7 * full[component] + 0.3 * stiff[component];
                 assert!((between - expected).abs() < 1e-12 * stiffest);
             }
         }
@@ -259,24 +259,24 @@ fn elastic_kind_changes_the_tangent_only() {
                     .general(&mut random)
                     .map(|value| value.clamp(-1.0, 1.0));
                 let state = measure.state(&strain, &plane_rotation(random.symmetric()));
-                let own: Lifted<2> = measure.lift(&*entry.law, &state, TangentKind::Elastic);
+                let lifted: Lifted<2> = measure.lift(&*entry.law, &state, TangentKind::Elastic);
                 let full: Lifted<2> = measure.lift(&*entry.law, &state, TangentKind::Consistent);
                 let hencky: Lifted<2> = measure.lift(&elastic, &state, TangentKind::Elastic);
-                assert_eq!(own.tau, full.tau);
-                let (of_own, of_hencky) = (own.tangent(), hencky.tangent());
-                if !own.regime.is_plastic() || measure == Measure::Small {
-                    assert_eq!(of_own, of_hencky);
+                assert_eq!(lifted.tau, full.tau);
+                let (of_law, of_hencky) = (lifted.tangent(), hencky.tangent());
+                if !lifted.regime.is_plastic() || measure == Measure::Small {
+                    assert_eq!(of_law, of_hencky);
                 }
                 let geometric = f64::from(u8::from(measure == Measure::Finite));
-                let [own_a, hencky_a] = [of_own.modulus, of_hencky.modulus];
-                let round_off = 1e-13 * (1.0 + largest(&own.tau) + elastic_scale(&entry.law));
+                let [law_a, hencky_a] = [of_law.modulus, of_hencky.modulus];
+                let round_off = 1e-13 * (1.0 + largest(&lifted.tau) + elastic_scale(&entry.law));
                 for [a, b, c, d] in indices() {
-                    let stretch = own_a[a][b][c][d] + own_a[a][b][d][c];
+                    let stretch = law_a[a][b][c][d] + law_a[a][b][d][c];
                     let expected = hencky_a[a][b][c][d] + hencky_a[a][b][d][c];
                     assert!((stretch - expected).abs() < round_off, "{}", entry.label);
                     let delta = |i: usize, j: usize| geometric * f64::from(u8::from(i == j));
-                    let one = own_a[a][b][c][d] - own.tau[a][d] * delta(b, c);
-                    let other = own_a[c][d][a][b] - own.tau[c][b] * delta(d, a);
+                    let one = law_a[a][b][c][d] - lifted.tau[a][d] * delta(b, c);
+                    let other = law_a[c][d][a][b] - lifted.tau[c][b] * delta(d, a);
                     assert!((one - other).abs() < round_off, "{}", entry.label);
                 }
                 let exact: Lifted<2> = measure.lift(&elastic, &state, TangentKind::Consistent);

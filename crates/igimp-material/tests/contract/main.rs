@@ -1,6 +1,6 @@
 //! The contract of a constitutive law, run on every law of the crate.
 //!
-//! | file | what is asked |
+//! | file | demands |
 //! |---|---|
 //! | `returns` | admissible, split of strain, dissipation, closest point, isotropy |
 //! | `active_sets` | returns to planes against every set of planes |
@@ -20,7 +20,7 @@
 //! | `undrained` | strength by the direction of stress and by the rate of strain: closed forms, the contract |
 //! | `inertial` | friction that grows with the speed of shear: closed forms, the contract |
 //! | `utilisation` | the share of the strength that a stress mobilises |
-//! | `refusals` | what is not accepted, and the words for it |
+//! | `refusals` | values that are not accepted, and the words for them |
 //!
 //! A new law joins by its lines in `catalogue`.
 

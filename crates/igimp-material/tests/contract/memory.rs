@@ -1,4 +1,4 @@
-//! Laws with memory and with elasticity that is not linear: what `returns` and `tangents` ask of the others.
+//! Laws with memory and with elasticity that is not linear: the demands of `returns` and `tangents` on the others.
 
 use igimp_material::{
     CamClayParameters, ConstitutiveModel, History, MaterialError, ModifiedCamClay, PointContext,
@@ -113,7 +113,7 @@ fn returns_are_admissible_and_dissipate() {
     }
 }
 
-/// GOAL: no trial state, however far, gives what is no number: an answer is finite, and admissible where its stress is not
+/// GOAL: no trial state, however far, gives a NaN: an answer is finite, and admissible where its stress is not
 /// absurd, or it is refused in words.
 #[test]
 fn far_trial_states_are_answered_or_refused() {
@@ -270,13 +270,13 @@ fn refusals_have_words() {
         change(&mut parameters);
         ModifiedCamClay::new(parameters).unwrap_err().to_string()
     };
-    let stiff = with(&|own| own.swelling = 0.2);
+    let stiff = with(&|p| p.swelling = 0.2);
     assert_eq!(stiff, "`compression` = 0.1 must be larger than `swelling`");
-    assert!(with(&|own| own.swelling = 0.0).contains("`swelling`"));
-    assert!(with(&|own| own.critical_ratio = f64::NAN).contains("`critical_ratio`"));
-    assert!(with(&|own| own.overconsolidation = 0.9).contains("at least 1"));
-    assert!(with(&|own| own.shear = ShearStiffness::Poisson(0.5)).contains("`poisson`"));
-    assert!(with(&|own| own.shear = ShearStiffness::Constant(0.0)).contains("`shear`"));
+    assert!(with(&|p| p.swelling = 0.0).contains("`swelling`"));
+    assert!(with(&|p| p.critical_ratio = f64::NAN).contains("`critical_ratio`"));
+    assert!(with(&|p| p.overconsolidation = 0.9).contains("at least 1"));
+    assert!(with(&|p| p.shear = ShearStiffness::Poisson(0.5)).contains("`poisson`"));
+    assert!(with(&|p| p.shear = ShearStiffness::Constant(0.0)).contains("`shear`"));
     let tension = law.elastic_strain(&[1.0, 0.0, 0.0], &History::default());
     assert!(tension.unwrap_err().to_string().contains("mean pressure"));
     let answer = law.return_map(

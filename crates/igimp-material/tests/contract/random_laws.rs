@@ -1,4 +1,4 @@
-//! Laws with random parameters: what the catalogue asks of chosen sets must hold for any.
+//! Laws with random parameters: the demands of the catalogue on chosen sets must hold for any.
 
 use std::sync::Arc;
 

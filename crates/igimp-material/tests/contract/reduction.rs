@@ -171,7 +171,7 @@ fn a_cone_without_friction_is_von_mises() {
     }
 }
 
-/// GOAL: what says how near flow is to associated flow does not jump as friction goes to none.
+/// GOAL: the measure of how near flow is to associated flow does not jump as friction goes to none.
 /// ORACLE: Tresca, whose flow is associated, is the limit of both laws; and ψ/φ where friction is not little.
 #[test]
 fn flow_without_dilation_becomes_associated_as_friction_ends() {
@@ -187,13 +187,13 @@ fn flow_without_dilation_becomes_associated_as_friction_ends() {
     let mut before = associated;
     for step in 0..=3000 {
         let friction = 0.01 * f64::from(step);
-        let own = of(friction, 0.0);
+        let found = of(friction, 0.0);
         assert!(
-            (before - 0.00201..=before).contains(&own),
-            "{friction}: {own}"
+            (before - 0.00201..=before).contains(&found),
+            "{friction}: {found}"
         );
         assert!((of(friction, friction) - associated).abs() < 1e-15);
-        before = own;
+        before = found;
     }
     for (dilation, friction) in [(0.0, 10.0), (4.0, 20.0), (30.0, 40.0)] {
         assert!((of(friction, dilation) - dilation / friction).abs() < 1e-15);

@@ -1,4 +1,4 @@
-//! What is not accepted, and the words for it.
+//! Values that are not accepted, and the words for them.
 
 use igimp_material::{
     Cone, DruckerPrager, Elasticity, HenckyElastic, History, MaterialError, MohrCoulomb,

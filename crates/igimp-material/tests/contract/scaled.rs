@@ -93,9 +93,9 @@ fn a_scaled_law_is_the_law_with_scaled_parameters() {
             let f = [&scaled as &dyn ConstitutiveModel, &*made]
                 .map(|law| law.yield_function(&tau, &history));
             assert!(f[0].to_bits() == f[1].to_bits() || close(f[0], f[1], scale.max(stress)));
-            let own_scale = scaled.stress_scale(&tau);
-            assert!(!made.yields() || close(own_scale, scale, scale.max(stress)));
-            // The strength is what is left of two stresses: its digits go with the square of the ratio.
+            let found = scaled.stress_scale(&tau);
+            assert!(!made.yields() || close(found, scale, scale.max(stress)));
+            // The strength is the rest of two stresses: its digits go with the square of the ratio.
             let shares = [&scaled as &dyn ConstitutiveModel, &*made]
                 .map(|law| law.utilisation(&tau, &history));
             assert!(
@@ -198,7 +198,7 @@ fn ratios_that_are_no_ratios_are_refused() {
     }
 }
 
-/// GOAL: friction at a ratio is the law made with that friction, whatever else varies, and reduced as such; strength
+/// GOAL: friction at a ratio is the law made with that friction, whatever else varies, and reduced like it; strength
 /// reduction and ratios change places.
 /// BAND: 1e-12 of stiffness and stress, as above.
 #[test]
@@ -210,8 +210,8 @@ fn friction_at_a_ratio_is_the_law_with_that_friction() {
     let mut random = Random(43);
     for (ratio, s) in [(0.5, 1.0), (1.3, 0.4), (0.0, 2.0)] {
         let steepest = make(1.3, 0.8, 0.4);
-        let own = (0.8_f64 * ratio).atan();
-        let made = make(1.3 * s, 0.8 * ratio, own.min(0.4));
+        let phi = (0.8_f64 * ratio).atan();
+        let made = make(1.3 * s, 0.8 * ratio, phi.min(0.4));
         let ratios = Ratios {
             strength: s,
             ..Ratios::ONE
@@ -219,7 +219,7 @@ fn friction_at_a_ratio_is_the_law_with_that_friction() {
         let at: Law = steepest.at_friction(ratio).unwrap().unwrap();
         let scaled = ScaledLaw::new(at, ratios).unwrap();
         let strength = scaled.shear_strength().unwrap();
-        assert!(close(strength.friction_angle, own, 1.0) && close(strength.cohesive, 1.3 * s, 1.0));
+        assert!(close(strength.friction_angle, phi, 1.0) && close(strength.cohesive, 1.3 * s, 1.0));
         let weaker: Law = steepest.reduced(1.7).unwrap();
         let weaker = ScaledLaw::new(weaker.at_friction(ratio).unwrap().unwrap(), ratios).unwrap();
         let both = [
@@ -279,14 +279,14 @@ fn friction_that_softens_at_a_ratio_is_the_law_with_those_angles() {
         ([0.1, 0.0], 0.6, [0.1, 0.0]),
         ([0.1, 0.0], 1.3, [0.1, 0.0]),
         ([0.1, 0.0], 1.0, [0.1, 0.0]),
-        ([0.6, 0.3], 0.3, tangents.map(|own| (0.3_f64 * own).atan())),
+        ([0.6, 0.3], 0.3, tangents.map(|tan| (0.3_f64 * tan).atan())),
         ([0.1, 0.05], 0.0, [0.0, 0.0]),
     ];
     let mut random = Random(47);
     for (dilation, ratio, acting) in rows {
         let law = softening(0.4, tangents, dilation);
         let at: Law = law.at_friction(ratio).unwrap().unwrap();
-        let made = softening(0.4, tangents.map(|own| ratio * own), acting);
+        let made = softening(0.4, tangents.map(|tan| ratio * tan), acting);
         for k in 0..600 {
             let size = [1e-3, 1e-2, 0.1, 0.5][k % 4];
             let strain: Principal = random.values(size);
@@ -300,12 +300,12 @@ fn friction_that_softens_at_a_ratio_is_the_law_with_those_angles() {
             for a in 0..3 {
                 assert!(close(one.tau[a], other.tau[a], 300.0 * size), "{ratio}");
             }
-            let [one_kappa, kappa] = [one, other].map(|own| own.history.internal[0]);
+            let [one_kappa, kappa] = [one, other].map(|map| map.history.internal[0]);
             assert!(close(one_kappa, kappa, 3.0 * size), "{ratio}");
             if ratio.total_cmp(&1.0).is_eq() {
-                let own = answer(&law);
-                assert_eq!((own.tau, own.tangent), (one.tau, one.tangent));
-                assert_eq!(own.history, one.history);
+                let expected = answer(&law);
+                assert_eq!((expected.tau, expected.tangent), (one.tau, one.tangent));
+                assert_eq!(expected.history, one.history);
             }
         }
     }

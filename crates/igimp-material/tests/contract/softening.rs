@@ -357,9 +357,9 @@ fn a_scaled_law_is_the_law_with_scaled_curves() {
     };
     for sees_around in [false, true] {
         let law = |c: f64, e: f64| -> Arc<dyn ConstitutiveModel> {
-            let own = law(c, e);
-            let around = || own.clone().with_nonlocal(nonlocal).unwrap();
-            Arc::new(if sees_around { around() } else { own.clone() })
+            let base = law(c, e);
+            let around = || base.clone().with_nonlocal(nonlocal).unwrap();
+            Arc::new(if sees_around { around() } else { base.clone() })
         };
         let scaled = ScaledLaw::new(law(1.0, 1.0), ratios).unwrap();
         let made = law(strength, stiffness);
@@ -382,7 +382,7 @@ fn a_scaled_law_is_the_law_with_scaled_curves() {
             };
             near(&one.tau, &other.tau, 1e-11 * stress);
             near(&one.history.internal, &other.history.internal, 1e-12);
-            let [a, b] = [&one, &other].map(|own| own.tangent.as_flattened());
+            let [a, b] = [&one, &other].map(|map| map.tangent.as_flattened());
             near(a, b, 1e-8 * stress * G);
             let (a, b) = (&one.nonlocal, &other.nonlocal);
             near(&[a.plastic], &[b.plastic], 1e-12);
@@ -390,7 +390,7 @@ fn a_scaled_law_is_the_law_with_scaled_curves() {
             near(&a.plastic_by_strain, &b.plastic_by_strain, 1e-8);
             near(&a.stress_by_nonlocal, &b.stress_by_nonlocal, 1e-8 * stress);
             let [a, b] = [&scaled as &dyn ConstitutiveModel, &*made]
-                .map(|own| own.shear_strength_at(&history).unwrap().cohesive);
+                .map(|law| law.shear_strength_at(&history).unwrap().cohesive);
             near(&[a], &[b], 1e-12);
             let left = |kappa: f64| strength * (1.0 - 0.7 * (kappa / 0.05).min(1.0));
             if !sees_around {
@@ -431,8 +431,8 @@ fn stated_strains_hold_at_every_ratio() {
                 if kappa > 0.0 {
                     let expected = line(strength, kappa);
                     assert!((shear / expected - 1.0).abs() < 1e-9, "{shear} {expected}");
-                    let told = scaled.shear_strength_at(&history).unwrap();
-                    assert!((told.cohesive / expected - 1.0).abs() < 1e-12);
+                    let found = scaled.shear_strength_at(&history).unwrap();
+                    assert!((found.cohesive / expected - 1.0).abs() < 1e-12);
                 }
                 assert!((kappa - history.eps_p_eq).abs() < 1e-12);
             }

@@ -121,7 +121,7 @@ impl Measure {
     }
 }
 
-/// Largest difference between `rate` and what the spatial tangent answers to `l`, all nine
+/// Largest difference between `rate` and the answer of the spatial tangent to `l`, all nine
 /// components in 3D, the in-plane ones and the trace in plane strain.
 ///
 /// `l` may have `l_zz` in plane strain only as part of an isotropic tensor: `l = l' + r I`.

@@ -51,11 +51,11 @@ pub(crate) fn laws() -> Vec<(Softening, Effects)> {
         for directions in [None, Some(SHARES)] {
             for rate in [None, Some(RATE)] {
                 for mut law in both(curve) {
-                    if let Some(own) = directions {
-                        law = law.with_directions(own).unwrap();
+                    if let Some(directions) = directions {
+                        law = law.with_directions(directions).unwrap();
                     }
-                    if let Some(own) = rate {
-                        law = law.with_rate(own).unwrap();
+                    if let Some(rate) = rate {
+                        law = law.with_rate(rate).unwrap();
                     }
                     all.push((law, (curve, directions, rate)));
                 }
@@ -67,7 +67,7 @@ pub(crate) fn laws() -> Vec<(Softening, Effects)> {
 
 /// Where κ and the angle stand among the internal variables.
 fn places(law: &Softening) -> [Option<usize>; 2] {
-    let of = |name: &str| (law.internal_variables().iter()).position(|own| own.name == name);
+    let of = |name: &str| (law.internal_variables().iter()).position(|v| v.name == name);
     [of("softening strain"), of("angle of compression")]
 }
 
@@ -83,19 +83,19 @@ fn history(law: &Softening, kappa: f64, angle: f64) -> History {
     history
 }
 
-/// The strength of a step that began with κ and an angle, from what it answered: the product of the formulas, as they are written.
+/// The strength of a step that began with κ and an angle, from its answer: the product of the formulas, as they are written.
 fn strength(effects: &Effects, [kappa, angle]: [f64; 2], duration: f64, answer: &ReturnMap) -> f64 {
     let (curve, directions, rate) = effects;
     let mean = answer.delta_eps_p.iter().sum::<f64>() / 3.0;
-    let e_p = answer.delta_eps_p.map(|own| own - mean);
+    let e_p = answer.delta_eps_p.map(|e| e - mean);
     let step = (2.0 / 3.0 * dot(&e_p, &e_p)).sqrt();
     let left = (-(kappa + step) / curve.strain).exp();
     let soft = curve.residual + (curve.initial - curve.residual) * left;
-    let turned = directions.map_or(1.0, |own| on_ellipse(own, angle));
-    let fast = rate.map_or(1.0, |own| {
-        let over = step * 3.0_f64.sqrt() / duration / own.reference;
+    let turned = directions.map_or(1.0, |shares| on_ellipse(shares, angle));
+    let fast = rate.map_or(1.0, |rate| {
+        let over = step * 3.0_f64.sqrt() / duration / rate.reference;
         if duration > 0.0 && over > 1.0 {
-            1.0 + own.per_log_cycle * over.ln() / 10.0_f64.ln()
+            1.0 + rate.per_log_cycle * over.ln() / 10.0_f64.ln()
         } else {
             1.0
         }
@@ -104,10 +104,10 @@ fn strength(effects: &Effects, [kappa, angle]: [f64; 2], duration: f64, answer: 
 }
 
 /// The share by bisection of the equation of the ellipse, which knows nothing of its solution.
-fn on_ellipse(own: Directions, angle: f64) -> f64 {
-    let (centre, level) = (0.5 * (1.0 - own.passive), 0.5 * (1.0 + own.passive));
+fn on_ellipse(shares: Directions, angle: f64) -> f64 {
+    let (centre, level) = (0.5 * (1.0 - shares.passive), 0.5 * (1.0 + shares.passive));
     // Through the strength of simple shear, at zero on the level axis.
-    let upright = own.simple_shear / (1.0 - (centre / level).powi(2)).sqrt();
+    let upright = shares.simple_shear / (1.0 - (centre / level).powi(2)).sqrt();
     let beyond = |radius: f64| {
         let (sine, cosine) = (2.0 * angle).sin_cos();
         ((radius * cosine - centre) / level).powi(2) + (radius * sine / upright).powi(2) > 1.0
@@ -171,7 +171,7 @@ fn strength_is_that_of_the_formulas_in_every_regime() {
         for _ in 0..STATES / 16 {
             let (strain, history, duration) = state(&law, &mut random);
             let [of_kappa, of_angle] = places(&law);
-            let before = |place: Option<usize>| place.map_or(0.0, |own| history.internal[own]);
+            let before = |place: Option<usize>| place.map_or(0.0, |k| history.internal[k]);
             let begin = [before(of_kappa), before(of_angle)];
             let answer = law.return_map(&strain, &history, &PointContext::over(duration));
             let about = || format!("{law:?} {strain:?} {begin:?} {duration:e}");
@@ -180,7 +180,7 @@ fn strength_is_that_of_the_formulas_in_every_regime() {
             assert!(
                 numbers
                     .chain(&answer.history.internal)
-                    .all(|own| own.is_finite()),
+                    .all(|v| v.is_finite()),
                 "{}",
                 about()
             );
@@ -199,7 +199,7 @@ fn strength_is_that_of_the_formulas_in_every_regime() {
         let is_tresca = law.name().contains("Tresca");
         let all = if is_tresca { 4 } else { 2 };
         assert!(
-            met[..all].iter().all(|&own| own > 20),
+            met[..all].iter().all(|&count| count > 20),
             "{} {met:?}",
             law.name()
         );
@@ -224,16 +224,16 @@ fn equal_strengths_are_the_isotropic_law() {
         let mut random = Random(72);
         for _ in 0..STATES {
             let strain = trial(&mut random);
-            let own = history(&law, 0.1, random.between(0.0, FRAC_PI_2));
+            let start = history(&law, 0.1, random.between(0.0, FRAC_PI_2));
             let [one, other] = [
-                law.return_map(&strain, &own, &PointContext::STATIC)
+                law.return_map(&strain, &start, &PointContext::STATIC)
                     .unwrap(),
                 plain
-                    .return_map(&strain, &own, &PointContext::STATIC)
+                    .return_map(&strain, &start, &PointContext::STATIC)
                     .unwrap(),
             ];
             assert_eq!(one.regime, other.regime);
-            let size = strain.iter().fold(0.0_f64, |most, own| most.max(own.abs()));
+            let size = strain.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
             let stiffness = elasticity().tangent()[0][0];
             let near = |a: &[f64], b: &[f64], scale: f64| {
                 let pairs = a.iter().zip(b);
@@ -241,7 +241,7 @@ fn equal_strengths_are_the_isotropic_law() {
             };
             near(&one.tau, &other.tau, stiffness * size);
             near(&one.delta_eps_p, &other.delta_eps_p, 10.0 * size);
-            let [a, b] = [&one, &other].map(|own| own.tangent.as_flattened());
+            let [a, b] = [&one, &other].map(|map| map.tangent.as_flattened());
             near(a, b, stiffness);
         }
     }
@@ -262,9 +262,9 @@ fn the_angle_is_that_of_the_major_compression() {
         let stress = |axis: &[f64; 3], third: usize| -> Tensor {
             std::array::from_fn(|i| {
                 std::array::from_fn(|j| {
-                    let own = if i == j { -1.0 } else { 0.0 };
+                    let mean = if i == j { -1.0 } else { 0.0 };
                     let level = if i == third && j == third { -5.0 } else { 0.0 };
-                    own - 2.0 * axis[i] * axis[j] + level
+                    mean - 2.0 * axis[i] * axis[j] + level
                 })
             })
         };
@@ -309,16 +309,16 @@ fn strength_grows_with_the_logarithm_of_the_rate() {
                 for (asked, times) in [(&*law, 1.0), (&scaled as &dyn ConstitutiveModel, 3.0)] {
                     let gamma = 4.0 / f64::from(steps);
                     let mut elastic = [0.0; 3];
-                    let mut own = asked.initial_history(&[0.0; 3]);
+                    let mut history = asked.initial_history(&[0.0; 3]);
                     let mut shear = 0.0;
                     for _ in 0..steps {
                         elastic[0] += 0.5 * gamma;
                         elastic[1] -= 0.5 * gamma;
                         let answer = asked
-                            .return_map(&elastic, &own, &PointContext::over(gamma / rate))
+                            .return_map(&elastic, &history, &PointContext::over(gamma / rate))
                             .unwrap();
                         elastic = asked.stiffness_bound().strain(&answer.tau);
-                        own = answer.history;
+                        history = answer.history;
                         shear = 0.5 * (answer.tau[0] - answer.tau[1]);
                     }
                     let error = shear / (times * expected) - 1.0;
@@ -345,15 +345,15 @@ fn tangents_are_derivatives() {
         let mut tried = 0;
         for state in 0..600 {
             let asked: &dyn ConstitutiveModel = if state % 2 == 0 { &*law } else { &scaled };
-            let mut own = asked.initial_history(&[0.0; 3]);
-            own.internal[0] = random.between(0.0, 0.4);
+            let mut history = asked.initial_history(&[0.0; 3]);
+            history.internal[0] = random.between(0.0, 0.4);
             // So long that plastic strain is well above the reference rate, or well below.
             let duration = [1.0, 1e9][random.below(2)];
             let strain: Principal = random.values(0.1);
             let step = 1e-7;
             let at = |strain: &Principal| {
                 asked
-                    .return_map(strain, &own, &PointContext::over(duration))
+                    .return_map(strain, &history, &PointContext::over(duration))
                     .unwrap()
             };
             let answer = at(&strain);
@@ -398,19 +398,19 @@ fn reduction_divides_all_and_friction_is_refused() {
         };
         let place = usize::from(law.name().contains("Tresca"));
         let mut made = both(weaker)[place].clone();
-        if let Some(own) = directions {
-            made = made.with_directions(own).unwrap();
+        if let Some(directions) = directions {
+            made = made.with_directions(directions).unwrap();
         }
-        if let Some(own) = rate {
-            made = made.with_rate(own).unwrap();
+        if let Some(rate) = rate {
+            made = made.with_rate(rate).unwrap();
         }
         let reduced = law.reduced(1.6).unwrap();
         let mut random = Random(74);
         for _ in 0..200 {
             let strain = trial(&mut random);
-            let own = history(&law, 0.1, random.between(0.0, FRAC_PI_2));
+            let start = history(&law, 0.1, random.between(0.0, FRAC_PI_2));
             let [one, other] = [&*reduced, &made as &dyn ConstitutiveModel].map(|law| {
-                law.return_map(&strain, &own, &PointContext::over(1.0))
+                law.return_map(&strain, &start, &PointContext::over(1.0))
                     .unwrap()
             });
             for a in 0..3 {

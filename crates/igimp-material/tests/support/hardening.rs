@@ -17,7 +17,7 @@ pub(crate) struct Hardening {
     pub(crate) yield_stress: f64,
     /// H \[stress\].
     pub(crate) modulus: f64,
-    /// What both, and the yield stress that is remembered, are divided by \[-\].
+    /// Divisor of both, and of the yield stress that is remembered \[-\].
     pub(crate) srf: f64,
 }
 

@@ -45,7 +45,7 @@ struct Edge {
 }
 
 impl<const D: usize> Outlines<'_, D> {
-    /// What is asked of the upright lines of a grid whose cells are equal as long as nothing is.
+    /// The demands on the upright lines of a grid whose cells are equal without them.
     pub fn upright(&self, equal: &AxisSpec) -> Asked {
         let top = self.top();
         let sides = |shape: &RigidShape| {
@@ -105,10 +105,10 @@ impl<const D: usize> Outlines<'_, D> {
     /// Edges of soil, those at one place together, the longest first.
     fn of_soil(&self, across: usize) -> Vec<Edge> {
         let mut all: Vec<Edge> = Vec::new();
-        for edge in self.soil.iter().flat_map(|own| self.of(across, own)) {
+        for edge in self.soil.iter().flat_map(|part| self.of(across, part)) {
             let mut known = all.iter_mut();
-            match known.find(|own| (own.place - edge.place).abs() <= self.round_off) {
-                Some(own) => own.length += edge.length,
+            match known.find(|other| (other.place - edge.place).abs() <= self.round_off) {
+                Some(other) => other.length += edge.length,
                 None => all.push(edge),
             }
         }

@@ -1,6 +1,6 @@
 //! Grid lines where they are wanted: given places, layer boundaries, sides of rigid bodies, zones of finer cells.
 //!
-//! The wanted size of a cell is that of the grid, or what is finer nearby: a zone, or two lines
+//! The wanted size of a cell is that of the grid, or a finer one nearby: of a zone, or of lines
 //! closer together than a cell. Away from them it grows so that each cell is `growth` times its
 //! neighbour (theory, eq. 37c). Between two given lines the cells are as near to that as a whole number of them
 //! allows.
@@ -14,7 +14,7 @@ const TOO_CLOSE: f64 = 0.25;
 /// The lines beside a side of a rigid body are at least so far from others, or on them \[cells\].
 const BESIDE: f64 = 0.55;
 
-/// What is wanted of one direction of the grid.
+/// The lines wanted along one direction of the grid.
 #[derive(Clone, Debug)]
 pub struct WantedLines {
     /// Where the axis begins and ends \[m\].

@@ -16,7 +16,7 @@ use crate::{Case, Ground, Material, MixedCells, StageKind};
 #[derive(Debug, thiserror::Error)]
 #[error(
     "the law of `{material}` cannot be made with its parameters at ({})",
-    position.iter().map(|own| igimp_text::short((1e6 * own).round() / 1e6)).collect::<Vec<_>>().join(", ")
+    position.iter().map(|x| igimp_text::short((1e6 * x).round() / 1e6)).collect::<Vec<_>>().join(", ")
 )]
 pub struct PointError {
     /// The material.
@@ -27,7 +27,7 @@ pub struct PointError {
     pub source: MaterialError,
 }
 
-/// What the materials of a case are at places.
+/// The materials of a case by place.
 struct Places<'a, const D: usize> {
     case: &'a Case<D>,
     ground: Ground<D>,
@@ -40,7 +40,7 @@ type Place<'a, const D: usize> = (&'a [f64; D], usize);
 
 impl<'a, const D: usize> Places<'a, D> {
     fn new(case: &'a Case<D>) -> Self {
-        let has_laws = |own: &usize| case.materials[*own].has_laws_by_place();
+        let has_laws = |index: &usize| case.materials[*index].has_laws_by_place();
         let of_body = |body| case.materials_of(body).into_iter().filter(has_laws);
         Self {
             case,
@@ -53,19 +53,19 @@ impl<'a, const D: usize> Places<'a, D> {
 
     /// A material as it is at a place of a body; that of its constants where the body never consists of it.
     fn soil(&self, material: usize, (place, body): Place<'_, D>) -> Cow<'a, Material> {
-        let own = &self.case.materials[material];
+        let stated = &self.case.materials[material];
         if self.varied[body].contains(&material) {
-            own.at(place, &self.ground)
+            stated.at(place, &self.ground)
         } else {
-            Cow::Borrowed(own)
+            Cow::Borrowed(stated)
         }
     }
 
     /// The values that parameters have at a place of a body: places with the same ones share their laws.
     fn values(&self, (place, body): Place<'_, D>) -> Vec<u64> {
-        let of_material = |&own: &usize| {
-            let values = self.case.materials[own].values_at(place, &self.ground);
-            std::iter::once(own as u64).chain(values.map(|own| own.1.to_bits()))
+        let of_material = |&index: &usize| {
+            let values = self.case.materials[index].values_at(place, &self.ground);
+            std::iter::once(index as u64).chain(values.map(|value| value.1.to_bits()))
         };
         self.varied[body].iter().flat_map(of_material).collect()
     }
@@ -75,10 +75,10 @@ impl<const D: usize> Case<D> {
     /// The materials that a body consists of at any time, ascending.
     pub fn materials_of(&self, body: usize) -> BTreeSet<usize> {
         let changes = self.stages.iter().flat_map(|stage| match &stage.kind {
-            StageKind::Construction(own) => own.materials.as_slice(),
+            StageKind::Construction(plan) => plan.materials.as_slice(),
             _ => &[],
         });
-        let later = changes.filter(|(of, _)| *of == body).map(|own| own.1);
+        let later = changes.filter(|(of, _)| *of == body).map(|change| change.1);
         later.chain([self.bodies[body].material]).collect()
     }
 }
@@ -88,8 +88,8 @@ impl<const D: usize> Case<D> {
     /// nearest to snap-back. 1 where neither varies, and of soil that is in no body.
     pub fn least_stiffness_over_strength(&self, material: usize) -> f64 {
         let ground = self.ground();
-        let bodies = self.bodies.iter().filter(|own| own.material == material);
-        let places = bodies.flat_map(|own| ground.places_within(&*own.region));
+        let bodies = self.bodies.iter().filter(|body| body.material == material);
+        let places = bodies.flat_map(|body| ground.places_within(&*body.region));
         let over = |place: [f64; D]| {
             let ratios = self.materials[material].ratios_at(&place, &ground);
             ratios.stiffness / ratios.strength
@@ -110,16 +110,16 @@ impl<const D: usize> Case<D> {
             let mut seen = BTreeSet::new();
             for place in places.ground.places_within(&*part.region) {
                 for &material in &places.varied[body] {
-                    let own = places.soil(material, (&place, body));
+                    let soil = places.soil(material, (&place, body));
                     let stated = &self.materials[material];
                     let ratios = stated.ratios_at(&place, &places.ground);
                     let values = stated.values_at(&place, &places.ground);
-                    let values = values.map(|own| own.1).chain([ratios.friction]);
+                    let values = values.map(|value| value.1).chain([ratios.friction]);
                     let bits: Vec<u64> = values.map(f64::to_bits).collect();
                     if seen.insert((material, bits)) {
-                        (own.law_on(cell_height).map(drop))
-                            .and_then(|()| dilates_less_than_friction((stated, &own), ratios))
-                            .map_err(at(&own, &place))?;
+                        (soil.law_on(cell_height).map(drop))
+                            .and_then(|()| dilates_less_than_friction((stated, &soil), ratios))
+                            .map_err(at(&soil, &place))?;
                     }
                 }
             }
@@ -138,7 +138,7 @@ struct SharedCell {
     compliance: [f64; 2],
 }
 
-/// What laws differ by from those of the materials.
+/// The difference of laws from those of the materials.
 #[derive(Clone, Copy, Debug)]
 struct Change {
     /// Young's modulus \[Pa\] and Poisson's ratio of the cell.
@@ -185,11 +185,11 @@ pub fn laws_at_points<const D: usize>(
     laws: &mut Vec<SharedLaw>,
 ) -> Result<(), PointError> {
     let places = Places::new(case);
-    let vary = places.varied.iter().any(|own| !own.is_empty());
+    let vary = places.varied.iter().any(|materials| !materials.is_empty());
     let has_one_stiffness = case.grid.mixed_cells == MixedCells::Mean;
     let mut dilations = case.materials.iter().filter_map(Material::dilation);
     let first = dilations.next();
-    if !vary && !has_one_stiffness && dilations.all(|own| Some(own) == first) {
+    if !vary && !has_one_stiffness && dilations.all(|dilation| Some(dilation) == first) {
         return Ok(());
     }
     let cell_of: Vec<Option<usize>> = (seeds.iter())
@@ -205,21 +205,21 @@ pub fn laws_at_points<const D: usize>(
         let (body, x) = (body_of[particle], seeds[particle].x);
         let place = (&x, body);
         let material = seeds[particle].law;
-        let own = places.soil(material, place);
-        let both = (&case.materials[material], &*own);
-        dilates_less_than_friction(both, ratios[particle]).map_err(at(&own, &x))?;
+        let soil = places.soil(material, place);
+        let both = (&case.materials[material], &*soil);
+        dilates_less_than_friction(both, ratios[particle]).map_err(at(&soil, &x))?;
         let values = places.values(place);
         let next = points.len();
         let point = (!values.is_empty()).then(|| *points.entry(values).or_insert(next));
-        let index = cell_of[particle].filter(|own| cells.contains_key(own));
+        let index = cell_of[particle].filter(|index| cells.contains_key(index));
         let cell = index.map(|index| &cells[&index]);
         let change = Change {
             stiffness: (cell.filter(|_| has_one_stiffness)).map(SharedCell::stiffness),
             dilation: cell.and_then(|cell| {
-                let is_beside = |other: usize| stages.iter().any(|own| own[body] && own[other]);
-                let others = cell.bodies.iter().filter(|own| is_beside(*own.0));
-                let least = others.map(|own| *own.1).fold(f64::INFINITY, f64::min);
-                own.dilation().filter(|own| least < *own).map(|_| least)
+                let is_beside = |other: usize| stages.iter().any(|has| has[body] && has[other]);
+                let others = cell.bodies.iter().filter(|other| is_beside(*other.0));
+                let least = others.map(|other| *other.1).fold(f64::INFINITY, f64::min);
+                soil.dilation().filter(|most| least < *most).map(|_| least)
             }),
         };
         let by_cell = index.filter(|_| has_one_stiffness);
@@ -255,7 +255,7 @@ fn shared_cells<const D: usize>(
         let body = body_of[particle];
         let soil = places.soil(seed.law, (&seed.x, body));
         let least = cell.bodies.entry(body).or_insert(f64::INFINITY);
-        *least = soil.dilation().map_or(*least, |own| own.min(*least));
+        *least = soil.dilation().map_or(*least, |angle| angle.min(*least));
         cell.volume += seed.volume;
         let moduli = moduli(&soil, ratios[particle]);
         for (sum, modulus) in cell.compliance.iter_mut().zip(moduli) {
@@ -272,19 +272,19 @@ fn shared_cells<const D: usize>(
 
 /// Refuses a dilation that varies and is above the friction of its place; a constant one is cut off there.
 fn dilates_less_than_friction(
-    (material, own): (&Material, &Material),
+    (material, soil): (&Material, &Material),
     ratios: Ratios,
 ) -> Result<(), MaterialError> {
     let varies = material.profiles.of_parameter("dilation").is_some();
     if !(varies && ratios.has_friction_of_its_own()) {
         return Ok(());
     }
-    let mut parameters = own.strength.parameters().into_iter();
-    let dilation = parameters.find_map(|own| match own.value {
-        ParameterValue::Angle(value) if own.key == "dilation" => Some(value),
+    let mut parameters = soil.strength.parameters().into_iter();
+    let dilation = parameters.find_map(|parameter| match parameter.value {
+        ParameterValue::Angle(value) if parameter.key == "dilation" => Some(value),
         _ => None,
     });
-    let friction = own.strength.friction_angle();
+    let friction = soil.strength.friction_angle();
     match (dilation, friction) {
         (Some(dilation), Some(friction))
             if dilation.tan() > friction.tan() * ratios.friction * (1.0 + 1e-12) =>
@@ -320,19 +320,19 @@ fn append<const D: usize>(
 ) -> Result<usize, PointError> {
     let first = laws.len();
     for material in 0..places.case.materials.len() {
-        let own = places.soil(material, place);
-        if let (Cow::Borrowed(_), None, None) = (&own, change.stiffness, change.dilation) {
+        let soil = places.soil(material, place);
+        if let (Cow::Borrowed(_), None, None) = (&soil, change.stiffness, change.dilation) {
             laws.push(Arc::clone(&laws[material]));
             continue;
         }
-        let mut own = own.into_owned();
+        let mut soil = soil.into_owned();
         if let Some(stiffness) = change.stiffness {
-            [own.young, own.poisson] = stiffness;
+            [soil.young, soil.poisson] = stiffness;
         }
         if let Some(most) = change.dilation {
-            own = own.dilating_up_to(most);
+            soil = soil.dilating_up_to(most);
         }
-        let law = own.law_on(cell_height).map_err(at(&own, place.0))?;
+        let law = soil.law_on(cell_height).map_err(at(&soil, place.0))?;
         laws.push(law);
     }
     Ok(first)

@@ -43,7 +43,7 @@ pub struct StressShare {
 impl StressShare {
     /// The strength at a place \[Pa\].
     fn at<const D: usize>(&self, place: &[f64; D], ground: &Ground<D>) -> f64 {
-        let ocr = (self.ocr_profile.as_ref()).map_or(self.ocr, |own| own.at(place, ground));
+        let ocr = (self.ocr_profile.as_ref()).map_or(self.ocr, |profile| profile.at(place, ground));
         self.of(ground.effective_stress(place, self.water_level), ocr)
     }
 
@@ -77,15 +77,15 @@ impl Profile {
     /// The same with a linear function of all values, which is zero at zero; a share of the stress stays.
     #[must_use]
     pub fn scaled(mut self, by: impl Fn(f64) -> f64) -> Self {
-        let put = |own: &mut f64| *own = by(*own);
+        let put = |value: &mut f64| *value = by(*value);
         match &mut self {
-            Self::Level(own) | Self::Depth(own) => match own {
+            Self::Level(variation) | Self::Depth(variation) => match variation {
                 Variation::Gradient {
                     at_top, gradient, ..
                 } => [at_top, gradient].into_iter().for_each(put),
                 Variation::Table(rows) => rows.iter_mut().for_each(|row| put(&mut row[1])),
             },
-            Self::Raster(own) => own.values.iter_mut().flatten().for_each(put),
+            Self::Raster(raster) => raster.values.iter_mut().flatten().for_each(put),
             Self::StressShare(_) => {}
         }
         self
@@ -208,8 +208,8 @@ pub struct Profiles {
 impl Profiles {
     /// How a parameter varies that asks for a law of its own at every place, by its key.
     pub fn of_parameter(&self, key: &str) -> Option<&Profile> {
-        let mut own = self.parameters.iter().filter(|own| own.0 == key);
-        own.next().map(|own| &own.1)
+        let mut varied = self.parameters.iter().filter(|entry| entry.0 == key);
+        varied.next().map(|entry| &entry.1)
     }
 }
 
@@ -226,7 +226,7 @@ impl Material {
         ground: &Ground<D>,
     ) -> impl Iterator<Item = (&'static str, f64)> {
         let parameters = self.profiles.parameters.iter();
-        parameters.map(|(key, own)| (*key, own.at(place, ground)))
+        parameters.map(|(key, profile)| (*key, profile.at(place, ground)))
     }
 
     /// The material with the parameters that its law has at a place, as soil that starts there carries them, and without profiles; ratios
@@ -235,21 +235,21 @@ impl Material {
         if !self.has_laws_by_place() {
             return Cow::Borrowed(self);
         }
-        let mut own = Self {
+        let mut soil = Self {
             name: self.name.clone(),
             profiles: Profiles::default(),
             given: self.given.clone(),
             ..*self
         };
         for (key, value) in self.values_at(place, ground) {
-            if !own.strength.set(key, value) {
-                own.poisson = value;
+            if !soil.strength.set(key, value) {
+                soil.poisson = value;
             }
         }
-        if let Some(stiffness) = own.strength.stiffness() {
-            [own.young, own.poisson] = stiffness;
+        if let Some(stiffness) = soil.strength.stiffness() {
+            [soil.young, soil.poisson] = stiffness;
         }
-        Cow::Owned(own)
+        Cow::Owned(soil)
     }
 
     /// Undrained strength or cohesion \[Pa\]; zero for a material that has neither. The greatest where it varies.
@@ -263,14 +263,14 @@ impl Material {
         let Some(Profile::StressShare(share)) = &self.profiles.strength else {
             return None;
         };
-        let mut own = self.clone();
-        own.profiles.strength = None;
+        let mut soil = self.clone();
+        soil.profiles.strength = None;
         if let Strength::VonMises { undrained_strength } | Strength::Tresca { undrained_strength } =
-            &mut own.strength
+            &mut soil.strength
         {
             *undrained_strength = share.of(stress.max(0.0), share.ocr);
         }
-        Some(own)
+        Some(soil)
     }
 
     /// Whether anything varies that stress depends on.
@@ -293,7 +293,7 @@ impl Material {
             parameters: _,
         } = &self.profiles;
         let over = |profile: &Option<Profile>, greatest: f64, least: f64| {
-            let ratio = |own: &Profile| (own.at(place, ground) / greatest).max(least);
+            let ratio = |varied: &Profile| (varied.at(place, ground) / greatest).max(least);
             profile.as_ref().map_or(1.0, ratio)
         };
         let tan_friction = self.strength.friction_angle().map_or(1.0, f64::tan);
@@ -306,7 +306,7 @@ impl Material {
 
     /// Young's modulus at a place \[Pa\].
     pub fn young_at<const D: usize>(&self, place: &[f64; D], ground: &Ground<D>) -> f64 {
-        (self.profiles.young.as_ref()).map_or(self.young, |own| own.at(place, ground))
+        (self.profiles.young.as_ref()).map_or(self.young, |profile| profile.at(place, ground))
     }
 
     /// Permeability at a place over the greatest in its soil \[-\]; one where it does not vary.
@@ -317,14 +317,14 @@ impl Material {
     ) -> f64 {
         let varied = self.profiles.permeability.as_ref();
         match (varied, self.permeability) {
-            (Some(own), Some(soil)) => own.at(place, ground) / soil.along,
+            (Some(profile), Some(soil)) => profile.at(place, ground) / soil.along,
             _ => 1.0,
         }
     }
 
     /// Unit weight at a place \[N/m³\].
     pub fn unit_weight_at<const D: usize>(&self, place: &[f64; D], ground: &Ground<D>) -> f64 {
-        (self.profiles.unit_weight.as_ref()).map_or(self.unit_weight, |own| own.at(place, ground))
+        (self.profiles.unit_weight.as_ref()).map_or(self.unit_weight, |p| p.at(place, ground))
     }
 }
 

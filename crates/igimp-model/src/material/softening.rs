@@ -16,7 +16,7 @@ pub const BAND_CELLS: f64 = 1.0;
 /// How a parameter of strength goes with plastic strain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Softens {
-    /// What is left of it in the end: a share of the initial value \[-\] of c_u and c, an angle \[rad\] of φ and ψ.
+    /// Its residual: a share of the initial value \[-\] of c_u and c, an angle \[rad\] of φ and ψ.
     pub residual: f64,
     /// Plastic strain over which it goes \[-\].
     pub strain: f64,
@@ -24,7 +24,7 @@ pub struct Softens {
     pub decay: Decay,
 }
 
-/// The parameters of a strength that go with plastic strain, and what an undrained one goes with beside it.
+/// The parameters of a strength that go with plastic strain, and the effects on an undrained one.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct StrengthCurves {
     /// c_u or c.
@@ -51,7 +51,7 @@ impl StrengthCurves {
         curves.iter().any(Option::is_some) || self.rate.is_some()
     }
 
-    /// What strains of the curves are multiplied by on cells of a size \[m\]; 1 on none, and without a width.
+    /// Multiple of the strains of the curves on cells of a size \[m\]; 1 on none, and without a width.
     pub fn strain_ratio(&self, cell: f64) -> f64 {
         match self.band_width {
             Some(width) if cell > 0.0 => width / (BAND_CELLS * cell),
@@ -72,24 +72,24 @@ impl StrengthCurves {
     ) -> Result<SharedLaw, MaterialError> {
         let ratio = self.strain_ratio(cell);
         let along = |initial: f64, goes: Option<Softens>, residual: &dyn Fn(f64) -> f64| {
-            goes.map_or(Curve::constant(initial), |own| Curve {
+            goes.map_or(Curve::constant(initial), |softens| Curve {
                 initial,
-                residual: residual(own.residual),
-                strain: own.strain * ratio,
-                decay: own.decay,
+                residual: residual(softens.residual),
+                strain: softens.strain * ratio,
+                decay: softens.decay,
             })
         };
         let undrained = |cu: f64| along(cu, self.cohesive, &|share| share * cu);
         let seeing = |law: Softening| match self.nonlocal {
-            Some(own) if cell > 0.0 => law.with_nonlocal(own),
+            Some(nonlocal) if cell > 0.0 => law.with_nonlocal(nonlocal),
             _ => Ok(law),
         };
         let with_effects = |mut law: Softening| {
-            if let Some(own) = self.directions {
-                law = law.with_directions(own)?;
+            if let Some(directions) = self.directions {
+                law = law.with_directions(directions)?;
             }
-            if let Some(own) = self.rate {
-                law = law.with_rate(own)?;
+            if let Some(rate) = self.rate {
+                law = law.with_rate(rate)?;
             }
             seeing(law)
         };
@@ -138,20 +138,20 @@ impl StrengthCurves {
             )
         };
         let mut all = Vec::new();
-        all.extend((self.cohesive).map(|own| words("c or c_u", own, share(own.residual))));
-        all.extend((self.friction).map(|own| words("φ", own, angle(own.residual))));
-        all.extend((self.dilation).map(|own| words("ψ", own, angle(own.residual))));
+        all.extend((self.cohesive).map(|goes| words("c or c_u", goes, share(goes.residual))));
+        all.extend((self.friction).map(|goes| words("φ", goes, angle(goes.residual))));
+        all.extend((self.dilation).map(|goes| words("ψ", goes, angle(goes.residual))));
         all.extend((self.band_width).map(|width| format!("in bands of {} m", number(width))));
-        all.extend(self.nonlocal.map(|own| {
-            let (length, share) = (number(own.length), number(own.over_nonlocal));
+        all.extend(self.nonlocal.map(|nonlocal| {
+            let (length, share) = (number(nonlocal.length), number(nonlocal.over_nonlocal));
             format!("spread over a length of {length} m, m = {share}")
         }));
-        all.extend(self.directions.map(|own| {
-            let [shear, passive] = [own.simple_shear, own.passive].map(share);
+        all.extend(self.directions.map(|directions| {
+            let [shear, passive] = [directions.simple_shear, directions.passive].map(share);
             format!("c_u of active loading, {shear} of it in simple shear, {passive} passive")
         }));
-        all.extend(self.rate.map(|own| {
-            let (growth, reference) = (share(own.per_log_cycle), own.reference);
+        all.extend(self.rate.map(|rate| {
+            let (growth, reference) = (share(rate.per_log_cycle), rate.reference);
             format!(
                 "{growth} more a log cycle of rate above {} 1/s",
                 number(reference)

@@ -131,7 +131,7 @@ fn note<'a>(label: &'static str) -> Slot<'a> {
     }
 }
 
-/// The value of a parameter, and what of a material may vary in its place.
+/// The value of a parameter, and the quantity of a material that may vary in its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ParameterValue {
     /// A strength that varies with the profile of strength \[Pa\].
@@ -167,23 +167,23 @@ fn frictional<'a>(
     ]
 }
 
-/// Friction of fast shear and what makes shear fast.
-fn inertial(own: &InertialFriction) -> [Parameter; 4] {
+/// Friction of fast shear, and the numbers that make shear fast.
+fn inertial(rate: &InertialFriction) -> [Parameter; 4] {
     let parameter = |label, value| Parameter {
         key: "",
         label,
         value,
     };
     [
-        parameter("φ₂ = ", ParameterValue::Angle(own.friction_angle)),
-        parameter("I₀ = ", ParameterValue::Number(own.inertial_number)),
+        parameter("φ₂ = ", ParameterValue::Angle(rate.friction_angle)),
+        parameter("I₀ = ", ParameterValue::Number(rate.inertial_number)),
         parameter(
             "grains in mm: ",
-            ParameterValue::Number(1e3 * own.grain_diameter),
+            ParameterValue::Number(1e3 * rate.grain_diameter),
         ),
         parameter(
             "grains in kg/m³: ",
-            ParameterValue::Number(own.grain_density),
+            ParameterValue::Number(rate.grain_density),
         ),
     ]
 }
@@ -223,7 +223,7 @@ impl Strength {
                     slots.push(note("flow by Davis"));
                 }
                 let name = ("tension_cutoff", "tension up to ");
-                slots.extend(tension_cutoff.as_mut().map(|own| slot(name, Stress, own)));
+                slots.extend(tension_cutoff.as_mut().map(|most| slot(name, Stress, most)));
                 slots
             }
             Self::DruckerPrager {
@@ -241,49 +241,49 @@ impl Strength {
                 }));
                 slots
             }
-            Self::HoekBrown(own) => vec![
-                slot(("sci", "σ_ci = "), Modulus, &mut own.intact_strength),
-                slot(("gsi", "GSI = "), Number, &mut own.gsi),
-                slot(("mi", "m_i = "), Number, &mut own.intact_ratio),
-                slot(("disturbance", "D = "), Number, &mut own.disturbance),
-                slot(("dilation", "ψ = "), Angle, &mut own.dilation_angle),
+            Self::HoekBrown(rock) => vec![
+                slot(("sci", "σ_ci = "), Modulus, &mut rock.intact_strength),
+                slot(("gsi", "GSI = "), Number, &mut rock.gsi),
+                slot(("mi", "m_i = "), Number, &mut rock.intact_ratio),
+                slot(("disturbance", "D = "), Number, &mut rock.disturbance),
+                slot(("dilation", "ψ = "), Angle, &mut rock.dilation_angle),
             ],
-            Self::HardeningSoil(own) => {
-                let angles = (&mut own.friction_angle, &mut own.dilation_angle);
-                let mut slots = frictional(&mut own.cohesion, angles.0, angles.1);
+            Self::HardeningSoil(soil) => {
+                let angles = (&mut soil.friction_angle, &mut soil.dilation_angle);
+                let mut slots = frictional(&mut soil.cohesion, angles.0, angles.1);
                 slots.extend([
-                    slot(("e50", "E_50 = "), Modulus, &mut own.secant),
-                    slot(("eur", "E_ur = "), Modulus, &mut own.unloading),
-                    slot(("eoed", "E_oed = "), Modulus, &mut own.oedometer),
-                    slot(("power", "m = "), Number, &mut own.power),
-                    slot(("ocr", "OCR = "), Number, &mut own.overconsolidation),
-                    unprinted("poisson", &mut own.poisson),
-                    unprinted("failure_ratio", &mut own.failure_ratio),
-                    unprinted("k0_normal", &mut own.k0_normal),
+                    slot(("e50", "E_50 = "), Modulus, &mut soil.secant),
+                    slot(("eur", "E_ur = "), Modulus, &mut soil.unloading),
+                    slot(("eoed", "E_oed = "), Modulus, &mut soil.oedometer),
+                    slot(("power", "m = "), Number, &mut soil.power),
+                    slot(("ocr", "OCR = "), Number, &mut soil.overconsolidation),
+                    unprinted("poisson", &mut soil.poisson),
+                    unprinted("failure_ratio", &mut soil.failure_ratio),
+                    unprinted("k0_normal", &mut soil.k0_normal),
                 ]);
                 slots
             }
-            Self::ModifiedCamClay(own) => vec![
-                slot(("lambda", "λ* = "), Number, &mut own.compression),
-                slot(("kappa", "κ* = "), Number, &mut own.swelling),
-                slot(("critical_ratio", "M = "), Number, &mut own.critical_ratio),
-                match &mut own.shear {
-                    ShearStiffness::Poisson(own) => slot(("poisson", "ν = "), Number, own),
-                    ShearStiffness::Constant(own) => slot(("shear", "G = "), Modulus, own),
+            Self::ModifiedCamClay(clay) => vec![
+                slot(("lambda", "λ* = "), Number, &mut clay.compression),
+                slot(("kappa", "κ* = "), Number, &mut clay.swelling),
+                slot(("critical_ratio", "M = "), Number, &mut clay.critical_ratio),
+                match &mut clay.shear {
+                    ShearStiffness::Poisson(value) => slot(("poisson", "ν = "), Number, value),
+                    ShearStiffness::Constant(value) => slot(("shear", "G = "), Modulus, value),
                 },
-                slot(("ocr", "OCR = "), Number, &mut own.overconsolidation),
+                slot(("ocr", "OCR = "), Number, &mut clay.overconsolidation),
             ],
         }
     }
 
     /// The parameters in the order in which they are printed.
     pub fn parameters(&self) -> Vec<Parameter> {
-        let mut own = *self;
-        let printed = own.slots().into_iter().filter_map(|slot| {
+        let mut strength = *self;
+        let printed = strength.slots().into_iter().filter_map(|slot| {
             Some(Parameter {
                 key: slot.key,
                 label: slot.label?,
-                value: (slot.value)(slot.number.map_or(0.0, |own| *own)),
+                value: (slot.value)(slot.number.map_or(0.0, |number| *number)),
             })
         });
         let mut parameters: Vec<Parameter> = printed.collect();
@@ -300,32 +300,32 @@ impl Strength {
     /// Hardening Soil a ratio of stresses that is that of Jaky for the friction follows it.
     pub(super) fn set(&mut self, key: &str, value: f64) -> bool {
         match self {
-            Self::ModifiedCamClay(own) if key == "friction" => {
-                own.critical_ratio = critical_ratio_of(value);
+            Self::ModifiedCamClay(clay) if key == "friction" => {
+                clay.critical_ratio = critical_ratio_of(value);
                 return true;
             }
-            Self::HardeningSoil(own)
+            Self::HardeningSoil(soil)
                 if key == "friction"
-                    && own.k0_normal.total_cmp(&jaky(own.friction_angle)).is_eq() =>
+                    && soil.k0_normal.total_cmp(&jaky(soil.friction_angle)).is_eq() =>
             {
-                own.k0_normal = jaky(value);
+                soil.k0_normal = jaky(value);
             }
             _ => {}
         }
         let mut slots = self.slots().into_iter().filter(|slot| slot.key == key);
         let number = slots.find_map(|slot| slot.number);
-        number.map(|own| *own = value).is_some()
+        number.map(|place| *place = value).is_some()
     }
 
     /// Young's modulus \[Pa\] and Poisson's ratio of a law with an elasticity of its own, at its reference pressure; none of others.
     pub fn stiffness(&self) -> Option<[f64; 2]> {
         match *self {
-            Self::ModifiedCamClay(own) => {
-                let law = ModifiedCamClay::new(own).ok()?;
+            Self::ModifiedCamClay(clay) => {
+                let law = ModifiedCamClay::new(clay).ok()?;
                 let bound = law.stiffness_bound();
                 Some([bound.young(), bound.poisson()])
             }
-            Self::HardeningSoil(own) => Some([own.unloading, own.poisson]),
+            Self::HardeningSoil(soil) => Some([soil.unloading, soil.poisson]),
             _ => None,
         }
     }
@@ -355,8 +355,8 @@ impl Strength {
                 ..
             }
             | Self::DruckerPrager { dilation_angle, .. } => Some(dilation_angle),
-            Self::HoekBrown(own) => Some(own.dilation_angle),
-            Self::HardeningSoil(own) => Some(own.dilation_angle),
+            Self::HoekBrown(rock) => Some(rock.dilation_angle),
+            Self::HardeningSoil(soil) => Some(soil.dilation_angle),
             _ => None,
         }
     }
@@ -463,9 +463,9 @@ impl Strength {
                 })
             }
             Self::HoekBrown(parameters) => Arc::new(HoekBrown::new(elasticity, parameters)?),
-            Self::HardeningSoil(own) => Arc::new(HardeningSoil::new(HardeningSoilParameters {
-                cohesion: at_least(own.cohesion),
-                ..own
+            Self::HardeningSoil(soil) => Arc::new(HardeningSoil::new(HardeningSoilParameters {
+                cohesion: at_least(soil.cohesion),
+                ..soil
             })?),
             Self::ModifiedCamClay(parameters) => Arc::new(ModifiedCamClay::new(parameters)?),
         })
@@ -518,7 +518,7 @@ mod tests {
             let numbers = |of: &Strength| {
                 let mut of = *of;
                 let slots = of.slots().into_iter();
-                let numbers = slots.filter_map(|own| Some((own.key, *own.number?)));
+                let numbers = slots.filter_map(|slot| Some((slot.key, *slot.number?)));
                 numbers.collect::<Vec<_>>()
             };
             let before = numbers(&strength);

@@ -14,11 +14,11 @@ pub struct GroundMotion {
     pub is_velocity: bool,
     /// The axis along which the ground moves.
     pub axis: usize,
-    /// What lies below the soil.
+    /// The ground below the soil.
     pub base: Base,
 }
 
-/// What lies below soil that is shaken.
+/// The ground below soil that is shaken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Base {
     /// Rock that moves by the record, whatever the soil does.
@@ -102,7 +102,7 @@ impl GroundMotion {
         let usual = self.interval();
         let begun = self.pieces().take_while(|piece| piece.start < until);
         let shorter = begun.filter(|piece| piece.duration < (1.0 - ROUND_OFF) * usual);
-        shorter.fold(until / usual, |all, own| all + 1.0 - own.duration / usual)
+        shorter.fold(until / usual, |all, p| all + 1.0 - p.duration / usual)
     }
 
     /// The same of the record up to a time \[s\].
@@ -125,7 +125,7 @@ impl GroundMotion {
         let all = self
             .pieces_until(until)
             .flat_map(|piece| piece.acceleration);
-        all.fold(0.0, |most: f64, own| most.max(own.abs()))
+        all.fold(0.0, |most: f64, a| most.max(a.abs()))
     }
 
     /// The displacement by which a rigid block slides on ground that moves by the record, by Newmark's method \[m\]: it slides
@@ -142,7 +142,7 @@ impl GroundMotion {
         let (mut velocity, mut way) = (0.0, 0.0);
         for piece in self.pieces_until(until) {
             // The force of inertia acts against the acceleration of the ground.
-            let [a, b] = (piece.acceleration).map(|own| -own * yield_acceleration.signum() - limit);
+            let [a, b] = (piece.acceleration).map(|a| -a * yield_acceleration.signum() - limit);
             slide(piece.duration, [a, b], &mut velocity, &mut way);
         }
         let shaken = self.times.last().copied().unwrap_or(0.0);
@@ -221,8 +221,8 @@ mod tests {
         assert!((expected - 0.52974_f64).abs() < 5e-6);
         let edge = 1e-12;
         let pulse = |sign: f64| {
-            let own = sign * 0.4 * G;
-            record(vec![0.0, edge, 0.3, 0.3 + edge], vec![0.0, own, own, 0.0])
+            let a = sign * 0.4 * G;
+            record(vec![0.0, edge, 0.3, 0.3 + edge], vec![0.0, a, a, 0.0])
         };
         assert!((pulse(-1.0).sliding(0.1 * G, f64::INFINITY) - expected).abs() < 1e-9);
         assert!((pulse(1.0).sliding(-0.1 * G, f64::INFINITY) - expected).abs() < 1e-9);
@@ -242,8 +242,8 @@ mod tests {
     /// ORACLE: constant acceleration by hand: (A − N) g t²/2 in the pulse, from t₀ on against N g.
     #[test]
     fn a_block_is_watched_up_to_a_time() {
-        let own = -0.4 * G;
-        let pulse = record(vec![0.0, 0.3, 0.3 + 1e-12, 0.5], vec![own, own, 0.0, 0.0]);
+        let a = -0.4 * G;
+        let pulse = record(vec![0.0, 0.3, 0.3 + 1e-12, 0.5], vec![a, a, 0.0, 0.0]);
         let way = |until: f64| {
             let (within, after) = (until.min(0.3), (until - 0.3).max(0.0));
             let velocity = 0.3 * G * within;

@@ -64,10 +64,10 @@ impl RigidSolid {
     }
 }
 
-/// Second moments of unit mass with its centre at `centre`, of which `own` are those about it along the axes \[m²\].
-fn shifted(centre: [f64; 3], own: [f64; 3]) -> [[f64; 3]; 3] {
+/// Second moments of unit mass with its centre at `centre`, of which `second` are those about it along the axes \[m²\].
+fn shifted(centre: [f64; 3], second: [f64; 3]) -> [[f64; 3]; 3] {
     std::array::from_fn(|a| {
-        std::array::from_fn(|b| centre[a] * centre[b] + if a == b { own[a] } else { 0.0 })
+        std::array::from_fn(|b| centre[a] * centre[b] + if a == b { second[a] } else { 0.0 })
     })
 }
 
@@ -78,7 +78,7 @@ fn mean(parts: &[(f64, [[f64; 3]; 3])]) -> [[f64; 3]; 3] {
         std::array::from_fn(|b| {
             parts
                 .iter()
-                .map(|(weight, own)| weight / whole * own[a][b])
+                .map(|(weight, moments)| weight / whole * moments[a][b])
                 .sum()
         })
     })
@@ -103,9 +103,9 @@ impl RigidSolid {
                 radius,
                 half_length,
             } => {
-                let mut own = [0.25 * radius * radius; 3];
-                own[*axis] = half_length * half_length / 3.0;
-                shifted(off(middle), own)
+                let mut second = [0.25 * radius * radius; 3];
+                second[*axis] = half_length * half_length / 3.0;
+                shifted(off(middle), second)
             }
             Self::Sphere { centre, radius } => shifted(off(centre), [0.2 * radius * radius; 3]),
             Self::Cone {
@@ -124,8 +124,8 @@ impl RigidSolid {
                     (*shaft, shifted(above(height + 0.5 * shaft), cylinder)),
                 ])
             }
-            Self::Surface(own) => {
-                let parts: Vec<_> = tetrahedra(own, about)
+            Self::Surface(surface) => {
+                let parts: Vec<_> = tetrahedra(surface, about)
                     .map(|(volume, [p, q, r])| {
                         let sum: [f64; 3] = std::array::from_fn(|a| p[a] + q[a] + r[a]);
                         let second = std::array::from_fn(|a| {
@@ -145,10 +145,10 @@ impl RigidSolid {
 /// The tetrahedra from a point to the triangles of a closed surface: six times their volume, of either sign \[m³\], and the corners of
 /// the triangles from that point \[m\].
 fn tetrahedra<'a>(
-    own: &'a ClosedSurface,
+    surface: &'a ClosedSurface,
     about: &'a [f64; 3],
 ) -> impl Iterator<Item = (f64, [[f64; 3]; 3])> + 'a {
-    own.triangles().map(|triangle| {
+    surface.triangles().map(|triangle| {
         let corners = triangle.map(|at| std::array::from_fn(|axis| at[axis] - about[axis]));
         let [p, q, r]: [[f64; 3]; 3] = corners;
         let cross = |a: usize, b: usize| q[a] * r[b] - q[b] * r[a];
@@ -174,10 +174,10 @@ impl RigidForm<3> for RigidSolid {
                 let above = (cone * 0.75 * height + shaft * (height + 0.5 * shaft)) / whole;
                 [tip[0], tip[1], tip[2] + above]
             }
-            Self::Surface(own) => {
+            Self::Surface(surface) => {
                 let about = self.reference();
                 let (mut volume, mut moment) = (0.0, [0.0; 3]);
-                for (part, corners) in tetrahedra(own, &about) {
+                for (part, corners) in tetrahedra(surface, &about) {
                     volume += part;
                     moment = std::array::from_fn(|axis| {
                         let sum: f64 = corners.iter().map(|corner| corner[axis]).sum();
@@ -238,11 +238,11 @@ impl RigidForm<3> for RigidSolid {
                 shaft,
                 ..
             } => Surface::cone(2, [*radius, *height, *shaft], rounding, cell),
-            Self::Surface(own) => {
+            Self::Surface(surface) => {
                 let reference = self.reference();
                 let corner = |at: [f64; 3]| std::array::from_fn(|axis| at[axis] - reference[axis]);
-                let corners: Vec<[f64; 3]> = own.points().iter().copied().map(corner).collect();
-                let triangles: Vec<_> = own.faces().iter().map(|face| (*face, 0)).collect();
+                let corners: Vec<[f64; 3]> = surface.points().iter().copied().map(corner).collect();
+                let triangles: Vec<_> = surface.faces().iter().map(|face| (*face, 0)).collect();
                 Surface::triangles(&corners, &triangles, cell)
             }
         }
@@ -276,7 +276,7 @@ impl RigidForm<3> for RigidSolid {
                 [x - radius, y - radius, *z],
                 [x + radius, y + radius, z + height + shaft],
             ),
-            Self::Surface(own) => own.bounds(),
+            Self::Surface(surface) => surface.bounds(),
         }
     }
 
@@ -328,7 +328,7 @@ impl RigidForm<3> for RigidSolid {
                     f64::INFINITY
                 }
             }
-            Self::Surface(own) => {
+            Self::Surface(surface) => {
                 let middle = [0, 1].map(|axis| 0.5 * (lower[axis] + upper[axis]));
                 let places = [
                     middle,
@@ -339,7 +339,7 @@ impl RigidForm<3> for RigidSolid {
                 ];
                 let levels = places
                     .into_iter()
-                    .flat_map(|[x, y]| own.crossings(&[x, y, 0.0]));
+                    .flat_map(|[x, y]| surface.crossings(&[x, y, 0.0]));
                 levels
                     .map(|crossing| crossing.level)
                     .fold(f64::INFINITY, f64::min)
@@ -377,8 +377,8 @@ impl RigidForm<3> for RigidSolid {
                 format!("cone with its tip at {}", place(*tip)),
                 format!("radius {}, {size}", short(*radius)),
             ],
-            Self::Surface(own) => [
-                format!("closed surface of {} triangles", own.triangle_count()),
+            Self::Surface(surface) => [
+                format!("closed surface of {} triangles", surface.triangle_count()),
                 size,
             ],
         }
@@ -395,7 +395,7 @@ mod tests {
     #[test]
     fn moments_of_inertia_of_solids() {
         let close =
-            |own: f64, expected: f64| assert!((own - expected).abs() < 1e-12, "{own} {expected}");
+            |got: f64, expected: f64| assert!((got - expected).abs() < 1e-12, "{got} {expected}");
         let (centre, radius) = ([1.0, 2.0, 3.0], 0.5);
         let sphere = RigidSolid::Sphere { centre, radius }.squared_gyration(&centre);
         close(sphere[0][0], 0.4 * 0.25);
@@ -430,7 +430,7 @@ mod tests {
         ];
         // A corner of a box cut off: ∫ x² = a² / 10, ∫ xy = ab / 20.
         let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-        let triangles = faces.map(|face: [usize; 3]| face.map(|own| points[own]));
+        let triangles = faces.map(|face: [usize; 3]| face.map(|k| points[k]));
         let corner = RigidSolid::Surface(Arc::new(ClosedSurface::new(&triangles).unwrap()))
             .squared_gyration(&[0.0; 3]);
         close(corner[2][2], (1.0 + 4.0) / 10.0);

@@ -48,21 +48,22 @@ impl Driven {
         }
     }
 
-    /// The control that tells how far a stage came, with what it was at its beginning: the first of those stated that the stage
+    /// The control that shows how far a stage came, with its value at the beginning: the first of those stated that the stage
     /// changes. Loads go in their order, accelerations before gravity. None of a stage that drives none of them.
     pub fn of(kind: &StageKind, before: impl Fn(Self) -> f64) -> Option<Self> {
         let stated: Vec<Self> = match kind {
             StageKind::Load { loads, .. } => loads.iter().map(|&load| Self::Load(load)).collect(),
             StageKind::Gravity { .. } => {
                 let components = (0..3).map(Self::Acceleration);
-                let stated = components.filter(|own| own.aim(kind).is_some());
+                let stated = components.filter(|control| control.aim(kind).is_some());
                 stated.chain([Self::Gravity]).collect()
             }
             _ => return None,
         };
-        let changes = |own: &&Self| {
-            let from = before(**own);
-            own.aim(kind)
+        let changes = |control: &&Self| {
+            let from = before(**control);
+            control
+                .aim(kind)
                 .is_some_and(|to| (to - from).abs() > SAME * to.abs().max(from.abs()))
         };
         stated.iter().find(changes).or(stated.last()).copied()
@@ -70,8 +71,8 @@ impl Driven {
 
     /// The control that a stage drives where all before it came to their ends.
     pub fn planned<const D: usize>(case: &Case<D>, number: usize) -> Option<Self> {
-        Self::of(&case.stages[number].kind, |own| {
-            own.before(case, number, &|_| 1.0)
+        Self::of(&case.stages[number].kind, |control| {
+            control.before(case, number, &|_| 1.0)
         })
     }
 
@@ -103,7 +104,7 @@ impl Driven {
 mod tests {
     use super::*;
 
-    /// GOAL: the control that is told is the first that the stage changes.
+    /// GOAL: the driven control is the first that the stage changes.
     /// ORACLE: by hand.
     #[test]
     fn a_control_that_stays_is_not_driven() {
@@ -117,7 +118,7 @@ mod tests {
             loads: loads.to_vec(),
             factor: 2.0,
         };
-        let before = |own: Driven| match own {
+        let before = |control: Driven| match control {
             Driven::Gravity => 1.0,
             Driven::Acceleration(0) => 0.1,
             Driven::Load(0) => 2.0,

@@ -30,56 +30,56 @@ pub struct SeepageCase {
 
 impl SeepageCase {
     /// The conditions with the soils of materials, by their index, and those of regions behind them; soil without a
-    /// permeability of its own is not there. What soil stores below the free surface follows from its stiffness and the unit
+    /// permeability of its own is not there. Storage of soil below the free surface follows from its stiffness and the unit
     /// weight of water \[N/m³\].
     pub fn with_soils<const D: usize>(
         &self,
         materials: &[Material],
         water_unit_weight: f64,
     ) -> Conditions<D> {
-        let own = &self.conditions;
+        let stated = &self.conditions;
         let soil = |material: &Material| Soil {
             specific_storage: water_unit_weight / material.constrained_modulus(),
             ..material.permeability.unwrap_or(Soil::isotropic(1.0))
         };
         let of_materials = materials.iter().map(soil);
-        let behind = |what: InGround| match what {
+        let behind = |condition: InGround| match condition {
             InGround::Soil(number) => InGround::Soil(materials.len() + number),
             other => other,
         };
         Conditions {
-            soils: of_materials.chain(own.soils.iter().copied()).collect(),
-            faces: (own.faces.iter())
+            soils: of_materials.chain(stated.soils.iter().copied()).collect(),
+            faces: (stated.faces.iter())
                 .map(|named| Named {
                     name: named.name.clone(),
                     within: extent(&named.within),
                     what: named.what,
                 })
                 .collect(),
-            regions: (own.regions.iter())
+            regions: (stated.regions.iter())
                 .map(|named| Named {
                     name: named.name.clone(),
                     within: extent(&named.within),
                     what: behind(named.what),
                 })
                 .collect(),
-            sections: (own.sections.iter())
+            sections: (stated.sections.iter())
                 .map(|(name, within)| (name.clone(), extent(within)))
                 .collect(),
-            axisymmetric: own.axisymmetric,
-            confined: own.confined,
-            width: own.width,
-            floor: own.floor,
+            axisymmetric: stated.axisymmetric,
+            confined: stated.confined,
+            width: stated.width,
+            floor: stated.floor,
         }
     }
 }
 
 /// The first corners of an extent in space.
-fn extent<const D: usize>(own: &Extent<3>) -> Extent<D> {
+fn extent<const D: usize>(extent: &Extent<3>) -> Extent<D> {
     let first = |corner: [f64; 3]| std::array::from_fn(|axis| corner[axis]);
     Extent {
-        lower: first(own.lower),
-        upper: first(own.upper),
+        lower: first(extent.lower),
+        upper: first(extent.upper),
     }
 }
 
@@ -87,7 +87,7 @@ impl<const D: usize> Case<D> {
     /// The time of the water at the end of a stage, where it is that of a flow in time \[s\].
     pub fn time_of_water_after(&self, stage: usize) -> Option<f64> {
         match &self.water[self.water_after(stage)?].source {
-            PoreSource::Seepage(own) => Some(own.in_time.as_ref()?.time),
+            PoreSource::Seepage(flow) => Some(flow.in_time.as_ref()?.time),
             _ => None,
         }
     }

@@ -1,4 +1,4 @@
-//! Discharges of sections, in balance with what the cells beside them exchange (theory, eqs. 84a and 84b).
+//! Discharges of sections, in balance with the exchange of the cells beside them (theory, eqs. 84a and 84b).
 
 use crate::basis::{CORNERS, Point};
 use crate::boundary::reach;
@@ -16,7 +16,7 @@ const ON: f64 = 1e-4;
 /// Half-lengths below this share of a cell are none \[-\].
 const NONE: f64 = 1e-9;
 
-/// What passes each section that is asked for, towards the positive axis.
+/// The flow through each section that is asked for, towards the positive axis.
 pub(crate) fn sections<const D: usize>(
     system: &System<'_, D>,
     heads: &[f64],
@@ -34,7 +34,7 @@ pub(crate) fn sections<const D: usize>(
     system.conditions.sections.iter().map(passes).collect()
 }
 
-/// What passes a section across an axis \[m^D/s\]. On a line of the grid half of it is told by the cells on either side.
+/// The flow through a section across an axis \[m^D/s\]. On a line of the grid the cells on either side give half of it each.
 fn through<const D: usize>(
     system: &System<'_, D>,
     (extent, axis): (&Extent<D>, usize),
@@ -54,12 +54,12 @@ fn through<const D: usize>(
             axis,
             at,
         };
-        let own = cut.passes(system, cell, &system.heads(cell, heads), relative);
+        let passing = cut.passes(system, cell, &system.heads(cell, heads), relative);
         let is_on_line = (at - lower[axis]).abs() <= reach || (at - upper[axis]).abs() <= reach;
         sum += if is_on_line {
-            0.5 * (own.inside + own.at_face)
+            0.5 * (passing.inside + passing.at_face)
         } else {
-            own.inside
+            passing.inside
         };
     }
     sum
@@ -73,15 +73,15 @@ struct Cut<'a, const D: usize> {
     at: f64,
 }
 
-/// What passes the part of a section in a cell \[m^D/s\].
+/// The flow through the part of a section in a cell \[m^D/s\].
 struct Passing {
     inside: f64,
-    /// What of it passes faces of the ground that lie on the section.
+    /// Its share through faces of the ground that lie on the section.
     at_face: f64,
 }
 
 impl<const D: usize> Cut<'_, D> {
-    /// The mean flow through the part of the cell, and its share of what the whole cell passes beside it (eq. 84a).
+    /// The mean flow through the part of the cell, and its share of the other flow of the whole cell (eq. 84a).
     fn passes(
         &self,
         system: &System<'_, D>,
@@ -124,10 +124,10 @@ impl<const D: usize> Cut<'_, D> {
         let lower = (0..1 << D).filter(|corner| corner >> self.axis & 1 == 0);
         let at_lower: f64 = lower.map(|corner| leaves[corner]).sum();
         let before: f64 = (sources.iter())
-            .map(|own| own.inflow * self.before(own))
+            .map(|source| source.inflow * self.before(source))
             .sum();
-        let on = sources.iter().filter(|own| self.is_on(own));
-        let at_face: f64 = on.map(|own| -own.normal[self.axis] * own.inflow).sum();
+        let on = sources.iter().filter(|source| self.is_on(source));
+        let at_face: f64 = on.map(|s| -s.normal[self.axis] * s.inflow).sum();
         Passing {
             inside: part[1] + share * (at_lower + before - whole[1]),
             at_face: share * at_face,
@@ -146,7 +146,7 @@ impl<const D: usize> Cut<'_, D> {
             .then_some([lower, upper])
     }
 
-    /// Half of the length along an axis of what lies around a place in its part of a cell.
+    /// Half of the length along an axis of the soil around a place in its part of a cell.
     fn half(&self, x: &[f64; D], axis: usize) -> f64 {
         let count = SUB[D - 2] as f64;
         let [lower, upper] = [self.ends[0][axis], self.ends[1][axis]];
@@ -155,7 +155,7 @@ impl<const D: usize> Cut<'_, D> {
         (x[axis] - from).min(from + size - x[axis]).max(0.0)
     }
 
-    /// The share of what lies around a place that the section crosses.
+    /// The share of the soil around a place that the section crosses.
     fn covered(&self, system: &System<'_, D>, x: &[f64; D]) -> f64 {
         let share = |d: usize| {
             let half = self.half(x, d);
@@ -176,19 +176,20 @@ impl<const D: usize> Cut<'_, D> {
     }
 
     /// Whether water enters through a face on the section.
-    fn is_on(&self, own: &Source<D>) -> bool {
+    fn is_on(&self, source: &Source<D>) -> bool {
         let size = self.ends[1][self.axis] - self.ends[0][self.axis];
-        own.normal[self.axis].abs() > ACROSS && (own.x[self.axis] - self.at).abs() <= ON * size
+        source.normal[self.axis].abs() > ACROSS
+            && (source.x[self.axis] - self.at).abs() <= ON * size
     }
 
     /// The share of the water that enters the cell before it comes to the section.
-    fn before(&self, own: &Source<D>) -> f64 {
-        let (normal, x) = (own.normal[self.axis], own.x[self.axis]);
-        if self.is_on(own) {
+    fn before(&self, source: &Source<D>) -> f64 {
+        let (normal, x) = (source.normal[self.axis], source.x[self.axis]);
+        if self.is_on(source) {
             return f64::from(normal < 0.0);
         }
         let along = (1.0 - normal * normal).max(0.0).sqrt();
-        let half = along * self.half(&own.x, self.axis);
+        let half = along * self.half(&source.x, self.axis);
         if half <= NONE * (self.ends[1][self.axis] - self.ends[0][self.axis]) {
             return f64::from(x < self.at);
         }

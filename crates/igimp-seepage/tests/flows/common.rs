@@ -17,12 +17,12 @@ pub(crate) fn faces(
     name: &str,
     lower: [f64; 2],
     upper: [f64; 2],
-    what: OnFaces,
+    condition: OnFaces,
 ) -> Named<2, OnFaces> {
     Named {
         name: name.to_owned(),
         within: Extent { lower, upper },
-        what,
+        what: condition,
     }
 }
 

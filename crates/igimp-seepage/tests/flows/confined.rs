@@ -61,8 +61,8 @@ fn layers_have_the_harmonic_mean() {
             .collect();
         let found = flow(&grid, &ground, &conditions).unwrap();
         let exact = 3.0 / (1.0 / 1e-5 + 1.5 / 1e-7 + 1.5 / 4e-6);
-        for own in [found.inflow, found.outflow, found.sections[0].inflow] {
-            assert!((own / exact - 1.0).abs() < 1e-9, "{own} of {exact}");
+        for flux in [found.inflow, found.outflow, found.sections[0].inflow] {
+            assert!((flux / exact - 1.0).abs() < 1e-9, "{flux} of {exact}");
         }
     }
 }
@@ -125,7 +125,7 @@ fn bedding_turns_the_flow() {
     conditions.faces = vec![
         faces("left", [0.0, 0.0], [0.0, 1.0], OnFaces::Head(1.0)),
         faces("right", [1.0, 0.0], [1.0, 1.0], OnFaces::Head(0.0)),
-        // What leaves through top and bottom where the head has no slope along y.
+        // The flow through top and bottom where the head has no slope along y.
         faces(
             "top",
             [0.1, 1.0],
@@ -210,13 +210,13 @@ fn heads_under_a_dam() {
 fn wells_and_walls() {
     let grid = grid([0.0, 0.0], 0.5, [40, 20]);
     let ground = [rectangle([0.0, 0.0], [20.0, 10.0])];
-    let region = |name: &str, left: f64, right: f64, what| Named {
+    let region = |name: &str, left: f64, right: f64, condition| Named {
         name: name.to_owned(),
         within: Extent {
             lower: [left, 0.0],
             upper: [right, 10.0],
         },
-        what,
+        what: condition,
     };
     let mut conditions = confined(&[1e-4]);
     conditions.faces = vec![faces("left", [0.0, 0.0], [0.0, 10.0], OnFaces::Head(12.0))];
@@ -242,9 +242,9 @@ fn wells_and_walls() {
     assert!((outflow / exact - 1.0).abs() < 1e-9, "{outflow} of {exact}");
 }
 
-/// GOAL: what makes no flow is refused by name.
+/// GOAL: conditions without a flow are refused by name.
 #[test]
-fn what_makes_no_flow_is_refused() {
+fn conditions_without_a_flow_are_refused() {
     let grid = grid([0.0, 0.0], 0.5, [4, 4]);
     let ground = [rectangle([0.0, 0.0], [2.0, 2.0])];
     let mut conditions = confined(&[1e-4]);
@@ -275,7 +275,7 @@ fn free_water_at_the_level_of_the_ground_touches_it() {
         for above in [0.0, 1e-4] {
             let head = level + above;
             let found = flow_below(&grid, &ground, &conditions, Some(head)).unwrap();
-            let off = found.heads.iter().map(|own| (own - head).abs());
+            let off = found.heads.iter().map(|h| (h - head).abs());
             assert!(off.fold(0.0, f64::max) < 1e-6, "{level} {above}");
         }
     }
@@ -302,12 +302,12 @@ fn upright(at: f64, [from, to]: [f64; 2]) -> (String, Extent<2>) {
     (format!("{at} {from} {to}"), extent)
 }
 
-/// GOAL: a section passes what flows through the part of the ground that it crosses, wherever it begins and ends, on lines of the
+/// GOAL: a section passes the flow through the part of the ground that it crosses, wherever it begins and ends, on lines of the
 /// grid, off them and on faces of the ground, also where the ground cuts cells.
 /// ORACLE: uniform flow between two heads: k i times the length within the ground.
 #[test]
 fn parts_of_sections_pass_their_share_of_a_uniform_flow() {
-    // In cells that the ground cuts heads are hardly off: by some thousandths of what passes a cell.
+    // In cells that the ground cuts heads are hardly off: by some thousandths of the flow through a cell.
     for ([left, low, length, height], accuracy) in
         [([0.0, 0.0, 8.0, 10.0], 1e-9), ([0.15, 0.2, 7.6, 9.4], 5e-3)]
     {
@@ -332,24 +332,24 @@ fn parts_of_sections_pass_their_share_of_a_uniform_flow() {
         }
         let ground = [rectangle([left, low], [right, top])];
         let found = flow(&grid, &ground, &conditions).unwrap();
-        for (own, (_, extent)) in std::iter::zip(&found.sections, &conditions.sections) {
+        for (section, (_, extent)) in std::iter::zip(&found.sections, &conditions.sections) {
             let within = extent.upper[1].min(top) - extent.lower[1].max(low);
             let rate = 1e-5 * 8.0 / length;
-            let off = (own.inflow / rate - within) / 0.5;
-            assert!(off.abs() < accuracy, "{}: {off} of a cell", own.name);
-            // Across all of the ground, off its faces, it passes what enters, to what equations are solved to.
+            let off = (section.inflow / rate - within) / 0.5;
+            assert!(off.abs() < accuracy, "{}: {off} of a cell", section.name);
+            // Across all of the ground, off its faces, it passes all that enters, to the tolerance of the equations.
             let is_within = extent.lower[0] > left + 0.5 && extent.lower[0] < right - 0.5;
             if is_within && extent.lower[1] <= low && extent.upper[1] > top {
-                let off = own.inflow / found.discharges[0].inflow - 1.0;
-                assert!(off.abs() < 1e-6, "{}: {off} of what enters", own.name);
+                let off = section.inflow / found.discharges[0].inflow - 1.0;
+                assert!(off.abs() < 1e-6, "{}: {off} of what enters", section.name);
             }
         }
     }
 }
 
-/// GOAL: what passes a section across all of the ground is what enters on its one side, and mirrored ground passes the same the
+/// GOAL: the flow through a section across all of the ground is the inflow on its one side, and mirrored ground passes the same the
 /// other way. CASE: a layer with oblique bedding between two heads, rain on the part from x = 3 m to 8 m; a sink.
-/// ORACLE: balance: rain on a side and what its face lets in; the mirror.
+/// ORACLE: balance: rain on a side and the inflow of its face; the mirror.
 #[test]
 fn sections_pass_all_that_enters_on_their_side() {
     let at = [0.0, 1.0, 2.0, 2.2, 3.0, 3.7, 6.0, 8.0];
@@ -360,9 +360,9 @@ fn sections_pass_all_that_enters_on_their_side() {
             let [a, b] = x.map(turned);
             ([a.min(b), y[0]], [a.max(b), y[1]])
         };
-        let face = |name, x, y, what| {
+        let face = |name, x, y, condition| {
             let (lower, upper) = boxed(x, y);
-            faces(name, lower, upper, what)
+            faces(name, lower, upper, condition)
         };
         let mut conditions = confined(&[1.0]);
         conditions.soils[0] = Soil {
@@ -385,21 +385,21 @@ fn sections_pass_all_that_enters_on_their_side() {
         let ground = [rectangle([0.0, 0.0], [8.0, 4.0])];
         flow(&grid([0.0, 0.0], 1.0, [8, 5]), &ground, &conditions).unwrap()
     };
-    let [own, mirrored] = [false, true].map(ran);
-    let enters = own.discharges[0].inflow - own.discharges[0].outflow;
-    let pairs = std::iter::zip(&own.sections, &mirrored.sections);
+    let [plain, mirrored] = [false, true].map(ran);
+    let enters = plain.discharges[0].inflow - plain.discharges[0].outflow;
+    let pairs = std::iter::zip(&plain.sections, &mirrored.sections);
     for (x, (section, other)) in std::iter::zip(at, pairs) {
         // Within a cell with a sink the place of its points counts.
         let exact = enters + 1e-3 * (x - 3.0).max(0.0) + sink(x);
-        assert!((section.inflow - exact).abs() < 1e-9 * own.inflow);
-        assert!((section.inflow + other.inflow).abs() < 1e-9 * own.inflow);
+        assert!((section.inflow - exact).abs() < 1e-9 * plain.inflow);
+        assert!((section.inflow + other.inflow).abs() < 1e-9 * plain.inflow);
     }
 }
 
-/// GOAL: what a condition lets through is what flows, and no noise of single places: a slanting layer, ten times as permeable along as
+/// GOAL: the discharge of a condition is the flow, and no noise of single places: a slanting layer, ten times as permeable along as
 /// across, whose faces cut the grid at any angle. ORACLE: k H Δh / L, which enters at one end and leaves at the other.
 #[test]
-fn what_passes_an_end_of_a_slanting_layer_is_what_flows() {
+fn the_discharge_at_an_end_of_a_slanting_layer_is_its_flow() {
     let (length, thick) = (6.0_f64, 1.5);
     for (degrees, cell, [x, y]) in [
         (35.0_f64, 0.25, [0.0, 0.0]),
@@ -427,7 +427,7 @@ fn what_passes_an_end_of_a_slanting_layer_is_what_flows() {
         let found = flow(&grid, &[layer], &conditions).unwrap();
         let exact = 1e-5 * thick * 6.0 / length;
         let passed: Vec<_> = (found.discharges.iter())
-            .map(|own| [own.inflow / exact, own.outflow / exact])
+            .map(|discharge| [discharge.inflow / exact, discharge.outflow / exact])
             .collect();
         println!(
             "{degrees} {cell}: {:.4} {passed:.4?}",
@@ -436,7 +436,7 @@ fn what_passes_an_end_of_a_slanting_layer_is_what_flows() {
     }
 }
 
-/// GOAL: full pores with faces where water comes out, and with rain, of which what cannot enter runs off; faces on lines of the grid and off
+/// GOAL: full pores with faces where water comes out, and with rain, whose excess runs off; faces on lines of the grid and off
 /// them. ORACLE: Darcy's law for a column: k (7 − 4)/4 comes out; rain of k/4 enters whole, and its head at the top is 2; of 2 k enters
 /// k (4 − 1)/4. No water comes out where the head is below the face.
 #[test]
@@ -457,8 +457,8 @@ fn full_pores_have_open_faces_and_rain() {
             ];
             let ground = [rectangle([0.0, 0.0], [1.0, height])];
             let found = flow(&grid, &ground, &conditions).unwrap();
-            let own = &found.discharges[0];
-            let entered = (own.inflow - own.outflow) / permeability;
+            let discharge = &found.discharges[0];
+            let entered = (discharge.inflow - discharge.outflow) / permeability;
             println!("{top:?}, head {below}, shift {shift}: {entered} of {passes}");
             assert!((entered - passes).abs() < 1e-8, "{entered} of {passes}");
             assert!((found.head(&[0.4, height]) - head).abs() < 1e-8);
@@ -466,7 +466,7 @@ fn full_pores_have_open_faces_and_rain() {
     }
 }
 
-/// GOAL: full pores with a slope where water comes out at a part, between heads on both sides: what was refused as having no solution.
+/// GOAL: full pores with a slope where water comes out at a part, between heads on both sides: a flow once refused as without solution.
 /// ORACLE: the balance; none enters at the open face, and the head there is nowhere above it.
 #[test]
 fn full_pores_drain_to_an_open_slope() {

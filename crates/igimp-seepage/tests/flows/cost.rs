@@ -1,4 +1,4 @@
-//! What a flow costs: printed, not judged.
+//! The cost of a flow: printed, not judged.
 
 /// GOAL: the time of a dam of many cells, printed; in an optimised build ask for 100 000 by `IGIMP_SEEPAGE_CELLS`.
 #[test]

@@ -46,18 +46,18 @@ fn discharge_and_free_surface_are_known() {
 #[test]
 fn the_place_of_the_grid_does_not_matter() {
     let found = [0.0, 0.25, 0.5, 0.75].map(|shift| dam(10.0, 10.0, 2.0, 0.25, shift));
-    for own in &found {
-        assert!((own.outflow / 4.8 - 1.0).abs() < 5e-3, "{}", own.outflow);
-        assert!((own.inflow / own.outflow - 1.0).abs() < 1e-10);
+    for flow in &found {
+        assert!((flow.outflow / 4.8 - 1.0).abs() < 5e-3, "{}", flow.outflow);
+        assert!((flow.inflow / flow.outflow - 1.0).abs() < 1e-10);
         for share in [2.5, 5.0, 7.5] {
             let [level, first] =
-                [own, &found[0]].map(|own| own.free_surface(&[share, 0.0]).unwrap());
+                [flow, &found[0]].map(|flow| flow.free_surface(&[share, 0.0]).unwrap());
             assert!((level - first).abs() < 0.001 * 10.0, "{level} {first}");
         }
     }
 }
 
-/// GOAL: a head that is drawn over a whole face leaves what stands above its level to the box before it.
+/// GOAL: a head that is drawn over a whole face leaves the face above its level to the box before it.
 /// CASE: water at 1 m before a face that was called open, drawn up to the level and up to the crest.
 /// ORACLE: Charny's discharge, exact for any seepage face; the box that ends at the level. Without the open box the face
 /// is closed above it, and lets less through.

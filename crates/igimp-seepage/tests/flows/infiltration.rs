@@ -25,10 +25,10 @@ fn column(top: OnFaces, base: OnFaces) -> Conditions<2> {
     conditions
 }
 
-/// GOAL: level ground takes what it can, in the plane and around an axis, whatever its cells.
+/// GOAL: level ground takes all it can, in the plane and around an axis, whatever its cells.
 /// ORACLE: Darcy's law for a column of full pores, i = (h − h₀) / 5 m, and i = h / 5 m to the air; weaker rain enters whole.
 #[test]
-fn level_ground_takes_what_it_can() {
+fn level_ground_takes_all_it_can() {
     let head = OnFaces::Head;
     let rain = |share: f64| OnFaces::Recharge(share * K);
     for (top, base, expected) in [
@@ -49,18 +49,18 @@ fn level_ground_takes_what_it_can() {
                 let grid = grid([0.0, 0.0], cell, cells);
                 let ground = rectangle([0.0, 0.0], [4.0, 5.0]);
                 let found = flow(&grid, &[ground], &conditions).unwrap();
-                let own = found.inflow / (K * area);
-                println!("{top:?} {base:?} {cell} {axisymmetric}: {own:.5} of {expected}");
-                assert!((own / expected - 1.0).abs() < 1e-6);
+                let inflow = found.inflow / (K * area);
+                println!("{top:?} {base:?} {cell} {axisymmetric}: {inflow:.5} of {expected}");
+                assert!((inflow / expected - 1.0).abs() < 1e-6);
                 assert!((found.inflow / found.outflow - 1.0).abs() < 1e-10);
             }
         }
     }
 }
 
-/// GOAL: the same in space. ORACLE: rain of 0.7 k enters whole, and of twice k what full pores let through.
+/// GOAL: the same in space. ORACLE: rain of 0.7 k enters whole, and of twice k the flow of full pores.
 #[test]
-fn level_ground_in_space_takes_what_it_can() {
+fn level_ground_in_space_takes_all_it_can() {
     let axis = |count| Axis::uniform(0.0, 1.0, count).unwrap();
     let grid = Grid::new([axis(2), axis(1), axis(5)]);
     let ground = Prism::new(rectangle([0.0, 0.0], [2.0, 5.0]), 1, [0.0, 1.0]);
@@ -71,13 +71,13 @@ fn level_ground_in_space_takes_what_it_can() {
             ("base", 0.0, OnFaces::Head(1.0)),
         ];
         conditions.faces = faces
-            .map(|(name, level, what)| Named {
+            .map(|(name, level, condition)| Named {
                 name: name.to_owned(),
                 within: Extent {
                     lower: [0.0, 0.0, level],
                     upper: [2.0, 1.0, level],
                 },
-                what,
+                what: condition,
             })
             .to_vec();
         let body = SeepageBody {
@@ -90,8 +90,8 @@ fn level_ground_in_space_takes_what_it_can() {
     }
 }
 
-/// GOAL: rain enters drained soil whole until that is wet. ORACLE: rain of 0.3 k and 0.9 k for days; in the end what full pores let
-/// through, 0.8 k, and a head that falls straight.
+/// GOAL: rain enters drained soil whole until that is wet. ORACLE: rain of 0.3 k and 0.9 k for days; in the end the flow of full
+/// pores, 0.8 k, and a head that falls straight.
 #[test]
 fn rain_enters_until_the_ground_is_wet() {
     let ground = rectangle([0.0, 0.0], [4.0, 5.0]);
@@ -113,13 +113,13 @@ fn rain_enters_until_the_ground_is_wet() {
             };
             let found = march(&grid, &[body], (&start, &conditions), &|_| None, &course).unwrap();
             for time in &course.times[..2] {
-                let own = found
+                let row = found
                     .balance
                     .iter()
-                    .find(|own| own.time.to_bits() == time.to_bits())
+                    .find(|row| row.time.to_bits() == time.to_bits())
                     .unwrap();
-                assert!((own.entered / (K * time * share) - 1.0).abs() < 1e-6);
-                assert!(own.error < 1e-10);
+                assert!((row.entered / (K * time * share) - 1.0).abs() < 1e-6);
+                assert!(row.error < 1e-10);
             }
             let last = found.states.last().unwrap();
             println!("rain {share} on cells of {cell}: {:.5} k", last.outflow / K);
@@ -128,7 +128,7 @@ fn rain_enters_until_the_ground_is_wet() {
     }
 }
 
-/// GOAL: rain in a box round all of the ground falls on what rises, and opens no side and no base. ORACLE: all rain leaves
+/// GOAL: rain in a box round all of the ground falls on faces that rise, and opens no side and no base. ORACLE: all rain leaves
 /// at the head; Dupuit, h² = h₁² + r (2 L x' − x'²) / k at the far side, ± 2 %.
 #[test]
 fn rain_opens_no_side_and_no_base() {

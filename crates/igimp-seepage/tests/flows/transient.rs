@@ -48,13 +48,13 @@ fn follow(
         last.error
     );
     // Water balances after every step, and times are landed on.
-    assert!(found.balance.iter().all(|own| own.error <= 1e-10));
+    assert!(found.balance.iter().all(|row| row.error <= 1e-10));
     for time in &course.times {
         assert!(
             found
                 .balance
                 .iter()
-                .any(|own| own.time.to_bits() == time.to_bits())
+                .any(|row| row.time.to_bits() == time.to_bits())
         );
     }
     Ok((start, found))
@@ -124,11 +124,11 @@ fn two_layers_consolidate() {
     for (state, &time) in std::iter::zip(&found.states, &course.times) {
         for k in 1..20 {
             let y = 0.05 * f64::from(k);
-            let own = state.head(&[0.0, y]) - 1.0;
+            let head = state.head(&[0.0, y]) - 1.0;
             let exact = two_layers(10.0, 1.0 - y, time);
-            apart = apart.max((own - exact).abs());
+            apart = apart.max((head - exact).abs());
             if k % 6 == 0 {
-                println!("t {time}, y {y:.2}: {own:.5} of {exact:.5}");
+                println!("t {time}, y {y:.2}: {head:.5} of {exact:.5}");
             }
         }
     }
@@ -143,21 +143,21 @@ fn two_layers_consolidate() {
 fn boussinesq(low: f64, eta: f64) -> f64 {
     let shoot = |slope: f64, to: f64| {
         let slopes = |x: f64, [h, p]: [f64; 2]| [p, -(p * p + 2.0 * x * p) / h];
-        let (mut own, mut x) = ([low, slope], 0.0);
+        let (mut state, mut x) = ([low, slope], 0.0);
         let count = 4000;
         let step = to / f64::from(count);
         for _ in 0..count {
-            let moved = |by: f64, d: [f64; 2]| [own[0] + by * d[0], own[1] + by * d[1]];
-            let a = slopes(x, own);
+            let moved = |by: f64, d: [f64; 2]| [state[0] + by * d[0], state[1] + by * d[1]];
+            let a = slopes(x, state);
             let b = slopes(x + 0.5 * step, moved(0.5 * step, a));
             let c = slopes(x + 0.5 * step, moved(0.5 * step, b));
             let d = slopes(x + step, moved(step, c));
             for k in 0..2 {
-                own[k] += step / 6.0 * (a[k] + 2.0 * b[k] + 2.0 * c[k] + d[k]);
+                state[k] += step / 6.0 * (a[k] + 2.0 * b[k] + 2.0 * c[k] + d[k]);
             }
             x += step;
         }
-        own[0]
+        state[0]
     };
     let (mut least, mut most) = (0.0, 5.0);
     for _ in 0..60 {
@@ -218,7 +218,7 @@ fn falling(pool: &History, times: &[f64], cells: usize) -> Vec<f64> {
         let count = ((end - time) / (0.2 * size * size)).ceil();
         let step = (end - time) / count;
         for k in 1..=count as usize {
-            let half: Vec<f64> = level.iter().map(|own| 0.5 * own * own).collect();
+            let half: Vec<f64> = level.iter().map(|h| 0.5 * h * h).collect();
             for i in 1..=cells {
                 // Nothing passes the middle.
                 let beyond = half[if i < cells { i + 1 } else { i - 1 }];
@@ -269,7 +269,7 @@ fn a_long_dam_drains_as_its_pools_fall() {
         };
         let polygon = rectangle([0.0, 0.0], [half, 1.1]);
         let (_, found) = follow(&grid, &[polygon], &conditions, &course).unwrap();
-        let level = |own: &Seepage<2>| own.free_surface(&[half, 0.0]).unwrap();
+        let level = |state: &Seepage<2>| state.free_surface(&[half, 0.0]).unwrap();
         let levels: Vec<f64> = found.states.iter().map(level).collect();
         println!("L/H {}: {levels:.4?} of {exact:.4?}", 2.0 * half);
         let pairs = std::iter::zip(&levels, &exact);
@@ -344,15 +344,15 @@ fn rain_wets_dry_soil() {
     let (_, found) = follow(&grid, &[polygon], &conditions, &course).unwrap();
     for (state, time) in std::iter::zip(&found.states, [0.5, 2.0]) {
         for z in [0.6, 1.2, 1.8, 2.4, 3.0] {
-            let own = state.pressure_head(&[0.0, z]);
+            let head = state.pressure_head(&[0.0, z]);
             let exact = wetted(z, thick, rain, time);
-            println!("T {time}, z {z}: {own:.4} of {exact:.4}");
-            assert!((own - exact).abs() < 5e-3 * thick);
+            println!("T {time}, z {z}: {head:.4} of {exact:.4}");
+            assert!((head - exact).abs() < 5e-3 * thick);
         }
     }
 }
 
-/// GOAL: what cannot be followed is refused, and says why.
+/// GOAL: flows that cannot be followed are refused, with the reason.
 #[test]
 fn flows_without_storage_are_refused() {
     let grid = grid([0.0, 0.0], 0.5, [4, 4]);
@@ -363,19 +363,19 @@ fn flows_without_storage_are_refused() {
         histories: vec![None],
         times: vec![1.0, 1.0],
     };
-    let told = |conditions: &Conditions<2>, course: &Course| {
+    let message = |conditions: &Conditions<2>, course: &Course| {
         follow(&grid, &polygon, conditions, course)
             .unwrap_err()
             .to_string()
     };
-    assert!(told(&conditions, &course).contains("after the one before"));
+    assert!(message(&conditions, &course).contains("after the one before"));
     let course = Course {
         times: vec![1.0],
         ..course
     };
-    assert!(told(&conditions, &course).contains("specific storage of soil 0"));
+    assert!(message(&conditions, &course).contains("specific storage of soil 0"));
     conditions.soils[0].specific_storage = 1e-3;
-    assert!(told(&conditions, &course).contains("drainable share of soil 0"));
+    assert!(message(&conditions, &course).contains("drainable share of soil 0"));
 }
 
 /// GOAL: the pool before a dam falls, the dam drains, and comes to rest where it does without time; faces lie off the lines of the grid.
@@ -411,20 +411,21 @@ fn a_dam_drains_after_its_pool_has_fallen() {
         conditions.faces[0].what = OnFaces::Head(4.0);
         (start, found, flow(&grid, &polygon, &conditions).unwrap())
     };
-    let level = |own: &Seepage<2>, x: f64| own.free_surface(&[x, 0.0]).unwrap();
+    let level = |state: &Seepage<2>, x: f64| state.free_surface(&[x, 0.0]).unwrap();
     let [(start, coarse, end), (_, fine, _)] = [4.0, 2.0].map(ran);
     for x in [20.0, 40.0, 60.0, 80.0] {
-        let levels = |own: &Transient<2>| {
-            own.states
+        let levels = |found: &Transient<2>| {
+            found
+                .states
                 .iter()
-                .map(|own| level(own, x))
+                .map(|state| level(state, x))
                 .collect::<Vec<_>>()
         };
-        let (own, finer, end) = (levels(&coarse), levels(&fine), level(&end, x));
-        println!("x {x}: {own:.3?}, finer {finer:.3?}, without time {end:.3}");
-        assert!((own[3] - end).abs() < 1e-3 * 20.0);
+        let (rough, finer, end) = (levels(&coarse), levels(&fine), level(&end, x));
+        println!("x {x}: {rough:.3?}, finer {finer:.3?}, without time {end:.3}");
+        assert!((rough[3] - end).abs() < 1e-3 * 20.0);
         assert!(level(&start, x) - end > 1.0);
-        for (a, b) in std::iter::zip(&own[..3], &finer) {
+        for (a, b) in std::iter::zip(&rough[..3], &finer) {
             assert!((a - b).abs() < 0.02 * 20.0, "{a} {b}");
         }
     }
@@ -493,7 +494,7 @@ fn block_of(curve: Curve, times: &[f64]) -> Result<(Seepage<2>, Transient<2>), S
 }
 
 /// GOAL: a sudden drawdown is followed whatever the times that are asked for, with a sharp surface and with curves: the steps
-/// follow from the times, and what is found at one does not. CASE: four first times, from a tenth to a half of the last.
+/// follow from the times, and the results at one do not. CASE: four first times, from a tenth to a half of the last.
 /// ORACLE: each other, within 0.1 % of the fall; the level comes down to the pond's and not below.
 #[test]
 fn a_drawdown_is_followed_whatever_times_are_asked_for() {
@@ -513,7 +514,7 @@ fn a_drawdown_is_followed_whatever_times_are_asked_for() {
             &[10.0, 20.0],
         ];
         let levels = levels.map(|times| {
-            let times: Vec<f64> = times.iter().map(|own| own * day).collect();
+            let times: Vec<f64> = times.iter().map(|t| t * day).collect();
             let (_, found) = block_of(curve, &times).unwrap();
             found.states.last().unwrap().head(&[20.0, 0.0])
         });

@@ -9,7 +9,7 @@ use igimp_seepage::{
 use igimp_shape::{Axis, Grid};
 
 /// GOAL: a mound under rain, with a free surface and with a capillary fringe.
-/// ORACLE: what leaves on the right is P L / 2 + k (h₁² − h₂²) / (2 L), by the integral that gives Charny's discharge; programs
+/// ORACLE: the outflow on the right is P L / 2 + k (h₁² − h₂²) / (2 L), by the integral that gives Charny's discharge; programs
 /// that carry water in a fringe, whose curve is not known, have a crest of 4.49 m to 4.61 m at 4.06 m. Gardner's 1/α of half a metre is
 /// fitted to the crest; its place is not.
 #[test]
@@ -86,7 +86,7 @@ fn a_dam_with_a_toe_drain() {
     }
 }
 
-/// GOAL: a drain in the ground draws the free surface down, and takes what enters; ponds give heads by themselves.
+/// GOAL: a drain in the ground draws the free surface down, and takes the inflow; ponds give heads by themselves.
 /// ORACLE: the balance; the surface at the drain is no higher than the drain.
 #[test]
 fn a_drain_under_a_slope() {
@@ -119,7 +119,7 @@ fn a_drain_under_a_slope() {
         what: InGround::Drain,
     }];
     let with = solve(&grid, &[body], &conditions, &level).unwrap();
-    let at = |own: &igimp_seepage::Seepage<2>| own.free_surface(&[12.5, 0.0]).unwrap();
+    let at = |flow: &igimp_seepage::Seepage<2>| flow.free_surface(&[12.5, 0.0]).unwrap();
     assert!(
         at(&without) > 2.0 && at(&with) < 1.6,
         "{} {}",
@@ -138,13 +138,13 @@ fn a_dam_in_space() {
     let grid = Grid::new([axis(10.0, 10), axis(3.0, 2), axis(10.0, 10)]);
     let dam = Prism::new(rectangle([0.0, 0.0], [10.0, 10.0]), 1, [0.0, 3.0]);
     let mut conditions = Conditions::of(vec![Soil::isotropic(1.0)]);
-    let side = |name: &str, x: f64, top: f64, what| Named {
+    let side = |name: &str, x: f64, top: f64, condition| Named {
         name: name.to_owned(),
         within: Extent {
             lower: [x, 0.0, 0.0],
             upper: [x, 3.0, top],
         },
-        what,
+        what: condition,
     };
     conditions.faces = vec![
         side("upstream", 0.0, 10.0, OnFaces::Head(10.0)),

@@ -149,7 +149,7 @@ fn a_drain_in_time() {
         let row = found
             .balance
             .iter()
-            .find(|own| own.time.to_bits() == time.to_bits());
+            .find(|row| row.time.to_bits() == time.to_bits());
         let degree = -row.unwrap().stored / all;
         println!("t {time}: {degree:.4} of {exact:.4}");
         assert!((degree - exact).abs() < 5e-3, "{degree}");
@@ -193,10 +193,13 @@ fn discs_pass_their_area() {
     };
     conditions.sections.push(("sleeve".to_owned(), sleeve));
     let found = flow(&grid, &[rectangle([0.0, 0.0], [3.8, 4.0])], &conditions).unwrap();
-    for ((radius, level), own) in std::iter::zip(discs, &found.sections) {
+    for ((radius, level), section) in std::iter::zip(discs, &found.sections) {
         let exact = 1e-3 * 0.5 * PI * radius * radius;
-        println!("{radius} {level}: {} of {exact}", own.inflow);
-        assert!((own.inflow / exact - 1.0).abs() < 5e-4, "{radius} {level}");
+        println!("{radius} {level}: {} of {exact}", section.inflow);
+        assert!(
+            (section.inflow / exact - 1.0).abs() < 5e-4,
+            "{radius} {level}"
+        );
     }
     assert!(found.sections.last().unwrap().inflow.abs() < 1e-12);
 }
