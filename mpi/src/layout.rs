@@ -98,8 +98,8 @@ impl Layout {
         if pattern.unknowns().max(nodes * rows) > i32::MAX as usize
             || pattern.coupled.len() > u32::MAX as usize
         {
-            let what = "indices of 32 bits for PETSc";
-            return Err(LinearSolverError::OutOfMemory { what });
+            let part = "indices of 32 bits for PETSc";
+            return Err(LinearSolverError::OutOfMemory { part });
         }
         Ok(Self {
             pattern: Arc::clone(pattern),

@@ -298,8 +298,8 @@ fn why(method: Method, reply: &Reply) -> LinearSolverError {
     if reply.mumps == IS_SINGULAR {
         LinearSolverError::Singular { unknown: None }
     } else if reply.mumps < 0 || reply.failure == OUT_OF_MEMORY {
-        let what = "factors of MUMPS on a rank";
-        LinearSolverError::OutOfMemory { what }
+        let part = "factors of MUMPS on a rank";
+        LinearSolverError::OutOfMemory { part }
     } else if method.is_definite() {
         LinearSolverError::NotPositiveDefinite { unknown: None }
     } else {

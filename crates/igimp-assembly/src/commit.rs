@@ -56,7 +56,7 @@ impl<const D: usize> Particles<D> {
             .for_each(|(particle, ((moving, stressed), slot))| {
                 let (x, displacement, half_length, half_length0, def_grad, hoop_strain) = moving;
                 let (b_e, sigma, eps_p_eq, internal, regime, excess) = stressed;
-                let own = &trial.particles[slot as usize];
+                let point = &trial.particles[slot as usize];
                 let step = stencils.displacement(particle, u);
                 for axis in 0..D {
                     displacement[axis] += step[axis];
@@ -66,45 +66,47 @@ impl<const D: usize> Particles<D> {
                         for axis in 0..D {
                             x[axis] += step[axis];
                         }
-                        *def_grad = multiply(&own.delta_def_grad, def_grad);
+                        *def_grad = multiply(&point.delta_def_grad, def_grad);
                         let (supports, hoops) = stencils.with_hoops(particle);
                         if !hoops.is_empty() {
-                            let strain = Hoop::strain(supports, hoops, u).own;
+                            let strain = Hoop::strain(supports, hoops, u).value;
                             *hoop_strain = (1.0 + *hoop_strain) * (1.0 + strain) - 1.0;
                         }
                         let ratio = volume_ratio(def_grad, *hoop_strain);
                         let update = method.domain_update;
                         *half_length = updated_half_length(update, half_length0, def_grad);
-                        (*b_e, *sigma) = stress_state(method.kinematics, own, ratio);
+                        (*b_e, *sigma) = stress_state(method.kinematics, point, ratio);
                     }
                     Geometry::Given => {
-                        *b_e = own.b_e();
+                        *b_e = point.b_e();
                         *sigma = match method.kinematics {
                             Kinematics::FiniteStrain => {
-                                divided(&own.tau, volume_ratio(def_grad, *hoop_strain))
+                                divided(&point.tau, volume_ratio(def_grad, *hoop_strain))
                             }
-                            Kinematics::SmallStrain => own.tau,
+                            Kinematics::SmallStrain => point.tau,
                         };
                     }
                 }
                 *excess = match method.kinematics {
-                    _ if own.excess == 0.0 => 0.0,
-                    Kinematics::FiniteStrain => own.excess / volume_ratio(def_grad, *hoop_strain),
-                    Kinematics::SmallStrain => own.excess,
+                    _ if point.excess == 0.0 => 0.0,
+                    Kinematics::FiniteStrain => point.excess / volume_ratio(def_grad, *hoop_strain),
+                    Kinematics::SmallStrain => point.excess,
                 };
-                (*eps_p_eq, *internal) = (own.history.eps_p_eq, own.history.internal);
-                *regime = own.regime;
+                (*eps_p_eq, *internal) = (point.history.eps_p_eq, point.history.internal);
+                *regime = point.regime;
             });
     }
 
     /// Gives the particles of an accepted step the velocities and accelerations that its nodes end with.
     pub fn accelerate(&mut self, stencils: &Stencils<D>, motion: &Motion<D>) {
         let fields = self.fields_mut();
-        let own = (&mut fields.velocity, &mut fields.acceleration).into_par_iter();
-        (own.enumerate().with_min_len(CHUNK)).for_each(|(particle, (velocity, acceleration))| {
-            *velocity = motion.of_particle(velocity, stencils.of(particle));
-            *acceleration = interpolate(stencils, particle, &motion.acceleration);
-        });
+        let columns = (&mut fields.velocity, &mut fields.acceleration).into_par_iter();
+        (columns.enumerate().with_min_len(CHUNK)).for_each(
+            |(particle, (velocity, acceleration))| {
+                *velocity = motion.of_particle(velocity, stencils.of(particle));
+                *acceleration = interpolate(stencils, particle, &motion.acceleration);
+            },
+        );
     }
 
     /// Takes all motion from the particles, as before a step in statics.
@@ -147,10 +149,10 @@ impl<const D: usize> Particles<D> {
         } else {
             fields.pore_pressure.copy_from_slice(&pores.given);
         }
-        for own in &pores.excess {
-            fields.excess[own.particle] = own.excess;
-            fields.excess_within_cell[own.particle] = own.within_cell;
-            fields.water_rate[own.particle] = own.rate;
+        for point in &pores.excess {
+            fields.excess[point.particle] = point.excess;
+            fields.excess_within_cell[point.particle] = point.within_cell;
+            fields.water_rate[point.particle] = point.rate;
         }
     }
 
@@ -204,18 +206,21 @@ fn interpolate<const D: usize>(
 /// b_e and σ of an accepted particle. In small strain both are rotated with the step.
 fn stress_state<const D: usize>(
     kinematics: Kinematics,
-    own: &ParticleTrial<D>,
+    point: &ParticleTrial<D>,
     det_f: f64,
 ) -> (Tensor, Tensor) {
     match kinematics {
-        Kinematics::FiniteStrain => (own.b_e(), divided(&own.tau, det_f)),
+        Kinematics::FiniteStrain => (point.b_e(), divided(&point.tau, det_f)),
         Kinematics::SmallStrain => {
-            let in_plane = rotation(&own.delta_def_grad);
+            let in_plane = rotation(&point.delta_def_grad);
             let mut turn = identity::<3>();
             for a in 0..D {
                 turn[a][..D].copy_from_slice(&in_plane[a]);
             }
-            (congruence(&turn, &own.b_e()), congruence(&turn, &own.tau))
+            (
+                congruence(&turn, &point.b_e()),
+                congruence(&turn, &point.tau),
+            )
         }
     }
 }
@@ -226,7 +231,7 @@ fn divided(tau: &Tensor, det_f: f64) -> Tensor {
 }
 
 /// The most and the inverse of the least stretch along an axis over their mean, for domains by stretch \[-\] (theory, eq. 29a).
-const MOST_ELONGATION: f64 = 2.0;
+const MOST_ELONGATION: f64 = 4.0;
 
 /// Half-lengths after the deformation F \[length\].
 fn updated_half_length<const D: usize>(
@@ -283,8 +288,8 @@ mod tests {
         assert!(across > 1.3, "{across}");
     }
 
-    /// GOAL: domains by stretch follow U up to four to one in the plane and keep to that bound beyond it, at any rotation and volume;
-    /// in space a stretch along one axis is followed up to the mean to the power 3/2 of the bound.
+    /// GOAL: domains by stretch follow U up to sixteen to one in the plane and keep to that bound beyond it, at any rotation and volume;
+    /// in space a stretch along one axis is followed up to eightfold.
     /// ORACLE: stretches along the axes by hand; before the bound the half-lengths are U's to the bit.
     #[test]
     fn domains_by_stretch_keep_to_their_bound() {
@@ -297,14 +302,14 @@ mod tests {
                 "{found:?}"
             );
         };
-        near(&plane([[8.0, 0.0], [0.0, 0.125]]), &[2.0, 0.5]);
-        near(&plane([[16.0, 0.0], [0.0, 1.0]]), &[8.0, 2.0]);
-        near(&plane([[0.0, -0.125], [8.0, 0.0]]), &[2.0, 0.5]);
+        near(&plane([[8.0, 0.0], [0.0, 0.125]]), &[4.0, 0.25]);
+        near(&plane([[64.0, 0.0], [0.0, 1.0]]), &[32.0, 2.0]);
+        near(&plane([[0.0, -0.125], [8.0, 0.0]]), &[4.0, 0.25]);
         let space = |stretch: f64| {
             let f = [[stretch, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
             updated_half_length(DomainUpdate::DiagonalU, &[1.0; 3], &f)
         };
-        near(&space(2.8), &[2.8, 1.0, 1.0]);
-        near(&space(8.0), &[4.0, 1.0, 1.0]);
+        near(&space(7.9), &[7.9, 1.0, 1.0]);
+        near(&space(64.0), &[16.0, 1.0, 1.0]);
     }
 }

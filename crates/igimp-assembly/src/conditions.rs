@@ -208,26 +208,26 @@ impl<const D: usize> StepConditions<D> {
     fn validate_fields(&self) -> Result<(), AssemblyError> {
         self.constraints.belong_to(&self.grid)?;
         if let Some(index) = self.motions.iter().position(|motion| !motion.is_finite()) {
-            let what = "motion of a rigid body";
-            return Err(AssemblyError::NonFinite { what, index });
+            let quantity = "motion of a rigid body";
+            return Err(AssemblyError::NonFinite { quantity, index });
         }
         let sound = |control: &ReinforcementControl| control.is_sound();
         if let Some(index) = (self.reinforcement.iter()).position(|control| !sound(control)) {
-            let what = "jack or reduction of a reinforcement";
-            return Err(AssemblyError::NonFinite { what, index });
+            let quantity = "jack or reduction of a reinforcement";
+            return Err(AssemblyError::NonFinite { quantity, index });
         }
         if let Some(held) = &self.held {
             let bad = |force: &[f64; D]| !force.iter().all(|f| (f * held.share).is_finite());
             let nodes = self.grid.node_count();
             let other = (held.forces.len() != nodes).then_some(nodes);
             if let Some(index) = other.or_else(|| held.forces.iter().position(bad)) {
-                let what = "force that holds the body at node";
-                return Err(AssemblyError::NonFinite { what, index });
+                let quantity = "force that holds the body at node";
+                return Err(AssemblyError::NonFinite { quantity, index });
             }
         }
         if self.time.is_some_and(|time| !time.is_sound()) {
-            let (what, index) = ("duration of a step", 0);
-            return Err(AssemblyError::NonFinite { what, index });
+            let (quantity, index) = ("duration of a step", 0);
+            return Err(AssemblyError::NonFinite { quantity, index });
         }
         let of_motion = [
             (
@@ -243,8 +243,8 @@ impl<const D: usize> StepConditions<D> {
                 self.damping.is_some_and(|damping| !damping.is_sound()),
             ),
         ];
-        if let Some((what, _)) = of_motion.into_iter().find(|(_, is_wrong)| *is_wrong) {
-            return Err(AssemblyError::NonFinite { what, index: 0 });
+        if let Some((quantity, _)) = of_motion.into_iter().find(|(_, is_wrong)| *is_wrong) {
+            return Err(AssemblyError::NonFinite { quantity, index: 0 });
         }
         if let Some(flow) = &self.flow {
             flow.are_sound()?;

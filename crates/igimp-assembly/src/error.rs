@@ -179,10 +179,10 @@ pub enum AssemblyError {
         left: f64,
     },
     /// A number that must be finite is not.
-    #[error("{what} is not finite at index {index}")]
+    #[error("{quantity} is not finite at index {index}")]
     NonFinite {
-        /// Name of the array.
-        what: &'static str,
+        /// Name of the quantity.
+        quantity: &'static str,
         /// Index within it.
         index: usize,
     },

@@ -252,7 +252,7 @@ impl Expectation {
     }
 
     /// As reported after a run, with the time of the steps that it took if that is known.
-    pub fn told(&self, seconds_of_steps_taken: Option<f64>) -> Expected {
+    pub fn expected(&self, seconds_of_steps_taken: Option<f64>) -> Expected {
         Expected {
             seconds: self.time.seconds,
             open_ended: self.time.open_ended,

@@ -205,7 +205,7 @@ impl CaseFile {
     }
 
     /// Warnings in a sentence each, as they stand in summaries and reports: what is wrong, and what to do about it.
-    pub fn told(&self) -> Vec<String> {
+    pub fn warning_sentences(&self) -> Vec<String> {
         let all = self.diagnostics.iter();
         all.map(|warning| {
             [std::slice::from_ref(&warning.message), &warning.help]

@@ -85,10 +85,10 @@ pub enum LinearSolverError {
     },
 
     /// The factors do not fit into memory or into the index type.
-    #[error("out of memory: {what}")]
+    #[error("out of memory: {part}")]
     OutOfMemory {
         /// The part that could not be allocated.
-        what: &'static str,
+        part: &'static str,
     },
 }
 

@@ -44,16 +44,16 @@ impl fmt::Display for Band {
 
 /// A unit in which numbers are printed that are kept in SI units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ToldUnit {
+pub struct PrintedUnit {
     /// Its name, such as `kPa`.
     pub name: String,
     /// Its value in the SI unit, such as 1000.
     pub in_si: f64,
 }
 
-impl ToldUnit {
+impl PrintedUnit {
     /// A number in SI units as it is printed: in this unit, with its name.
-    pub fn told(&self, value: f64) -> String {
+    pub fn printed(&self, value: f64) -> String {
         format!("{} {}", short(value / self.in_si), self.name)
     }
 }
@@ -78,7 +78,7 @@ pub struct Check {
     pub measured: f64,
     /// The unit in which the case states the band; none: plain numbers. Numbers here are in SI units all the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub unit: Option<ToldUnit>,
+    pub unit: Option<PrintedUnit>,
 }
 
 impl Check {
@@ -88,17 +88,17 @@ impl Check {
     }
 
     /// A value of this check as it is printed, in the unit of the case; a dash for one that is not a number.
-    pub fn told(&self, value: f64) -> String {
+    pub fn printed(&self, value: f64) -> String {
         match &self.unit {
             _ if value.is_nan() => "-".to_owned(),
-            Some(unit) => unit.told(value),
+            Some(unit) => unit.printed(value),
             None => short(value),
         }
     }
 
     /// The band as it is printed, in the unit of the case.
-    pub fn told_band(&self) -> String {
-        let Some(ToldUnit { name, in_si }) = &self.unit else {
+    pub fn printed_band(&self) -> String {
+        let Some(PrintedUnit { name, in_si }) = &self.unit else {
             return self.band.to_string();
         };
         let band = match self.band {
@@ -127,7 +127,7 @@ mod tests {
     /// ORACLE: by hand, with a pound-force per square foot of 47.88026 Pa (NIST SP 811).
     #[test]
     fn a_check_is_printed_in_its_unit() {
-        let unit = Some(ToldUnit {
+        let unit = Some(PrintedUnit {
             name: "psf".to_owned(),
             in_si: 47.88026,
         });
@@ -141,17 +141,17 @@ mod tests {
             measured: f64::NAN,
             unit,
         };
-        assert_eq!(check.told(check.expected), "100 psf");
-        assert_eq!(check.told(check.measured), "-");
-        assert_eq!(check.told_band(), "90 … 110 psf");
+        assert_eq!(check.printed(check.expected), "100 psf");
+        assert_eq!(check.printed(check.measured), "-");
+        assert_eq!(check.printed_band(), "90 … 110 psf");
         check.band = Band::AtMost(5266.8286);
-        assert_eq!(check.told_band(), "≤ 110 psf");
+        assert_eq!(check.printed_band(), "≤ 110 psf");
         check.band = Band::AtLeast(4309.2234);
-        assert_eq!(check.told_band(), "≥ 90 psf");
+        assert_eq!(check.printed_band(), "≥ 90 psf");
         check.band = Band::Relative(0.05);
-        assert_eq!(check.told_band(), "± 5 %");
+        assert_eq!(check.printed_band(), "± 5 %");
         check.unit = None;
-        assert_eq!(check.told(check.expected), "4788");
+        assert_eq!(check.printed(check.expected), "4788");
     }
 
     #[test]

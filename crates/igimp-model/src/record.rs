@@ -3,7 +3,7 @@
 use igimp_schema::field::Field;
 
 use super::{Case, ReinforcementQuantity, RigidQuantity, Stage, StageKind};
-use crate::check::{Band, ToldUnit};
+use crate::check::{Band, PrintedUnit};
 
 /// A material point that is watched: a point in the undeformed bodies. Fields there are interpolated from the particles around
 /// it; the displacement that ends a stage or a search is that of the nearest particle.
@@ -178,7 +178,7 @@ pub struct CaseCheck {
     /// The accepted band.
     pub band: Band,
     /// The unit in which the file states the band; none: plain numbers.
-    pub unit: Option<ToldUnit>,
+    pub unit: Option<PrintedUnit>,
     /// Where the value comes from.
     pub source: String,
 }

@@ -720,7 +720,7 @@ impl CheckRow {
     pub fn measured(&self) -> String {
         match self.standing {
             Standing::NothingFails => format!("> {NEEDLESS}"),
-            _ => self.check.told(self.check.measured),
+            _ => self.check.printed(self.check.measured),
         }
     }
 }

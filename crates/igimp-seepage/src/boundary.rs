@@ -78,10 +78,12 @@ fn at<const D: usize>(
         .filter(|(_, face)| face.within.holds(&facet.x, reach))
         .peekable();
     let says_nothing = |kind: OnFaces| matches!(kind, OnFaces::Head(head) if !is_below(head));
-    let is_above_level = boxes.peek().is_some_and(|(_, top)| says_nothing(top.what));
+    let is_above_level = boxes
+        .peek()
+        .is_some_and(|(_, top)| says_nothing(top.condition));
     // Above its level a head says nothing, and the box before it decides.
-    let last = boxes.find(|(_, face)| !says_nothing(face.what));
-    match last.map(|(index, face)| (index, face.what)) {
+    let last = boxes.find(|(_, face)| !says_nothing(face.condition));
+    match last.map(|(index, face)| (index, face.condition)) {
         None if is_above_level => return else_at,
         Some((index, OnFaces::Head(head))) => return (At::Head(head), index),
         Some((index, OnFaces::Inflow(inflow))) => return (At::Inflow(inflow), index),
@@ -92,7 +94,7 @@ fn at<const D: usize>(
     if let Some(level) = free(&facet.x).filter(wets) {
         return (At::Head(level), faces);
     }
-    match last.map(|(index, face)| (index, face.what)) {
+    match last.map(|(index, face)| (index, face.condition)) {
         // No rain falls on upright faces and undersides: they are as if nothing were said.
         Some((index, OnFaces::Recharge(rain))) if rises > UPRIGHT => {
             (At::Open(rain * rises), index)

@@ -117,7 +117,7 @@ pub struct Named<const D: usize, T> {
     /// Where it holds.
     pub within: Extent<D>,
     /// The condition.
-    pub what: T,
+    pub condition: T,
 }
 
 /// A level of free water by place; none where there is none.

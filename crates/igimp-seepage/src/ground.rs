@@ -333,7 +333,7 @@ fn acting<const D: usize>(
     let (mut soil, mut region) = (soil, None);
     for (index, named) in conditions.regions.iter().enumerate() {
         if named.within.holds(x, 0.0) {
-            match named.what {
+            match named.condition {
                 InGround::Soil(other) => soil = other,
                 _ => region = Some(index),
             }

@@ -300,7 +300,7 @@ pub(crate) fn start_of<const D: usize>(system: &System<'_, D>) -> Option<f64> {
         At::Inflow(_) | At::Closed => None,
     });
     let within = system.conditions.regions.iter();
-    let within = within.filter_map(|region| match region.what {
+    let within = within.filter_map(|region| match region.condition {
         InGround::Head(head) => Some(head),
         InGround::Drain => Some(region.within.lower[D - 1]),
         InGround::Inflow(_) | InGround::Soil(_) => None,
@@ -316,7 +316,7 @@ pub(crate) fn is_fed<const D: usize>(system: &System<'_, D>) -> bool {
         At::Closed => false,
     });
     let within = &system.conditions.regions;
-    let within = within.iter().any(|region| match region.what {
+    let within = within.iter().any(|region| match region.condition {
         InGround::Head(_) => true,
         InGround::Inflow(inflow) => inflow > 0.0,
         InGround::Drain | InGround::Soil(_) => false,
@@ -383,7 +383,7 @@ fn check_places<const D: usize>(system: &System<'_, D>) -> Result<(), SeepageErr
     }
     for (index, region) in system.conditions.regions.iter().enumerate() {
         let points = system.cells.iter().flat_map(|cell| &cell.points);
-        let holds = |point: &crate::basis::Point<D>| match region.what {
+        let holds = |point: &crate::basis::Point<D>| match region.condition {
             InGround::Soil(_) => region.within.holds(&point.x, 0.0),
             _ => point.region == Some(index),
         };

@@ -130,7 +130,7 @@ mod tests {
         Named {
             name: name.to_owned(),
             within: Extent { lower, upper },
-            what: condition,
+            condition,
         }
     }
 

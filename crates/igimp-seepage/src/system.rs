@@ -360,7 +360,7 @@ impl<'a, const D: usize> System<'a, D> {
         let least = size.into_iter().fold(f64::INFINITY, f64::min);
         let soil = &self.conditions.soils[point.soil];
         let rate = REGION * soil.along.max(soil.across) / (least * least) * point.volume;
-        match self.conditions.regions[region].what {
+        match self.conditions.regions[region].condition {
             InGround::Head(wanted) => (rate * (head - wanted), rate),
             InGround::Drain if head > point.x[D - 1] => (rate * (head - point.x[D - 1]), rate),
             InGround::Inflow(all) => (-all * point.volume / self.volumes[region], 0.0),

@@ -351,7 +351,7 @@ fn at_time<const D: usize>(
     for (face, history) in std::iter::zip(&mut now.faces, &course.histories) {
         if let Some(history) = history {
             let value = history.at(time);
-            face.what = match face.what {
+            face.condition = match face.condition {
                 OnFaces::Recharge(_) => OnFaces::Recharge(value),
                 OnFaces::Inflow(_) => OnFaces::Inflow(value),
                 _ => OnFaces::Head(value),
@@ -364,7 +364,7 @@ fn at_time<const D: usize>(
 /// The span of all heads that are given, at the start and in time, no less than the height of a cell \[m\].
 fn span<const D: usize>(search: &Search<'_, D>, course: &Course, least: f64) -> f64 {
     let faces = std::iter::zip(&search.system.conditions.faces, &course.histories);
-    let in_time = faces.filter(|(face, _)| matches!(face.what, OnFaces::Head(_)));
+    let in_time = faces.filter(|(face, _)| matches!(face.condition, OnFaces::Head(_)));
     let in_time = in_time.filter_map(|(_, history)| history.as_ref());
     let given = search.system.held.iter().filter_map(|held| match held.at {
         At::Head(head) => Some(head),

@@ -20,7 +20,7 @@ const MERIFIELD: Oracle = Oracle {
 };
 
 /// By how much a load that is claimed may differ \[-\].
-const BAND: f64 = 0.04;
+const BAND: f64 = 0.05;
 /// Depths over diameter at which loads are printed.
 const DEPTHS: [f64; 7] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7];
 /// Loads are means over depths as far as this to either side, in diameters.

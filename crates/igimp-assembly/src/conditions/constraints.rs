@@ -31,7 +31,7 @@ impl<const D: usize> Constraints<D> {
         let entry = self.entry(node, axis)?;
         if !value.is_finite() {
             return Err(AssemblyError::NonFinite {
-                what: "prescribed displacement",
+                quantity: "prescribed displacement",
                 index: node,
             });
         }

@@ -161,11 +161,11 @@ impl<const D: usize> StepLoads<D> {
 }
 
 /// Refuses values that are not finite, with their name.
-fn finite(what: &'static str, index: usize, values: &[f64]) -> Result<(), AssemblyError> {
+fn finite(quantity: &'static str, index: usize, values: &[f64]) -> Result<(), AssemblyError> {
     if values.iter().all(|value| value.is_finite()) {
         Ok(())
     } else {
-        Err(AssemblyError::NonFinite { what, index })
+        Err(AssemblyError::NonFinite { quantity, index })
     }
 }
 

@@ -71,7 +71,7 @@ pub struct Consolidating<const D: usize> {
 impl<const D: usize> Consolidating<D> {
     /// Refuses numbers that are not finite and soil that water cannot flow through.
     pub(crate) fn are_sound(&self) -> Result<(), AssemblyError> {
-        let refused = |what, index| Err(AssemblyError::NonFinite { what, index });
+        let refused = |quantity, index| Err(AssemblyError::NonFinite { quantity, index });
         let is_sound = self.duration > 0.0 && self.before >= 0.0;
         if !(is_sound && self.duration.is_finite() && self.before.is_finite()) {
             return refused("duration of a step", 0);

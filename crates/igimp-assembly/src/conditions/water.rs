@@ -180,14 +180,14 @@ impl<const D: usize> Water<D> {
     /// Refuses numbers that are not finite.
     pub(crate) fn is_finite(&self) -> Result<(), AssemblyError> {
         if !self.factor.is_finite() {
-            let what = "factor on pore pressure";
-            return Err(AssemblyError::NonFinite { what, index: 0 });
+            let quantity = "factor on pore pressure";
+            return Err(AssemblyError::NonFinite { quantity, index: 0 });
         }
         let bad = |pore: &PoreStiffness| !(pore.modulus.is_finite() && pore.modulus >= 0.0);
         match self.stiffness.iter().position(bad) {
             Some(index) => {
-                let what = "bulk modulus of pore water";
-                Err(AssemblyError::NonFinite { what, index })
+                let quantity = "bulk modulus of pore water";
+                Err(AssemblyError::NonFinite { quantity, index })
             }
             None => Ok(()),
         }

@@ -154,9 +154,9 @@ impl Pores {
             });
             let difference = water.factor * (state.pressure - state.reference);
             if !(force.iter().all(|force| force.is_finite()) && difference.is_finite()) {
-                let what = "given pore pressure at particle";
+                let quantity = "given pore pressure at particle";
                 return Err(AssemblyError::NonFinite {
-                    what,
+                    quantity,
                     index: particle,
                 });
             }

@@ -131,7 +131,7 @@ pub(crate) fn strained<const D: usize>(
     if method.geometry == Geometry::Moving {
         positive(particle, determinant(&delta_def_grad))?;
         if let Some(hoop) = around {
-            positive(particle, hoop.own)?;
+            positive(particle, hoop.value)?;
         }
     }
     let axes = method.section.axes_looked_at::<D>();
@@ -143,7 +143,7 @@ pub(crate) fn strained<const D: usize>(
             let (mut ratio, mut ratio_bar) = (det, det_bar);
             if let Some(hoop) = around {
                 ratio_bar *= positive(particle, hoop.bar)?;
-                ratio *= hoop.own;
+                ratio *= hoop.value;
             }
             let lambda = (ratio_bar / ratio).cbrt();
             if state.pores.asks_for_volume() {
@@ -151,7 +151,7 @@ pub(crate) fn strained<const D: usize>(
             }
             let mut b_trial = pushed_forward(state.b_e, &delta_def_grad, lambda * lambda);
             if let Some(hoop) = around {
-                b_trial[2][2] *= hoop.own * hoop.own;
+                b_trial[2][2] *= hoop.value * hoop.value;
             }
             Straining {
                 delta_def_grad,
@@ -265,8 +265,8 @@ impl<const D: usize> Gradients<D> {
             }
         }
         if let Some(hoop) = hoop {
-            strain[2][2] += hoop.own;
-            difference += hoop.bar - hoop.own;
+            strain[2][2] += hoop.value;
+            difference += hoop.bar - hoop.value;
         }
         for a in 0..3 {
             strain[a][a] += difference / 3.0;

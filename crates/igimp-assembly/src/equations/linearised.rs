@@ -235,7 +235,7 @@ impl<const D: usize> Linearised<D> {
         let tau = &point.lifted.tau;
         let p = (tau[0][0] + tau[1][1] + tau[2][2]) / 3.0;
         let deviator = tau[2][2] - p;
-        (self.hoops.iter()).map(move |hoop| volume * (deviator * hoop.own + p * hoop.bar))
+        (self.hoops.iter()).map(move |hoop| volume * (deviator * hoop.value + p * hoop.bar))
     }
 
     /// Computes the factors of the rows of a particle of volume `volume`.
@@ -274,7 +274,9 @@ impl<const D: usize> Linearised<D> {
             (
                 (g, g_bar),
                 &Hoop {
-                    own: t, bar: t_bar, ..
+                    value: t,
+                    bar: t_bar,
+                    ..
                 },
             ),
         ) in pushed.enumerate()
@@ -413,7 +415,7 @@ impl<const D: usize> Linearised<D> {
         let radial = self.columns[..self.lanes].iter_mut();
         for (column, (value, bar)) in radial.zip(around.iter().zip(around_bar)) {
             for lane in 0..LANES {
-                column[lane] += value[lane] * hoop.own + bar[lane] * hoop.bar;
+                column[lane] += value[lane] * hoop.value + bar[lane] * hoop.bar;
             }
         }
     }

@@ -51,7 +51,7 @@ impl OutOfBalance {
                 let difference = f_ext[node][axis] - f_int[node][axis];
                 if !difference.is_finite() {
                     return Err(AssemblyError::NonFinite {
-                        what: "nodal force",
+                        quantity: "nodal force",
                         index: node,
                     });
                 }
@@ -72,7 +72,7 @@ impl OutOfBalance {
         let norm: f64 = free.sqrt();
         if !(reference.is_finite() && norm.is_finite()) {
             return Err(AssemblyError::NonFinite {
-                what: "norm of the nodal forces",
+                quantity: "norm of the nodal forces",
                 index: worst.0,
             });
         }

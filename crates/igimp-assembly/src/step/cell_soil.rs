@@ -331,7 +331,7 @@ impl<const D: usize> CellSoil<D> {
                     continue;
                 };
                 let hoop = Hoop {
-                    own: beta * at_part + (1.0 - beta) * shared,
+                    value: beta * at_part + (1.0 - beta) * shared,
                     bar: shared,
                     place: at_part,
                 };

@@ -8,7 +8,7 @@ use crate::method::Section;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Hoop {
     /// T_i, of the particle: the mean of N_i/r by volume, as far as it is not shared with the soil of its cells.
-    pub(crate) own: f64,
+    pub(crate) value: f64,
     /// T̄_i, of the soil of its cells.
     pub(crate) bar: f64,
     /// T_i of the particle's place alone, by which it moves (theory, eq. 130h).
@@ -18,7 +18,7 @@ pub(crate) struct Hoop {
 impl Hoop {
     /// A stretch of nothing.
     pub(crate) const UNSTRETCHED: Self = Self {
-        own: 1.0,
+        value: 1.0,
         bar: 1.0,
         place: 1.0,
     };
@@ -40,7 +40,7 @@ impl Hoop {
     #[inline]
     pub(crate) fn plus(self, factor: f64, other: Self) -> Self {
         Self {
-            own: self.own + factor * other.own,
+            value: self.value + factor * other.value,
             bar: self.bar + factor * other.bar,
             place: self.place + factor * other.place,
         }
@@ -49,7 +49,7 @@ impl Hoop {
     /// This times another, each by each.
     pub(crate) fn times(self, other: Self) -> Self {
         Self {
-            own: self.own * other.own,
+            value: self.value * other.value,
             bar: self.bar * other.bar,
             place: self.place * other.place,
         }
@@ -58,7 +58,7 @@ impl Hoop {
     /// One over each.
     pub(crate) fn reciprocal(self) -> Self {
         Self {
-            own: self.own.recip(),
+            value: self.value.recip(),
             bar: self.bar.recip(),
             place: self.place.recip(),
         }

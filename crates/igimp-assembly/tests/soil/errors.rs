@@ -111,7 +111,7 @@ fn conditions_that_are_not_finite() {
         )
         .unwrap_err()
     };
-    let refused = |what, index| AssemblyError::NonFinite { what, index };
+    let refused = |quantity, index| AssemblyError::NonFinite { quantity, index };
     assert_eq!(
         stated(|loads| loads.gravity[1] = f64::NAN),
         refused("gravity", 1)

@@ -444,8 +444,11 @@ fn members_without_soil_are_named() {
     );
     let mut broken = scene.member.clone();
     broken.segments[2].state.strain = f64::NAN;
-    let what = "reinforcement";
-    assert_eq!(error(&broken), AssemblyError::NonFinite { what, index: 0 });
+    let quantity = "reinforcement";
+    assert_eq!(
+        error(&broken),
+        AssemblyError::NonFinite { quantity, index: 0 }
+    );
     let jack = ReinforcementControl {
         jack: Some(-1.0),
         ..ReinforcementControl::default()

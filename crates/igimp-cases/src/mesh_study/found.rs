@@ -144,7 +144,7 @@ pub(crate) fn remarks<const D: usize>(case: &Case<D>, results: &[StudyResult]) -
             })
     };
     let once = results.iter().filter(|result| !is_twice(result));
-    for result in once.map(StudyResult::as_told) {
+    for result in once.map(StudyResult::as_printed) {
         for (mesh, label) in labels.iter().enumerate() {
             if let (Some(value), true) = (result.values[mesh], result.ended_early(mesh)) {
                 remarks.push(format!(

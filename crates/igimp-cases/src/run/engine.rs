@@ -449,7 +449,7 @@ impl<const D: usize> Stages<D> {
             session.summary.memory = self.before.share(peak, size);
             let stages = &session.summary.stages;
             let taken = time_of_steps_taken(case, size, expectation.speed, stages);
-            session.summary.estimate = Some(expectation.told(Some(taken)));
+            session.summary.estimate = Some(expectation.expected(Some(taken)));
         }
         let passed_over = || {
             let mut stages = session.summary.stages.iter();

@@ -236,7 +236,7 @@ impl Target {
             meshes: file.explain_meshes(),
             origin: file.origin().clone(),
             replace: Replace::default(),
-            warnings: file.told(),
+            warnings: file.warning_sentences(),
         }
     }
 }

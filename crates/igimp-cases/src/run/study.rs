@@ -76,7 +76,7 @@ pub(super) fn run<const D: usize>(
         let taken: Option<f64> = std::iter::zip(sized, summaries.iter().copied())
             .map(of_mesh)
             .sum();
-        expectation.told(taken)
+        expectation.expected(taken)
     });
     let is_whole = !summaries.iter().flatten().any(|run| run.interrupted);
     let warnings = if is_whole {

@@ -78,8 +78,8 @@ pub(crate) fn everything(root: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
             !key.contains("seconds") && !key.contains("memory") && key != "estimate"
         });
         for stage in whole["stages"].as_array_mut().unwrap() {
-            let own = stage.as_object_mut().unwrap();
-            own.retain(|key, _| key != "seconds" && key != "phases");
+            let row = stage.as_object_mut().unwrap();
+            row.retain(|key, _| key != "seconds" && key != "phases");
         }
         *bytes = summary.to_string().into_bytes();
     }

@@ -107,8 +107,8 @@ fn checks_of_stages_that_did_not_come_to_their_end_are_not_met() {
     // Numbers are kept in SI units, and told in those of the file.
     let displaced = &row(&run, "at the end of the load").check;
     assert!((displaced.expected - 100.0).abs() < 1e-12);
-    assert_eq!(displaced.told_band(), "≤ 1.000e4 cm");
-    let printed = displaced.told(displaced.measured);
+    assert_eq!(displaced.printed_band(), "≤ 1.000e4 cm");
+    let printed = displaced.printed(displaced.measured);
     let number: f64 = printed.strip_suffix(" cm").unwrap().parse().unwrap();
     assert!(
         (number / (100.0 * displaced.measured) - 1.0).abs() < 1e-3,

@@ -93,10 +93,10 @@ fn warnings_of_the_file_stand_in_the_summary_and_the_report() {
     let thin = "[[bodies]]\nname = \"sheet\"\nmaterial = \"clay\"\n\
                 polygon = [[\"14 m\",\"4 m\"], [\"19 m\",\"4 m\"], [\"19 m\",\"5 m\"], [\"14 m\",\"5 m\"]]\n";
     let file = slope("1 m", thin);
-    assert!(!file.told().is_empty());
+    assert!(!file.warning_sentences().is_empty());
     let root = folder("told-warnings");
     let run = run_into((&file, file.case()), &root, Start::Afresh, None);
-    for text in file.told() {
+    for text in file.warning_sentences() {
         assert_eq!(warning(&run, &text), text);
     }
     warning(&run, "body `sheet` is 1 cells thick");

@@ -146,7 +146,7 @@ fn in_plane(
         boundaries.and_then(|table| boundaries::boundaries(&table, site.frame.as_ref(), problems));
     let layers = Layers {
         tree,
-        own: &tables,
+        stated: &tables,
         bodies,
         materials,
         site: &site,
@@ -170,7 +170,7 @@ fn in_plane(
     sides::check((tree, frame), &stages, ground, &holds, problems);
     rigid::stage::check_use(&things(Root::<2>::rigid(tree)), &stages, names, problems);
     let around = water::Around {
-        own: &things(Root::<2>::water(tree)),
+        stated: &things(Root::<2>::water(tree)),
         has_rigid: !rigid.is_empty(),
         stages: &stages,
         tree,

@@ -122,7 +122,7 @@ pub(super) fn build(
     check_in_space(&tables, (bodies, sequence), &soil, problems);
     rigid::stage::check_use(&things(Root::<3>::rigid(tree)), &stages, names, problems);
     let around = water::Around {
-        own: &things(Root::<3>::water(tree)),
+        stated: &things(Root::<3>::water(tree)),
         has_rigid: !rigid.is_empty(),
         stages: &stages,
         tree,

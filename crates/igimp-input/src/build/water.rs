@@ -30,7 +30,7 @@ pub(super) struct Around<'a, const D: usize> {
     pub(super) materials: &'a [Option<Material>],
     pub(super) sequence: &'a Sequence,
     /// The conditions as they are stated.
-    pub(super) own: &'a [Thing<Water>],
+    pub(super) stated: &'a [Thing<Water>],
     /// The stages as they are stated.
     pub(super) stages: &'a [Thing<Stage>],
     /// Whether there are rigid bodies.
@@ -54,7 +54,7 @@ pub(super) fn conditions<const D: usize>(
     around: &Around<'_, D>,
     problems: &mut Problems,
 ) -> Vec<Option<WaterCondition>> {
-    let items = around.own.iter().enumerate();
+    let items = around.stated.iter().enumerate();
     let conditions: Vec<_> = items
         .map(|(index, water)| condition(around, index, water.as_ref()?, problems))
         .collect();
@@ -68,7 +68,7 @@ pub(super) fn conditions<const D: usize>(
     ) {
         problems
             .error(
-                around.own[index].as_ref().map(|water| water.place),
+                around.stated[index].as_ref().map(|water| water.place),
                 "there is water, but gravity is 0: water presses by its weight",
             )
             .help("set gravity in [case], or write dry = true");

@@ -145,7 +145,7 @@ impl Analysis {
             position[old] = new;
         }
         let out_of_memory = LinearSolverError::OutOfMemory {
-            what: "Cholesky factor",
+            part: "Cholesky factor",
         };
         let columns = pattern.compressed_columns();
         let symbolic = cholesky::factorize_symbolic_cholesky(

@@ -99,7 +99,7 @@ impl LinearSolver for GeneralLu {
         self.factored = false;
         self.analysis = None;
         check::valid_pattern(pattern)?;
-        let out_of_memory = LinearSolverError::OutOfMemory { what: "LU factors" };
+        let out_of_memory = LinearSolverError::OutOfMemory { part: "LU factors" };
         let columns = pattern.compressed_columns();
         let symbolic =
             lu::factorize_symbolic_lu(symbolic_view(&columns), LuSymbolicParams::default())
@@ -139,7 +139,7 @@ impl LinearSolver for GeneralLu {
             )
             .map_err(|error| match error {
                 LuError::SymbolicSingular { .. } => LinearSolverError::Singular { unknown: None },
-                LuError::Generic(_) => LinearSolverError::OutOfMemory { what: "LU factors" },
+                LuError::Generic(_) => LinearSolverError::OutOfMemory { part: "LU factors" },
             })?;
         probe(matrix.pattern.unknowns(), None, |rhs, solution| {
             self.solve_factored(matrix, rhs, solution)

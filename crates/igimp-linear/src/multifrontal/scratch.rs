@@ -71,7 +71,7 @@ pub(crate) fn make_room<T: Copy + Default>(
         let roomy = len + len / 16;
         values
             .try_reserve_exact(roomy)
-            .map_err(|_| LinearSolverError::OutOfMemory { what: part })?;
+            .map_err(|_| LinearSolverError::OutOfMemory { part })?;
         *values = Vec::new();
         *values = vec![T::default(); roomy];
     }

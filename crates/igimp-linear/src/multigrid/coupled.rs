@@ -143,7 +143,7 @@ impl Coupled {
     pub(super) fn new(pattern: &Pattern) -> Result<Self, LinearSolverError> {
         if u32::try_from(pattern.stored()).is_err() {
             return Err(LinearSolverError::OutOfMemory {
-                what: "couplings of water and soil",
+                part: "couplings of water and soil",
             });
         }
         let soil = Part::new(pattern, displacements, |block| block.free & !SCALAR);

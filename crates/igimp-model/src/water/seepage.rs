@@ -53,14 +53,14 @@ impl SeepageCase {
                 .map(|named| Named {
                     name: named.name.clone(),
                     within: extent(&named.within),
-                    what: named.what,
+                    condition: named.condition,
                 })
                 .collect(),
             regions: (stated.regions.iter())
                 .map(|named| Named {
                     name: named.name.clone(),
                     within: extent(&named.within),
-                    what: behind(named.what),
+                    condition: behind(named.condition),
                 })
                 .collect(),
             sections: (stated.sections.iter())

@@ -35,7 +35,7 @@ pub struct Failing<'a, const D: usize> {
     /// Strength reduction factor of the state \[-\].
     pub srf: f64,
     /// Name of the state, as `first-unstable`.
-    pub what: &'a str,
+    pub label: &'a str,
     /// The last equilibrium but one.
     pub before: &'a Particles<D>,
     /// The last equilibrium.
@@ -170,7 +170,7 @@ pub fn mechanism_picture(
     let caption = format!(
         "How the body begins to fail in “{stage}”: increments from the last equilibrium but one to the \
          last, {} state, SRF {:.4}. Colours: largest shear strain; arrows: displacement{remark}.",
-        failing.what.replace('-', " "),
+        failing.label.replace('-', " "),
         failing.srf,
     );
     let name = format!("mechanism-{}-{}", failing.stage + 1, file_name(stage));

@@ -58,7 +58,7 @@ fn plot(
     expected: Option<&&CheckRow>,
 ) -> CurvePlot {
     let in_si = result.unit.as_ref().map_or(1.0, |unit| unit.in_si);
-    let result = &result.as_told();
+    let result = &result.as_printed();
     // A run that ended early has no value of its mesh.
     let arrived = (study.meshes.iter().enumerate()).filter(|(mesh, _)| !result.ended_early(*mesh));
     let computed: Vec<([f64; 2], f64)> = arrived
@@ -90,7 +90,7 @@ fn plot(
         series.push(mark.in_colour(Colour::BLACK));
     }
     let lines = expected.map(|row| ReferenceLine {
-        label: format!("expected {}", row.check.told(row.check.expected)),
+        label: format!("expected {}", row.check.printed(row.check.expected)),
         at: ReferenceValue::Y(row.check.expected / in_si),
     });
     CurvePlot {
@@ -106,7 +106,7 @@ fn plot(
 }
 
 fn caption(study: &StudySummary, result: &StudyResult) -> String {
-    let result = result.as_told();
+    let result = result.as_printed();
     let arrived = |mesh: usize| result.values[mesh].is_some() && !result.ended_early(mesh);
     let labels: Vec<String> = (study.meshes.iter().enumerate())
         .filter(|(number, _)| arrived(*number))

@@ -51,7 +51,7 @@ pub(super) fn view(study: &StudySummary) -> StudyView {
         rows: study
             .results
             .iter()
-            .map(StudyResult::as_told)
+            .map(StudyResult::as_printed)
             .map(result)
             .collect(),
         shown: study.shown().map_or_else(String::new, MeshSummary::label),

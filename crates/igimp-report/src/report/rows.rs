@@ -310,8 +310,8 @@ pub(super) fn checks(summary: &Summary) -> Vec<CheckView> {
             quantity: check.quantity.clone(),
             about: check.variant.trim().to_owned(),
             measured: row.measured(),
-            expected: check.told(check.expected),
-            band: check.told_band(),
+            expected: check.printed(check.expected),
+            band: check.printed_band(),
             deviation: deviation.replace('-', "−"),
             source: check.source.clone(),
         }

@@ -159,8 +159,8 @@ fn on_missed(count: usize, rows: &[&CheckRow]) -> Option<String> {
         if rows.len() == 1 { "fails" } else { "fail" },
         check.quantity,
         first.measured(),
-        check.told(check.expected),
-        check.told_band(),
+        check.printed(check.expected),
+        check.printed_band(),
         and_others(rows.len() - 1)
     ))
 }

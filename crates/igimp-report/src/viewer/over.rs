@@ -188,7 +188,7 @@ impl<'c, const D: usize> Ground<'c, D> {
                 && place[axis] <= within.upper[axis] + self.reach
         };
         let last = (0..faces.len()).rfind(|&k| (0..D).all(|axis| holds(axis, &faces[k].within)))?;
-        let OnFaces::Head(head) = faces[last].what else {
+        let OnFaces::Head(head) = faces[last].condition else {
             return None;
         };
         let moment = self.flow.in_time.as_ref();

@@ -22,7 +22,7 @@ use crate::error::ResultsError;
 use crate::model_size::ModelSize;
 use crate::tables::cells::cell;
 pub use extrapolation::{Computed, Estimate, estimate};
-use igimp_model::check::ToldUnit;
+use igimp_model::check::PrintedUnit;
 use igimp_text::short;
 pub use order::{Convergence, Order};
 
@@ -136,13 +136,13 @@ pub struct StudyResult {
     pub estimate: Option<Estimate>,
     /// Of a check the unit in which the case states its band; numbers here are in SI units all the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub unit: Option<ToldUnit>,
+    pub unit: Option<PrintedUnit>,
 }
 
 impl StudyResult {
     /// The result as it is told: its numbers in the unit of the case, and that unit in its name.
     #[must_use]
-    pub fn as_told(&self) -> Self {
+    pub fn as_printed(&self) -> Self {
         let Some(unit) = &self.unit else {
             return self.clone();
         };

@@ -22,7 +22,7 @@ pub(crate) fn faces(
     Named {
         name: name.to_owned(),
         within: Extent { lower, upper },
-        what: condition,
+        condition,
     }
 }
 

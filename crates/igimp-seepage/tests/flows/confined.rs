@@ -216,7 +216,7 @@ fn wells_and_walls() {
             lower: [left, 0.0],
             upper: [right, 10.0],
         },
-        what: condition,
+        condition,
     };
     let mut conditions = confined(&[1e-4]);
     conditions.faces = vec![faces("left", [0.0, 0.0], [0.0, 10.0], OnFaces::Head(12.0))];
@@ -379,7 +379,7 @@ fn sections_pass_all_that_enters_on_their_side() {
         conditions.regions = vec![Named {
             name: "sink".to_owned(),
             within: Extent { lower, upper },
-            what: InGround::Inflow(-2e-3),
+            condition: InGround::Inflow(-2e-3),
         }];
         conditions.sections = at.map(|x| upright(turned(x), [0.0, 4.0])).to_vec();
         let ground = [rectangle([0.0, 0.0], [8.0, 4.0])];

@@ -77,7 +77,7 @@ fn level_ground_in_space_takes_all_it_can() {
                     lower: [0.0, 0.0, level],
                     upper: [2.0, 1.0, level],
                 },
-                what: condition,
+                condition,
             })
             .to_vec();
         let body = SeepageBody {
@@ -106,7 +106,7 @@ fn rain_enters_until_the_ground_is_wet() {
             let grid = grid([0.0, 0.0], cell, cells);
             let mut conditions = column(OnFaces::Recharge(0.0), OnFaces::Head(1.0));
             let start = solve(&grid, &[body], &conditions, &|_| None).unwrap();
-            conditions.faces[0].what = OnFaces::Recharge(share * K);
+            conditions.faces[0].condition = OnFaces::Recharge(share * K);
             let course = Course {
                 histories: vec![None, None],
                 times: vec![2.0 * day, 10.0 * day, 200.0 * day],

@@ -408,7 +408,7 @@ fn a_dam_drains_after_its_pool_has_fallen() {
         };
         let polygon = [vec![[0.0, 0.0], [116.0, 0.0], [66.0, 20.0], [60.0, 20.0]]];
         let (start, found) = follow(&grid, &polygon, &conditions, &course).unwrap();
-        conditions.faces[0].what = OnFaces::Head(4.0);
+        conditions.faces[0].condition = OnFaces::Head(4.0);
         (start, found, flow(&grid, &polygon, &conditions).unwrap())
     };
     let level = |state: &Seepage<2>, x: f64| state.free_surface(&[x, 0.0]).unwrap();

@@ -116,7 +116,7 @@ fn a_drain_under_a_slope() {
             lower: [12.0, 0.5],
             upper: [13.0, 1.5],
         },
-        what: InGround::Drain,
+        condition: InGround::Drain,
     }];
     let with = solve(&grid, &[body], &conditions, &level).unwrap();
     let at = |flow: &igimp_seepage::Seepage<2>| flow.free_surface(&[12.5, 0.0]).unwrap();
@@ -144,7 +144,7 @@ fn a_dam_in_space() {
             lower: [x, 0.0, 0.0],
             upper: [x, 3.0, top],
         },
-        what: condition,
+        condition,
     };
     conditions.faces = vec![
         side("upstream", 0.0, 10.0, OnFaces::Head(10.0)),

@@ -433,10 +433,7 @@ fn conditions_that_are_not_finite_are_named() {
             let error = solve_with(&mut body, &conditions, &mut default_workspace()).unwrap_err();
             assert_eq!(
                 *error.failure,
-                StepFailure::Assembly(AssemblyError::NonFinite {
-                    what: quantity,
-                    index
-                })
+                StepFailure::Assembly(AssemblyError::NonFinite { quantity, index })
             );
         }
     }
@@ -457,17 +454,14 @@ fn conditions_that_are_not_finite_are_named() {
         assert_eq!(
             *error.unwrap_err().failure,
             StepFailure::Assembly(AssemblyError::NonFinite {
-                what: "ghost penalty",
+                quantity: "ghost penalty",
                 index: 0
             })
         );
         let mut constraints = conditions.constraints.clone();
         let error = constraints.prescribe(5, 1, value).unwrap_err();
         let quantity = "prescribed displacement";
-        let refused = AssemblyError::NonFinite {
-            what: quantity,
-            index: 5,
-        };
+        let refused = AssemblyError::NonFinite { quantity, index: 5 };
         assert_eq!(error, refused);
         assert!(igimp_shape::Axis::uniform(value, 1.0, 3).is_err());
         assert!(igimp_shape::Axis::uniform(0.0, value, 3).is_err());

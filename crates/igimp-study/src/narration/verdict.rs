@@ -65,7 +65,7 @@ fn mesh_error(study: &StudySummary) -> String {
     let rows: Vec<Vec<String>> = study
         .results
         .iter()
-        .map(StudyResult::as_told)
+        .map(StudyResult::as_printed)
         .map(|result| {
             let mut row = vec![on_a_line(&result.name).into_owned()];
             row.extend(study.meshes.iter().enumerate().map(|(number, mesh)| {
@@ -108,8 +108,8 @@ pub fn checks(rows: &[CheckRow]) -> String {
                 },
                 on_a_line(&check.quantity).into_owned(),
                 row.measured(),
-                format!("expected {}", check.told(check.expected)),
-                check.told_band(),
+                format!("expected {}", check.printed(check.expected)),
+                check.printed_band(),
                 format!("({})", on_a_line(&check.source)),
             ]
         })
@@ -172,7 +172,7 @@ fn largest_share(shares: &StrengthShares) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use igimp_model::check::{Band, Check, ToldUnit};
+    use igimp_model::check::{Band, Check, PrintedUnit};
     use igimp_results::mesh_study::ResultKind;
     use igimp_results::summary::{StageOutcome, StageSummary, Standing};
 
@@ -271,7 +271,7 @@ mod tests {
     /// GOAL: checks and their values on meshes are printed in the unit of the case. ORACLE: by hand: 1 mm is 0.001 m.
     #[test]
     fn checks_are_printed_in_the_unit_of_the_case() {
-        let unit = Some(ToldUnit {
+        let unit = Some(PrintedUnit {
             name: "mm".into(),
             in_si: 1e-3,
         });

@@ -95,8 +95,8 @@ pub(super) fn message(run: &Account) -> String {
                 "{} is {}, expected {} {}",
                 check.quantity,
                 row.measured(),
-                check.told(check.expected),
-                check.told_band()
+                check.printed(check.expected),
+                check.printed_band()
             )
         })
         .collect();

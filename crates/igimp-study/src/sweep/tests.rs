@@ -1,7 +1,7 @@
 //! GOAL: tasks are those of the file, problems are printed with their place, and a table is made of
 //! the results that are there.
 
-use igimp_model::check::{Band, Check, ToldUnit};
+use igimp_model::check::{Band, Check, PrintedUnit};
 use igimp_results::summary::{CheckRow, SafetySummary, StageSummary, Standing, Summary};
 
 use super::*;
@@ -158,7 +158,7 @@ fn summary(fos: f64) -> Summary {
                 source: "by hand".into(),
                 band: Band::AtMost(21.0),
                 measured: 19.5,
-                unit: Some(ToldUnit {
+                unit: Some(PrintedUnit {
                     name: "cm".into(),
                     in_si: 0.01,
                 }),

@@ -64,7 +64,7 @@ pub(crate) fn run(
     let run = engine::run_any(&case, Some(&target), start, &mut progress, &flag);
     progress.finish();
     match run {
-        Ok(run) => tell(&run, &folder, arguments, &file.told()),
+        Ok(run) => tell(&run, &folder, arguments, &file.warning_sentences()),
         Err(error) => Ok(give_up(&error.into(), &folder, arguments)),
     }
 }

@@ -54,7 +54,7 @@ const found = {{
   lengths: plane.map(({{ lines }}) => long(lines[0])),
   off: Math.max(...plane.flatMap(({{ level, lines }}) => lines.flat().map(([x, y]) => Math.abs(2 * x + y - level)))),
   circles: [16, 32].map((n) => [circle(n).length, long(circle(n)[0]) / (0.6 * Math.PI) - 1]),
-  jump: [null, soil].map((own) => contoursOf(...jump, [0.5], own)[0].lines.length),
+  jump: [null, soil].map((point) => contoursOf(...jump, [0.5], point)[0].lines.length),
 }};"
     );
     let Some(found) = found("contours", &script) else {
@@ -78,17 +78,17 @@ const found = {{
     assert_eq!(found["jump"], serde_json::json!([1, 0]));
 }
 
-/// A linear field has its own values where corners of boxes meet; a cube of 12 triangles has 12 edges, whichever way its faces
+/// A linear field has its point values where corners of boxes meet; a cube of 12 triangles has 12 edges, whichever way its faces
 /// are cut, and a ball none.
 #[test]
 fn corners_of_boxes_and_edges_of_rigid_bodies() {
     let script = "
 const [n, low, high, values] = [5, [], [], []];
 for (let k = 0; k < n ** 3; k += 1) {
-  const own = [k % n, Math.floor(k / n) % n, Math.floor(k / n ** 2)];
-  low.push(...own);
-  high.push(...own.map((x) => x + 1));
-  values.push(own[0] + 2 * own[1] - own[2] + 1);
+  const point = [k % n, Math.floor(k / n) % n, Math.floor(k / n ** 2)];
+  low.push(...point);
+  high.push(...point.map((x) => x + 1));
+  values.push(point[0] + 2 * point[1] - point[2] + 1);
 }
 const corners = cornerValues({ low, high, count: n ** 3 }, values);
 let off = 0;
@@ -126,11 +126,11 @@ fn contours_in_space_are_written_where_they_are_seen() {
     let script = "
 const [n, low, high, corners, faces] = [4, [], [], [], { box: [], face: [] }];
 for (let k = 0; k < n ** 3; k += 1) {
-  const own = [k % n, Math.floor(k / n) % n, Math.floor(k / n ** 2)];
-  low.push(...own);
-  high.push(...own.map((x) => x + 1));
-  for (let j = 0; j < 8; j += 1) corners.push(own[2] + (j >> 2) - 0.5);
-  own.forEach((x, axis) => [0, n - 1].forEach((end, side) => {
+  const point = [k % n, Math.floor(k / n) % n, Math.floor(k / n ** 2)];
+  low.push(...point);
+  high.push(...point.map((x) => x + 1));
+  for (let j = 0; j < 8; j += 1) corners.push(point[2] + (j >> 2) - 0.5);
+  point.forEach((x, axis) => [0, n - 1].forEach((end, side) => {
     if (x !== end) return;
     faces.box.push(k);
     faces.face.push(2 * axis + side);
@@ -140,7 +140,7 @@ const scene = { boxes: { low, high, faces, count: n ** 3 }, surface: { corners }
 const place = scene.camera.layout(600, { low: [0, 0, 0], high: [n, n, n] });
 const length = (points) => points.reduce((sum, p, k) => (k ? sum + Math.hypot(p[0] - points[k - 1][0], p[1] - points[k - 1][1]) : 0), 0);
 const along = (y, z) => length([[0, y, z], [n, y, z], [n, n, z]].map((point) => projected(place, scene.camera, point)));
-const off = (cut, y) => crossingsInSight({ ...scene, cut }, place, 3).map((own, level) => own.reduce((sum, { from, to }) => sum + length([from, to]), 0) / along(y, level + 0.5) - 1);
+const off = (cut, y) => crossingsInSight({ ...scene, cut }, place, 3).map((point, level) => point.reduce((sum, { from, to }) => sum + length([from, to]), 0) / along(y, level + 0.5) - 1);
 const found = [off(null, 0), off({ axis: 1, normal: [0, -1, 0], offset: -1.5 }, 1.5)].flat();
 ";
     let Some(found) = found("levels", script) else {

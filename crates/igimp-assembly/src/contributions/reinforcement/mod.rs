@@ -111,8 +111,8 @@ impl<const D: usize> Reinforcement<D> {
         if is_finite {
             Ok(())
         } else {
-            let what = "reinforcement";
-            Err(AssemblyError::NonFinite { what, index })
+            let quantity = "reinforcement";
+            Err(AssemblyError::NonFinite { quantity, index })
         }
     }
 }

@@ -112,8 +112,8 @@ impl<'a, const D: usize> System<'a, D> {
         conditions.validate(particles)?;
         let (grid, cuts) = (&conditions.grid, method.small_cuts);
         if !cuts.ghost_penalty.is_finite() {
-            let (what, index) = ("ghost penalty", 0);
-            return Err(AssemblyError::NonFinite { what, index });
+            let (quantity, index) = ("ghost penalty", 0);
+            return Err(AssemblyError::NonFinite { quantity, index });
         }
         let bodies = structures.bodies;
         let mut loads = Loads::find(particles, bodies, stencils, conditions, (method, None))?;

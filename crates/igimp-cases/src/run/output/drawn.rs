@@ -34,7 +34,7 @@ fn failing<const D: usize>(
         let failing = Failing {
             stage,
             srf: end.srf,
-            what: label,
+            label,
             before: &end.before.as_ref()?.particles,
             last: &end.state.body.particles,
         };

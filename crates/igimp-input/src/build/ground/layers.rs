@@ -44,7 +44,7 @@ pub(crate) struct Layers<'a> {
     /// The file.
     pub(crate) tree: &'a Node,
     /// Its bodies as they are stated.
-    pub(crate) own: &'a [Thing<Body>],
+    pub(crate) stated: &'a [Thing<Body>],
     /// Its bodies.
     pub(crate) bodies: &'a [Option<BodyPart<2>>],
     /// Its materials.
@@ -66,7 +66,7 @@ pub(crate) fn check(layers: &Layers<'_>, problems: &mut Problems) {
     };
     let ground = ground_of(&bodies, &materials);
     let there = (&bodies[..], layers.site, layers.sequence);
-    gaps::check(layers.own, frame, there, problems);
+    gaps::check(layers.stated, frame, there, problems);
     let neighbours = check_pairs(layers, frame, (&bodies, &materials, &ground), problems);
     check_thickness(layers, frame, &bodies, &neighbours, problems);
 }
@@ -137,7 +137,7 @@ fn check_pairs(
                 continue;
             }
             let pieces = facing(a.polygon(), b.polygon(), narrow);
-            let place = layers.own[second].as_ref().map(polygon_place);
+            let place = layers.stated[second].as_ref().map(polygon_place);
             let names = [&a.name, &b.name].map(|name| clip(name, 40));
             let middle = pieces.first().map_or([0.0; 2], |piece| piece.middle);
             let moduli = [a, b].map(|body| constrained(materials[body.material], middle, ground));
@@ -368,7 +368,7 @@ fn check_thickness(
         let beside = &neighbours[index];
         let thin = thinnest(layers.site, frame, body.polygon());
         let thin = thin.filter(|(cells, ..)| *cells < ENOUGH - 1e-6);
-        let place = layers.own[index].as_ref().map(polygon_place);
+        let place = layers.stated[index].as_ref().map(polygon_place);
         let name = clip(&body.name, 40);
         if let Some((cells, 0, ends)) = thin
             && beside.far_softer > 0

@@ -1,6 +1,6 @@
 //! Results that are held against outside values.
 
-use igimp_model::check::{Band, ToldUnit};
+use igimp_model::check::{Band, PrintedUnit};
 use igimp_model::{CaseCheck, CheckTime, CheckValue, Load, Quantity, Stage, StageKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::quantity::Powers;
@@ -64,12 +64,12 @@ pub(crate) fn check<const D: usize>(
 }
 
 /// The unit in which accepted values are written: that of the first of several.
-fn unit_of_band(check: &keys::Check) -> Option<ToldUnit> {
+fn unit_of_band(check: &keys::Check) -> Option<PrintedUnit> {
     let between = check.between.as_ref().map(|bounds| bounds.value[0]);
     let single = [&check.at_most, &check.at_least, &check.expected];
     let single = single.into_iter().flatten().map(|bound| bound.value);
     let (name, in_si) = between.into_iter().chain(single).next()?.unit?;
-    Some(ToldUnit {
+    Some(PrintedUnit {
         name: name.to_owned(),
         in_si,
     })

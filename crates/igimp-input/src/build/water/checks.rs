@@ -56,7 +56,7 @@ pub(crate) fn check<const D: usize>(
         // A name that is not defined may be a slip for one that is not used.
         return;
     }
-    for (index, water) in around.own.iter().enumerate() {
+    for (index, water) in around.stated.iter().enumerate() {
         let is_used = sequence.scenes().any(|scene| scene.water == Some(index));
         if let Some(water) = water
             && !is_used
@@ -88,7 +88,7 @@ fn through_one_ground<const D: usize>(
         let source = conditions[index].as_ref().map(|water| &water.source);
         let first = around.sequence.first_with(index);
         let bodies_differ = first.present != scene.present;
-        let is_drawn_down = around.own[index]
+        let is_drawn_down = around.stated[index]
             .as_ref()
             .is_some_and(|water| water.inside.is_some());
         let is_other = match source {
@@ -123,7 +123,8 @@ fn strengths<const D: usize>(
     conditions: &[Option<WaterCondition>],
     problems: &mut Problems,
 ) {
-    let (Some(Some(first)), Some(Some(stated))) = (conditions.first(), around.own.first()) else {
+    let (Some(Some(first)), Some(Some(stated))) = (conditions.first(), around.stated.first())
+    else {
         return;
     };
     let by_stress = |soil: &&Material| matches!(&soil.profiles.strength, Some(Profile::StressShare(share)) if share.water_level.is_none());
@@ -162,7 +163,7 @@ impl<const D: usize> Checker<'_, D> {
         if self.seen.contains(&index) || !scene.present.contains(&true) {
             return;
         }
-        let Some(stated) = &around.own[index] else {
+        let Some(stated) = &around.stated[index] else {
             return;
         };
         let surface = (self.surfaces)

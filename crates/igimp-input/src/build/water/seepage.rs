@@ -152,7 +152,7 @@ fn in_time<const D: usize>(
     let asks = format!("{label} starts from");
     let waters = &around.names.water;
     let other = waters.find(start, &asks, problems).ok_or(Wrong)?;
-    let stated = around.own[other].as_ref().ok_or(Wrong)?;
+    let stated = around.stated[other].as_ref().ok_or(Wrong)?;
     let is_steady = |seepage: &At<Seepage>| seepage.start_from.is_none();
     if other == index || !stated.seepage.as_ref().is_some_and(is_steady) {
         let name = clip(start, 40);
@@ -230,7 +230,7 @@ fn free_water<const D: usize>(
                 .names
                 .water
                 .find(name, &format!("{label} names"), problems)?;
-            let stated = around.own[other].as_ref()?;
+            let stated = around.stated[other].as_ref()?;
             let tables = &stated.tables;
             let form = match (&tables.level, &tables.line, &tables.surface) {
                 (Some(level), ..) => Some(Form::Level(level)),
@@ -354,7 +354,7 @@ fn face<const D: usize>(
     let named = Named {
         name: face.name.value.clone(),
         within: extent::<D>(&face.from, &face.to, problems)?,
-        what: held?,
+        condition: held?,
     };
     Ok((named, in_time))
 }
@@ -382,7 +382,7 @@ fn region<const D: usize>(
     Ok(Named {
         name: region.name.value.clone(),
         within,
-        what: held,
+        condition: held,
     })
 }
 
