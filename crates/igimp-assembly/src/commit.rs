@@ -230,9 +230,6 @@ fn divided(tau: &Tensor, det_f: f64) -> Tensor {
     tau.map(|row| row.map(|component| component / det_f))
 }
 
-/// The most and the inverse of the least stretch along an axis over their mean, for domains by stretch \[-\] (theory, eq. 29a).
-const MOST_ELONGATION: f64 = 4.0;
-
 /// Half-lengths after the deformation F \[length\].
 fn updated_half_length<const D: usize>(
     update: DomainUpdate,
@@ -244,9 +241,7 @@ fn updated_half_length<const D: usize>(
         DomainUpdate::DiagonalF => std::array::from_fn(|axis| def_grad[axis][axis].abs()),
         DomainUpdate::DiagonalU => {
             let right_stretch = multiply(&transpose(&rotation(def_grad)), def_grad);
-            let mean = determinant(def_grad).powf(1.0 / D as f64);
-            let (least, most) = (mean / MOST_ELONGATION, mean * MOST_ELONGATION);
-            std::array::from_fn(|axis| right_stretch[axis][axis].max(least).min(most))
+            std::array::from_fn(|axis| right_stretch[axis][axis])
         }
         DomainUpdate::RootJ => [determinant(def_grad).powf(1.0 / D as f64); D],
         DomainUpdate::Moments => {
@@ -283,33 +278,7 @@ mod tests {
         near(moments(shear), [13.0_f64.sqrt(), 1.0]);
         near(moments([[0.0, -1.0], [1.0, 0.0]]), [1.0, 2.0]);
         near(moments([[0.5, 0.0], [0.0, -3.0]]), [1.0, 3.0]);
-        let across =
-            updated_half_length(DomainUpdate::DiagonalU, &sides, &[[1.0, 1.0], [0.0, 1.0]])[1];
-        assert!(across > 1.3, "{across}");
-    }
-
-    /// GOAL: domains by stretch follow U up to sixteen to one in the plane and keep to that bound beyond it, at any rotation and volume;
-    /// in space a stretch along one axis is followed up to eightfold.
-    /// ORACLE: stretches along the axes by hand; before the bound the half-lengths are U's to the bit.
-    #[test]
-    fn domains_by_stretch_keep_to_their_bound() {
-        let plane =
-            |f: [[f64; 2]; 2]| updated_half_length(DomainUpdate::DiagonalU, &[1.0, 1.0], &f);
-        assert_eq!(plane([[1.5, 0.0], [0.0, 0.5]]), [1.5, 0.5]);
-        let near = |found: &[f64], exact: &[f64]| {
-            assert!(
-                std::iter::zip(found, exact).all(|(a, b)| (a - b).abs() < 1e-12),
-                "{found:?}"
-            );
-        };
-        near(&plane([[8.0, 0.0], [0.0, 0.125]]), &[4.0, 0.25]);
-        near(&plane([[64.0, 0.0], [0.0, 1.0]]), &[32.0, 2.0]);
-        near(&plane([[0.0, -0.125], [8.0, 0.0]]), &[4.0, 0.25]);
-        let space = |stretch: f64| {
-            let f = [[stretch, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-            updated_half_length(DomainUpdate::DiagonalU, &[1.0; 3], &f)
-        };
-        near(&space(7.9), &[7.9, 1.0, 1.0]);
-        near(&space(64.0), &[16.0, 1.0, 1.0]);
+        let across = updated_half_length(DomainUpdate::DiagonalU, &sides, &shear)[1];
+        assert!(across > 3.0, "{across}");
     }
 }

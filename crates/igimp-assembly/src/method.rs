@@ -82,7 +82,7 @@ pub enum DomainUpdate {
     Fixed,
     /// `l_d = F_dd l_d0`.
     DiagonalF,
-    /// `l_d = U_dd l_d0`, at most four times and at least a quarter of what `RootJ` gives: free of rotation (the default; theory, eq. 29a).
+    /// `l_d = U_dd l_d0`: free of rotation (the default).
     DiagonalU,
     /// `l_d = (det F)^(1/D) l_d0`.
     RootJ,

@@ -124,7 +124,7 @@ choices! {
     DomainUpdate;
     Fixed "fixed", "half-lengths stay as seeded";
     DiagonalF "diagonal-f", "diagonal of the deformation gradient F";
-    Stretch "stretch", "diagonal of the stretch U, free of rotation, within a factor of four of root-j";
+    Stretch "stretch", "diagonal of the stretch U, free of rotation";
     RootJ "root-j", "square root of det F";
     Moments "moments", "second moments of the deformed domain, as in run-outs and in motion";
 }
