@@ -208,7 +208,7 @@ impl Case {
             Self::ContactWall => contact::wall::study(level, out),
             Self::ContactPlaces => contact::places::study(level, out),
             Self::ContactFitted => contact::places::fitted(level, out),
-            Self::ContactDeep => contact::deep::study(level, out),
+            Self::ContactDeep => contact::buried::deep::study(level, out),
             Self::ContactBar => contact::buried::bar::study(level, out),
             Self::SpaceColumn => space::column::study(out),
             Self::SpaceSlice => space::slice::study(out),

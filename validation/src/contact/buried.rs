@@ -1,6 +1,7 @@
 //! Rigid bodies wished in place in weightless Tresca soil, and the force at which it flows around them.
 
 pub(crate) mod bar;
+pub(crate) mod deep;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -3,7 +3,6 @@
 pub(crate) mod anchor;
 pub(crate) mod buried;
 pub(crate) mod column;
-pub(crate) mod deep;
 pub(crate) mod embedded;
 pub(crate) mod footing;
 pub(crate) mod hertz;
