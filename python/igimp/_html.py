@@ -39,7 +39,7 @@ def case(case: Case) -> str:
 
 
 def picture(svg: str, caption: str) -> str:
-    """A picture with its caption; it scales with the page and keeps its check styles to itself."""
+    """A picture with its caption; it scales with the page and keeps its own styles to itself."""
     data = base64.b64encode(svg.encode()).decode()
     image = f'<img style="max-width:100%" alt="{html.escape(caption)}" src="data:image/svg+xml;base64,{data}">'
     return f'<figure style="margin:1em 0">{image}<figcaption>{html.escape(caption)}</figcaption></figure>'

@@ -676,7 +676,7 @@ pub struct CheckRow {
     pub check: Check,
     /// Whether the band is met.
     pub pass: bool,
-    /// Worth of the value.
+    /// Standing of the value.
     #[serde(default)]
     pub standing: Standing,
 }
@@ -725,7 +725,7 @@ impl CheckRow {
     }
 }
 
-/// Worth of the value of a check.
+/// Standing of the value of a check: held, or the reason why not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Standing {

@@ -433,6 +433,11 @@ fn the_discharge_at_an_end_of_a_slanting_layer_is_its_flow() {
             "{degrees} {cell}: {:.4} {passed:.4?}",
             found.outflow / exact
         );
+        let [inflow, outflow] = [0, 1].map(|way| passed.iter().map(|flow| flow[way]).sum());
+        let is_flow = |share: f64| (share - 1.0).abs() < 5e-4;
+        assert!(is_flow(found.outflow / exact), "{degrees} {cell}");
+        assert!(is_flow(passed[0][0]) && is_flow(passed[1][1]), "{passed:?}");
+        assert!(is_flow(inflow) && is_flow(outflow), "{passed:?}");
     }
 }
 

@@ -78,7 +78,7 @@ const found = {{
     assert_eq!(found["jump"], serde_json::json!([1, 0]));
 }
 
-/// A linear field has its point values where corners of boxes meet; a cube of 12 triangles has 12 edges, whichever way its faces
+/// A linear field has its own values where corners of boxes meet; a cube of 12 triangles has 12 edges, whichever way its faces
 /// are cut, and a ball none.
 #[test]
 fn corners_of_boxes_and_edges_of_rigid_bodies() {

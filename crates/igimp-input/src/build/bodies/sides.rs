@@ -27,7 +27,7 @@ const UPRIGHT: f64 = 0.7;
 /// Share of a face that has to be held \[-\].
 const HELD: f64 = 0.5;
 
-/// Holds of a face, beside the supports of the grid.
+/// Data of the case that may hold a face, beside the supports of the grid.
 pub(crate) struct Holds<'a, const D: usize> {
     boundaries: Option<&'a Boundaries<D>>,
     rigid: &'a [Option<RigidPart<D>>],
