@@ -8,10 +8,9 @@ use igimp_assembly::Method;
 
 use crate::body::Body;
 use crate::free_factor::Guess;
-use crate::march::{Accepted, MarchState, Observer};
+use crate::march::{Accepted, Driver, MarchState};
 use crate::newton::{Target, step_on_path};
 use crate::report::{MECHANISM, NodalForces, StepError, StepReport};
-use crate::settings::LoadPath;
 use crate::settings::NewtonSettings;
 use crate::workspace::Workspace;
 
@@ -294,19 +293,18 @@ impl<const D: usize> Peak<D> {
     }
 }
 
-/// Follows a body along its path from a state, until the observer ends it; the failure of the last step where no step
+/// Follows a body along its path from a state, until the driver ends it; the failure of the last step where no step
 /// was found, however small.
 ///
-/// An observer sees each accepted step with the [`ContinuationState`] after it. A failed step leaves the body at its last
+/// The driver sees each accepted step with the [`ContinuationState`] after it. A failed step leaves the body at its last
 /// equilibrium.
 pub fn follow<const D: usize>(
     state: &mut ContinuationState<D>,
     body: &mut Body<D>,
     method: &Method,
-    load_path: &dyn LoadPath<D>,
     settings: &ContinuationSettings,
     workspace: &mut Workspace<D>,
-    observer: &mut dyn Observer<D>,
+    driver: &mut dyn Driver<D>,
 ) -> Option<StepError> {
     let mut failures = 0;
     let mut first = state.size;
@@ -315,13 +313,13 @@ pub fn follow<const D: usize>(
         let target = state.target(settings);
         let on_path = (state.factor, &target);
         let newton = patient(settings.newton, failures);
-        match step_on_path(body, method, load_path, on_path, &newton, workspace) {
+        match step_on_path(body, method, &*driver, on_path, &newton, workspace) {
             Ok((conditions, report, forces)) => {
                 failures = 0;
                 state.take((&report, &forces), &target, settings);
                 if let Some((from, before)) = peak.as_mut().and_then(|peak| peak.after(state, body))
                 {
-                    observer.on_return(&before, state.steps - 1 - from.steps);
+                    driver.on_return(&before, state.steps - 1 - from.steps);
                     (*state, *body) = (from, before);
                     continue;
                 }
@@ -337,12 +335,12 @@ pub fn follow<const D: usize>(
                     forces: &forces,
                     state: &march,
                 };
-                if observer.on_step(&accepted).is_break() {
+                if driver.on_step(&accepted).is_break() {
                     return None;
                 }
             }
             Err(error) => {
-                observer.on_cut(&error);
+                driver.on_cut(&error);
                 if failures == 0 {
                     first = state.size;
                 }

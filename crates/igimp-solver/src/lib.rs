@@ -27,7 +27,8 @@ pub use body::Body;
 pub use continuation::{ContinuationSettings, ContinuationState, LastStep, follow};
 pub use free_field::FreeField;
 pub use march::{
-    Accepted, MarchReport, MarchSettings, MarchState, Observer, Outcome, Pace, march, march_from,
+    Accepted, Driver, MarchReport, MarchSettings, MarchState, Observed, Observer, Outcome, Pace,
+    march, march_from,
 };
 pub use newton::step;
 pub use report::{

@@ -82,6 +82,43 @@ where
     }
 }
 
+/// A load path whose conditions go by what its accepted steps did: it observes the march along it.
+pub trait Driver<const D: usize>: LoadPath<D> + Observer<D> {}
+
+impl<const D: usize, T: LoadPath<D> + Observer<D>> Driver<D> for T {}
+
+/// A load path of its load factor alone, with an observer beside it.
+pub struct Observed<'a, const D: usize> {
+    /// The load path.
+    pub load_path: &'a dyn LoadPath<D>,
+    /// The observer.
+    pub observer: &'a mut dyn Observer<D>,
+}
+
+impl<const D: usize> LoadPath<D> for Observed<'_, D> {
+    fn conditions(&self, from: f64, to: f64) -> Result<StepConditions<D>, AssemblyError> {
+        self.load_path.conditions(from, to)
+    }
+
+    fn longest_step(&self, at: f64) -> f64 {
+        self.load_path.longest_step(at)
+    }
+}
+
+impl<const D: usize> Observer<D> for Observed<'_, D> {
+    fn on_step(&mut self, accepted: &Accepted<'_, D>) -> ControlFlow<()> {
+        self.observer.on_step(accepted)
+    }
+
+    fn on_cut(&mut self, error: &StepError) {
+        self.observer.on_cut(error);
+    }
+
+    fn on_return(&mut self, body: &Body<D>, steps: usize) {
+        self.observer.on_return(body, steps);
+    }
+}
+
 /// Sizes of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarchSettings {
@@ -199,9 +236,11 @@ pub fn march<const D: usize>(
     observer: &mut dyn Observer<D>,
 ) -> MarchReport {
     let start = MarchState::start(settings);
-    march_from(
-        start, body, method, load_path, settings, workspace, observer,
-    )
+    let mut driver = Observed {
+        load_path,
+        observer,
+    };
+    march_from(start, body, method, settings, workspace, &mut driver)
 }
 
 /// Goes on with a march that was left at `state`, with the body as it was then: the steps that
@@ -210,10 +249,9 @@ pub fn march_from<const D: usize>(
     mut state: MarchState,
     body: &mut Body<D>,
     method: &Method,
-    load_path: &dyn LoadPath<D>,
     settings: &MarchSettings,
     workspace: &mut Workspace<D>,
-    observer: &mut dyn Observer<D>,
+    driver: &mut dyn Driver<D>,
 ) -> MarchReport {
     let mut report = MarchReport {
         outcome: Outcome::Completed,
@@ -223,9 +261,9 @@ pub fn march_from<const D: usize>(
     let mut stride = Stride::new(settings, &state);
     while state.at < 1.0 {
         let at = state.at;
-        stride.bound(&mut state, load_path.longest_step(at));
+        stride.bound(&mut state, driver.longest_step(at));
         let to = stride.next(at, state.size);
-        let result = conditions_at(load_path, at, to).and_then(|conditions| {
+        let result = conditions_at(driver, at, to).and_then(|conditions| {
             let stretch = Stretch {
                 from: at,
                 to,
@@ -246,7 +284,7 @@ pub fn march_from<const D: usize>(
                     forces: &forces,
                     state: &state,
                 };
-                let flow = observer.on_step(&accepted);
+                let flow = driver.on_step(&accepted);
                 report.steps.push(step);
                 if flow.is_break() {
                     report.outcome = Outcome::Stopped { at: to };
@@ -254,7 +292,7 @@ pub fn march_from<const D: usize>(
                 }
             }
             Err(error) => {
-                observer.on_cut(&error);
+                driver.on_cut(&error);
                 report.failures.push(error.clone());
                 let share = error.failure.share_of_next();
                 if !stride.cut(&mut state, to, share) || error.failure.leaves_grid() {

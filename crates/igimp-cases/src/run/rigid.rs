@@ -8,7 +8,7 @@ use igimp_model::{
 use igimp_solver::{Accepted, StepFailure};
 use igimp_text::short;
 
-use super::state::{Controls, RigidTrack, State};
+use super::state::{Controls, State};
 use crate::error::CaseError;
 
 /// The smallest cell that a rigid body starts in \[m\].
@@ -98,22 +98,22 @@ pub(crate) fn motions<const D: usize>(
         .collect()
 }
 
-/// The motion of the rigid bodies by the end of an accepted step, where `controls` act; these have
-/// the motion before.
-pub(crate) fn tracks<const D: usize>(
+/// The controls that act at the end of an accepted step, with the motion of the rigid bodies in that step added to their
+/// tracks.
+pub(crate) fn moved<const D: usize>(
     case: &Case<D>,
-    controls: &Controls,
+    mut controls: Controls,
     accepted: &Accepted<'_, D>,
-) -> Vec<RigidTrack> {
+) -> Controls {
     let first = accepted.conditions.grid.node_count();
     let [u, reactions] =
         [&accepted.forces.u, &accepted.forces.reactions].map(|by_node| &by_node[first..]);
-    let mut tracks = controls.tracks();
-    for ((slot, index), body) in std::iter::zip(controls.placed().enumerate(), &accepted.body.rigid)
+    let placed = controls.rigid.iter_mut().zip(&case.rigid);
+    let placed = placed.filter(|(control, _)| control.placed);
+    for ((slot, (control, part)), body) in std::iter::zip(placed.enumerate(), &accepted.body.rigid)
     {
-        let (part, control) = (&case.rigid[index], &controls.rigid[index]);
         let (motion, resultant) = (body.motion_of(slot, u), body.resultant_of(slot, reactions));
-        let track = &mut tracks[index];
+        let track = &mut control.track;
         for k in 0..components::<D>() {
             let reaction = resultant[k / D][k % D];
             track.displacement[k] += motion[k / D][k % D];
@@ -125,7 +125,7 @@ pub(crate) fn tracks<const D: usize>(
         }
         track.lowered = part.reference[D - 1] - body.pose.origin[D - 1];
     }
-    tracks
+    controls
 }
 
 /// The smallest vertical distance from soil up to a body where it starts \[m\]; infinite where no soil

@@ -1,6 +1,5 @@
 //! Data passed from stage to stage of a run: model, listener, records and results folder.
 
-use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -27,7 +26,7 @@ use super::output::export::Export;
 use super::output::moment::{Moment, largest_displacement};
 use super::output::records::Records;
 use super::resume::Resumption;
-use super::state::{Controls, RigidTrack, State, WallTrack};
+use super::state::{Controls, State};
 use super::water::flow;
 use super::{Event, Listener, rigid};
 use crate::error::CaseError;
@@ -319,6 +318,11 @@ impl<'a, const D: usize> StagePath<'a, D> {
         }
     }
 
+    /// The controls at a load factor, with the motion of the last equilibrium.
+    fn at(&self, factor: f64, last: &Controls) -> Controls {
+        self.from.towards(self.to, factor).moved_as(last)
+    }
+
     /// The conditions of a step between two load factors, with the controls there.
     fn conditions(
         &self,
@@ -368,25 +372,6 @@ pub(crate) struct TimeIntegration<'a, const D: usize> {
     pub(crate) on_ground: &'a OnGround<'a, D>,
 }
 
-/// The conditions of the steps of a march, and how long they may be.
-struct Steps<'a, F> {
-    conditions: F,
-    longest: Option<&'a dyn Fn(f64) -> f64>,
-}
-
-impl<F, const D: usize> LoadPath<D> for Steps<'_, F>
-where
-    F: Fn(f64, f64) -> Result<StepConditions<D>, AssemblyError>,
-{
-    fn conditions(&self, from: f64, to: f64) -> Result<StepConditions<D>, AssemblyError> {
-        (self.conditions)(from, to)
-    }
-
-    fn longest_step(&self, at: f64) -> f64 {
-        self.longest.map_or(f64::INFINITY, |longest| longest(at))
-    }
-}
-
 /// How a march ended.
 #[derive(Debug)]
 pub(crate) enum StageEnd {
@@ -412,28 +397,13 @@ pub(crate) fn march_path<const D: usize>(
     stage: &mut StageSummary,
     each: &mut dyn FnMut(&mut Session<'_, D>, &StageSummary, &AcceptedStep<'_, D>) -> StopRequest,
 ) -> Result<StageEnd, CaseError> {
-    let model = session.model;
-    let tracks = RefCell::new(state.controls.tracks());
-    let walls = RefCell::new(state.controls.walls.clone());
-    let last_step = Cell::new(state.controls.last_step);
-    let at = |reached: f64| {
-        let controls = Controls {
-            last_step: last_step.get(),
-            ..path.from.towards(path.to, reached)
-        };
-        (controls.with_tracks(&tracks.borrow())).with_walls(&walls.borrow())
-    };
-    let load_path = Steps {
-        conditions: |from: f64, to: f64| path.conditions(model, (from, to), (&at(from), &at(to))),
-        longest: path.time.map(|integration| integration.longest_step),
-    };
     let mut march = MarchState::start(&path.settings);
     if let Some(left) = path.left {
         march = left.march;
         session.last_resistance = left.resistance;
     }
+    state.controls = path.at(march.at, &state.controls);
     if let Some(end) = path.left.and_then(|left| left.end.clone()) {
-        state.controls = at(march.at);
         stage.reached = march.at;
         return Ok(StageEnd::Stopped(end));
     }
@@ -443,9 +413,7 @@ pub(crate) fn march_path<const D: usize>(
         stage,
         path,
         each,
-        tracks: &tracks,
-        walls: &walls,
-        last_step: &last_step,
+        controls: &mut state.controls,
         reached: march.at,
         stopped: Ok(None),
     };
@@ -453,13 +421,11 @@ pub(crate) fn march_path<const D: usize>(
         march,
         &mut state.body,
         &path.method,
-        &load_path,
         &path.settings,
         &mut workspace,
         &mut watch,
     );
     let (reached, stopped) = (watch.reached, watch.stopped);
-    state.controls = at(reached);
     stage.reached = reached;
     let reason = stopped?;
     Ok(match (report.outcome, reason) {
@@ -484,12 +450,8 @@ struct Watch<'w, 's, const D: usize> {
     path: &'w StagePath<'w, D>,
     each:
         &'w mut dyn FnMut(&mut Session<'_, D>, &StageSummary, &AcceptedStep<'_, D>) -> StopRequest,
-    /// Motion of rigid bodies so far.
-    tracks: &'w RefCell<Vec<RigidTrack>>,
-    /// The tracks of walls.
-    walls: &'w RefCell<Vec<WallTrack>>,
-    /// Duration of the last step.
-    last_step: &'w Cell<f64>,
+    /// The controls of the last equilibrium.
+    controls: &'w mut Controls,
     reached: f64,
     stopped: Result<Option<Stop>, CaseError>,
 }
@@ -507,16 +469,11 @@ impl<const D: usize> Watch<'_, '_, D> {
             let summary = self.stage.consolidation.get_or_insert_default();
             flow::tally(summary, model.case, report, &accepted.body.particles);
         }
-        self.last_step.set(report.duration);
-        let mut controls = self.path.from.towards(self.path.to, report.to);
-        controls.last_step = self.last_step.get();
-        controls = controls.with_tracks(&self.tracks.borrow());
-        let tracks = rigid::tracks(model.case, &controls, accepted);
-        controls = controls.with_tracks(&tracks);
-        self.tracks.replace(tracks);
-        controls = controls.with_walls(&self.walls.borrow());
+        let mut controls = self.path.at(report.to, self.controls);
+        controls.last_step = report.duration;
+        controls = rigid::moved(model.case, controls, accepted);
         controls.walls = controls.walls_after(&accepted.forces.u);
-        self.walls.replace(controls.walls.clone());
+        self.controls.clone_from(&controls);
         let grid = &accepted.conditions.grid;
         let taken = AcceptedStep {
             accepted,
@@ -553,6 +510,18 @@ impl<const D: usize> Watch<'_, '_, D> {
             None if taken.interrupted && report.to < 1.0 => Some(Stop::User),
             None => None,
         })
+    }
+}
+
+impl<const D: usize> LoadPath<D> for Watch<'_, '_, D> {
+    fn conditions(&self, from: f64, to: f64) -> Result<StepConditions<D>, AssemblyError> {
+        let [before, after] = [from, to].map(|factor| self.path.at(factor, self.controls));
+        (self.path).conditions(self.session.model, (from, to), (&before, &after))
+    }
+
+    fn longest_step(&self, at: f64) -> f64 {
+        let time = &self.path.time;
+        (time.as_ref()).map_or(f64::INFINITY, |time| (time.longest_step)(at))
     }
 }
 

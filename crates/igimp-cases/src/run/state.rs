@@ -186,24 +186,14 @@ impl Controls {
         bodies.filter(|(_, part)| part.placed).map(|(body, _)| body)
     }
 
-    /// Motion of rigid bodies so far.
-    pub(crate) fn tracks(&self) -> Vec<RigidTrack> {
-        self.rigid.iter().map(|body| body.track).collect()
-    }
-
-    /// The same with other tracks.
+    /// The same with the motion that others have come to: tracks of rigid bodies and walls, and the duration of the last step.
     #[must_use]
-    pub(crate) fn with_tracks(mut self, tracks: &[RigidTrack]) -> Self {
-        for (body, track) in self.rigid.iter_mut().zip(tracks) {
-            body.track = *track;
+    pub(crate) fn moved_as(mut self, last: &Self) -> Self {
+        for (body, as_last) in std::iter::zip(&mut self.rigid, &last.rigid) {
+            body.track = as_last.track;
         }
-        self
-    }
-
-    /// The same with tracks of walls.
-    #[must_use]
-    pub(crate) fn with_walls(mut self, walls: &[WallTrack]) -> Self {
-        self.walls = walls.to_vec();
+        self.walls.clone_from(&last.walls);
+        self.last_step = last.last_step;
         self
     }
 

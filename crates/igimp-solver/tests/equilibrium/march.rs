@@ -17,7 +17,8 @@ use crate::body_support::{
 use igimp_assembly::{AssemblyError, Constraints, Kinematics, Method, SharedLaw, StepConditions};
 use igimp_material::MaterialError;
 use igimp_solver::{
-    Accepted, Body, MarchReport, MarchSettings, MarchState, Outcome, StepFailure, march, march_from,
+    Accepted, Body, MarchReport, MarchSettings, MarchState, Observed, Outcome, StepFailure, march,
+    march_from,
 };
 
 /// A standing block and the load path that raises its weight to `gravity`.
@@ -542,10 +543,12 @@ fn a_march_taken_up_again_is_the_same_march() {
             *state,
             &mut body,
             &Method::default(),
-            &load_path,
             &settings,
             &mut workspace(),
-            &mut |_: &Accepted<'_, 2>| ControlFlow::Continue(()),
+            &mut Observed {
+                load_path: &load_path,
+                observer: &mut |_: &Accepted<'_, 2>| ControlFlow::Continue(()),
+            },
         );
         assert_eq!(rest.steps.len(), report.steps.len() - taken - 1);
         assert_eq!(rest.outcome, report.outcome);

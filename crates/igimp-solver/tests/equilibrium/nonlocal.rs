@@ -18,7 +18,7 @@ use igimp_material::{Curve, Decay, Nonlocal, Softening};
 use igimp_shape::Grid;
 use igimp_solver::{
     Accepted, Body, ContinuationSettings, ContinuationState, MarchReport, MarchSettings,
-    MarchState, NewtonSettings, Outcome, follow, march_from,
+    MarchState, NewtonSettings, Observed, Outcome, follow, march_from,
 };
 
 /// c_u at first, and in the end \[stress\].
@@ -162,13 +162,15 @@ impl Layer {
             state,
             body,
             method,
-            &load_path,
             &MarchSettings::steps(steps),
             &mut workspace(),
-            &mut |accepted: &Accepted<'_, 2>| {
-                let particles = &accepted.body.particles;
-                let point = Point::of(particles, self.cells, travel(accepted.report.to));
-                observe(point, accepted.state)
+            &mut Observed {
+                load_path: &load_path,
+                observer: &mut |accepted: &Accepted<'_, 2>| {
+                    let particles = &accepted.body.particles;
+                    let point = Point::of(particles, self.cells, travel(accepted.report.to));
+                    observe(point, accepted.state)
+                },
             },
         )
     }
@@ -220,24 +222,26 @@ impl Layer {
             &mut state,
             &mut body,
             method,
-            &load_path,
             &settings,
             &mut workspace(),
-            &mut |accepted: &Accepted<'_, 2>| {
-                let particles = &accepted.body.particles;
-                let uppermost = particles.x.iter().map(|x| x[1]).fold(0.0, f64::max);
-                let travel = std::iter::zip(&particles.x, &particles.displacement)
-                    .find(|(x, _)| x[1] >= uppermost)
-                    .map_or(0.0, |(_, u)| u[0]);
-                path.push(Point {
-                    tau: accepted.report.to,
-                    ..Point::of(particles, self.cells, travel)
-                });
-                if accepted.report.to < until {
-                    ControlFlow::Break(())
-                } else {
-                    ControlFlow::Continue(())
-                }
+            &mut Observed {
+                load_path: &load_path,
+                observer: &mut |accepted: &Accepted<'_, 2>| {
+                    let particles = &accepted.body.particles;
+                    let uppermost = particles.x.iter().map(|x| x[1]).fold(0.0, f64::max);
+                    let travel = std::iter::zip(&particles.x, &particles.displacement)
+                        .find(|(x, _)| x[1] >= uppermost)
+                        .map_or(0.0, |(_, u)| u[0]);
+                    path.push(Point {
+                        tau: accepted.report.to,
+                        ..Point::of(particles, self.cells, travel)
+                    });
+                    if accepted.report.to < until {
+                        ControlFlow::Break(())
+                    } else {
+                        ControlFlow::Continue(())
+                    }
+                },
             },
         );
         assert!(failure.is_none(), "{failure:?}");

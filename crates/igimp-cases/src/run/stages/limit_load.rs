@@ -1,15 +1,14 @@
 //! Limit loads on the given geometry: where the march of a stage finds no equilibrium at a greater load, the path of
 //! equilibria goes on with the load factor as an unknown (theory, eqs. 33a to 33f).
 
-use std::cell::RefCell;
 use std::ops::ControlFlow;
 
-use igimp_assembly::Geometry;
+use igimp_assembly::{AssemblyError, Geometry, StepConditions};
 use igimp_model::{Driven, RigidMove, Stage, StageKind};
 use igimp_results::ending::{EndReason, PathEnd};
 use igimp_results::summary::{PathPoint, PathSummary, StageSummary};
 use igimp_solver::{
-    Accepted, ContinuationSettings, ContinuationState, LastStep, MarchSettings, Observer,
+    Accepted, ContinuationSettings, ContinuationState, LastStep, LoadPath, MarchSettings, Observer,
     StepError, follow,
 };
 use igimp_text::short;
@@ -19,7 +18,7 @@ use crate::limit::{self, Course};
 use crate::run::model::displacement_scale;
 use crate::run::output::moment::Moment;
 use crate::run::session::{Session, StageEnd};
-use crate::run::state::{Controls, RigidTrack, State};
+use crate::run::state::{Controls, State};
 use crate::run::{Event, rigid};
 
 /// The first change of the load over the smallest one at which the march found no equilibrium \[-\].
@@ -84,12 +83,6 @@ pub(crate) fn follow_on<const D: usize>(
 ) -> Result<StageEnd, CaseError> {
     let model = session.model;
     let stage = &model.case.stages[number];
-    let tracks = RefCell::new(state.controls.tracks());
-    let at = |reached: f64| from.towards(to, reached).with_tracks(&tracks.borrow());
-    let load_path = |before: f64, after: f64| {
-        let grid = model.grid(model.lowered(from));
-        model.conditions_on(grid, (&at(before), &at(after)), 0.0)
-    };
     let settings = continuation_settings(model.march_settings(stage.steps), stage, summary);
     let mut continuation = ContinuationState::start(summary.reached, last, &settings);
     let mut workspace = session.workspace();
@@ -103,10 +96,10 @@ pub(crate) fn follow_on<const D: usize>(
     let mut watch = Watch {
         number,
         stage,
-        at: &at,
+        way: (from, to),
+        controls: from.towards(to, summary.reached).moved_as(&state.controls),
         driven,
         course,
-        tracks: &tracks,
         points: vec![begins],
         end: PathEnd::Lost,
         limit: None,
@@ -118,7 +111,6 @@ pub(crate) fn follow_on<const D: usize>(
         &mut continuation,
         &mut state.body,
         &model.method(stage.geometry),
-        &load_path,
         &settings,
         &mut workspace,
         &mut watch,
@@ -128,9 +120,10 @@ pub(crate) fn follow_on<const D: usize>(
         end,
         limit,
         stopped,
+        controls,
         ..
     } = watch;
-    state.controls = at(continuation.factor);
+    state.controls = controls;
     summary.reached = continuation.factor;
     let ended = match (stopped?, failure) {
         (Some(ended), _) => ended,
@@ -208,12 +201,13 @@ fn remark(path: &PathSummary, stage: &str) -> Option<String> {
 struct Watch<'w, 's, const D: usize> {
     number: usize,
     stage: &'w Stage,
-    at: &'w dyn Fn(f64) -> Controls,
+    /// The controls that the path goes from and to.
+    way: (&'w Controls, &'w Controls),
+    /// Those of the last equilibrium.
+    controls: Controls,
     /// The control that tells the factor; none: forces on rigid bodies.
     driven: Option<Driven>,
     course: Course,
-    /// Motion of rigid bodies so far.
-    tracks: &'w RefCell<Vec<RigidTrack>>,
     session: &'w mut Session<'s, D>,
     summary: &'w mut StageSummary,
     points: Vec<PathPoint>,
@@ -223,15 +217,20 @@ struct Watch<'w, 's, const D: usize> {
 }
 
 impl<const D: usize> Watch<'_, '_, D> {
+    /// The controls at a load factor, with the motion of the last equilibrium.
+    fn at(&self, factor: f64) -> Controls {
+        let (from, to) = self.way;
+        from.towards(to, factor).moved_as(&self.controls)
+    }
+
     fn step(&mut self, accepted: &Accepted<'_, D>) -> Result<Option<StageEnd>, CaseError> {
         let report = accepted.report;
         let number = self.summary.steps + 1;
         self.session.tell(&Event::Equilibrium { number, accepted });
         self.session.tally(self.summary, report)?;
         self.session.keep_system(accepted.conditions, self.summary);
-        let tracks = rigid::tracks(self.session.model.case, &(self.at)(report.to), accepted);
-        self.tracks.replace(tracks);
-        let controls = (self.at)(report.to);
+        let controls = rigid::moved(self.session.model.case, self.at(report.to), accepted);
+        self.controls = controls.clone();
         let particles = &accepted.body.particles;
         self.session.record(&Moment {
             stage: self.number,
@@ -270,6 +269,14 @@ impl<const D: usize> Watch<'_, '_, D> {
                 reached: Some(report.to),
             })
         }))
+    }
+}
+
+impl<const D: usize> LoadPath<D> for Watch<'_, '_, D> {
+    fn conditions(&self, from: f64, to: f64) -> Result<StepConditions<D>, AssemblyError> {
+        let model = self.session.model;
+        let grid = model.grid(model.lowered(self.way.0));
+        model.conditions_on(grid, (&self.at(from), &self.at(to)), 0.0)
     }
 }
 

@@ -8,7 +8,7 @@
 //! last step without any drag has to find equilibrium. This is a mode for run-out alone, never for a
 //! factor of safety.
 
-use std::cell::{Cell, RefCell};
+use std::cell::Cell;
 
 use igimp_assembly::{DomainUpdate, Geometry, Locking, Method};
 use igimp_model::{Reduction, RunOut, StageKind, search_of};
@@ -54,14 +54,15 @@ pub(crate) fn run_out<const D: usize>(
     let creep = Creep::new(model, number, run_out, to)?;
     let mut left = resumption.cloned();
     loop {
-        let ended = creep.go_on(session, state, summary, left.as_ref())?;
+        let mut last = None;
+        let ended = creep.go_on(session, state, summary, (left.as_ref(), &mut last))?;
         let StageEnd::Stopped(EndReason::AtRest {
             steps, drag_share, ..
         }) = ended
         else {
             return Ok(ended);
         };
-        let at = creep.last.take().or(left);
+        let at = last.or(left);
         let rest = |is_in_equilibrium| EndReason::AtRest {
             steps,
             drag_share,
@@ -99,8 +100,6 @@ struct Creep<'a> {
     target: f64,
     /// The drag of the first step \[1/s²\].
     largest: f64,
-    /// Where the march stands.
-    last: RefCell<Option<Resumption>>,
 }
 
 impl<'a> Creep<'a> {
@@ -122,17 +121,16 @@ impl<'a> Creep<'a> {
             target,
             // The whole weight would move the body by the target.
             largest: case.gravity / target,
-            last: RefCell::new(None),
         })
     }
 
-    /// Creeps on from where the march was left, until the slope all but rests.
+    /// Creeps on from where the march was left, if it was, until the slope all but rests; `last` is where the march stands then.
     fn go_on<const D: usize>(
         &self,
         session: &mut Session<'_, D>,
         state: &mut State<D>,
         summary: &mut StageSummary,
-        left: Option<&Resumption>,
+        (left, last): (Option<&Resumption>, &mut Option<Resumption>),
     ) -> Result<StageEnd, CaseError> {
         let model = session.model;
         let (to, steps) = (&self.to, self.steps);
@@ -149,7 +147,8 @@ impl<'a> Creep<'a> {
             summary,
             &mut |session, summary, taken| {
                 drag.set(self.drag_after(drag.get(), taken));
-                self.after_step(session, summary, taken, drag.get())
+                let resumption = self.after_step(session, summary, taken, drag.get())?;
+                Ok(last.insert(resumption).end.clone())
             },
         )?;
         let StageEnd::Completed(_) = ended else {
@@ -170,14 +169,14 @@ impl<'a> Creep<'a> {
         (drag * change_of_drag(moved / self.target, share)).clamp(1e-9 * self.largest, self.largest)
     }
 
-    /// Records a step; why the march ends with it, if it does.
+    /// Records a step; where the march stands with it, and why it ends there, if it does.
     fn after_step<const D: usize>(
         &self,
         session: &mut Session<'_, D>,
         summary: &StageSummary,
         taken: &AcceptedStep<'_, D>,
         drag: f64,
-    ) -> Result<Option<EndReason>, CaseError> {
+    ) -> Result<Resumption, CaseError> {
         let (model, number) = (session.model, self.number);
         session.record(&taken.moment(number, summary.steps))?;
         let share = taken.accepted.report.drag_share;
@@ -197,9 +196,7 @@ impl<'a> Creep<'a> {
             let run = &session.summary;
             output.after_step(number, model, summary, taken, &resumption, run)?;
         }
-        let end = resumption.end.clone();
-        self.last.replace(Some(resumption));
-        Ok(end)
+        Ok(resumption)
     }
 
     /// The last step, without drag: the slope has to be in equilibrium where it rests. All of it acts already, so no cut helps.

@@ -9,8 +9,8 @@ use igimp_model::{ReductionPath, Stage, StrengthReduction};
 use igimp_results::ending::{EndReason, PathEnd};
 use igimp_results::summary::{PathPoint, PathSummary, SafetySummary, StageSummary, StrengthShares};
 use igimp_solver::{
-    Accepted, Body, ContinuationSettings, ContinuationState, Observer, StepError, StepFailure,
-    follow,
+    Accepted, Body, ContinuationSettings, ContinuationState, Observed, Observer, StepError,
+    StepFailure, follow,
 };
 use igimp_text::short;
 
@@ -268,10 +268,12 @@ impl Search<'_> {
             &mut continuation,
             &mut state.body,
             &method,
-            &load_path,
             &settings,
             &mut workspace,
-            &mut watch,
+            &mut Observed {
+                load_path: &load_path,
+                observer: &mut watch,
+            },
         );
         let Watch {
             before,
