@@ -88,6 +88,8 @@ pub enum DomainUpdate {
     RootJ,
     /// `l_d² = Σ_j (F_dj l_j0)²`: the second moments of the deformed domain along the axes.
     Moments,
+    /// Those half-lengths, all of them times the factor that gives the box the volume of the deformed domain.
+    ScaledMoments,
 }
 
 /// Treatment of nodes that a body only touches at a corner (theory, "small cuts").

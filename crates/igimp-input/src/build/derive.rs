@@ -212,7 +212,7 @@ fn label((dimensions, is_whole): (usize, bool), axis: &Node) -> Option<String> {
     Some(label)
 }
 
-/// Lines and small cuts of a grid that rigid bodies cut, and of others.
+/// Lines, domains and small cuts of a grid that rigid bodies cut, and of others.
 fn derive_grid(tree: &mut Node, dimensions: usize) {
     let has_bodies = !tree.items_at("rigid").is_empty();
     let (below, remedy) = if has_bodies {
@@ -227,6 +227,14 @@ fn derive_grid(tree: &mut Node, dimensions: usize) {
         let is_fitted = has_bodies && dimensions == 2;
         let fit = if is_fitted { "bodies" } else { "none" };
         grid.add_derived("fit", Value::Text(fit.to_owned()));
+    }
+    if grid.get("domain_update").is_none() {
+        let update = if has_bodies {
+            "scaled-moments"
+        } else {
+            "stretch"
+        };
+        grid.add_derived("domain_update", Value::Text(update.to_owned()));
     }
     let Some(cuts) = grid.get_mut("small_cuts") else {
         return;

@@ -418,12 +418,13 @@ pub(super) fn method(table: &keys::Method) -> Option<Method> {
             keys::Kinematics::Small => Kinematics::SmallStrain,
             keys::Kinematics::Finite => Kinematics::FiniteStrain,
         },
-        domain_update: match *table.domain_update {
+        domain_update: match **table.domain_update.as_ref()? {
             keys::DomainUpdate::Fixed => DomainUpdate::Fixed,
             keys::DomainUpdate::DiagonalF => DomainUpdate::DiagonalF,
             keys::DomainUpdate::Stretch => DomainUpdate::DiagonalU,
             keys::DomainUpdate::RootJ => DomainUpdate::RootJ,
             keys::DomainUpdate::Moments => DomainUpdate::Moments,
+            keys::DomainUpdate::ScaledMoments => DomainUpdate::ScaledMoments,
         },
         small_cuts: SmallCuts {
             below: **cuts.below.as_ref()?,

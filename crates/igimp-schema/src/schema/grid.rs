@@ -37,7 +37,8 @@ table! {
     basis: choice(Basis), default "\"gimp\"", "how a particle sees the grid";
     locking: choice(Locking), default "\"shared-strain\"", "what is done against locking";
     kinematics: choice(Kinematics), default "\"finite\"", "measure of strain";
-    domain_update: choice(DomainUpdate), default "\"stretch\"", "how particle domains follow the deformation";
+    domain_update: choice(DomainUpdate), derived "\"stretch\", and \"scaled-moments\" with rigid bodies",
+        "how particle domains follow the deformation";
     small_cuts: table(SMALL_CUTS: SmallCuts), default "{}", "nodes that a body only touches at a corner";
 }
 
@@ -127,6 +128,7 @@ choices! {
     Stretch "stretch", "diagonal of the stretch U, free of rotation";
     RootJ "root-j", "square root of det F";
     Moments "moments", "second moments of the deformed domain, as in run-outs and in motion";
+    ScaledMoments "scaled-moments", "the same, scaled to the volume of the domain";
 }
 
 table! {

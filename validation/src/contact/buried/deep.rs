@@ -1,4 +1,4 @@
-//! Pipes that are pushed deep into soil from its surface, on a geometry that moves, with domains that keep their shape.
+//! Pipes that are pushed deep into soil from its surface, on a geometry that moves.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::Computed;
 
 /// The book's description of the study.
-const ABOUT: &str = "Pipes on Tresca soil with E/s_u = 500 and γD/s_u = 0.1 are pushed three quarters of a diameter in and pulled out again, on ten cells and a geometry that moves, with domain_update = root-j. Their middles stand at two places of the grid within a cell. Every march has to reach both ends. Loads are means over 0.025 D; those of smooth pipes are claimed, all are told. Below the full level there is one smooth pipe.";
+const ABOUT: &str = "Pipes on Tresca soil with E/s_u = 500 and γD/s_u = 0.1 are pushed three quarters of a diameter in and pulled out again, on ten cells and a geometry that moves. Their middles stand at two places of the grid within a cell. Every march has to reach both ends. Loads are means over 0.025 D; those of smooth pipes are claimed, all are told. Below the full level there is one smooth pipe.";
 const MERIFIELD: Oracle = Oracle {
     kind: OracleKind::Published,
     source: "Merifield, White and Randolph 2009",
@@ -61,7 +61,6 @@ title = \"a pipe that is pushed deep\"
 [grid]
 cell = \"0.1 m\"
 domain = {{ x = [\"-4 m\", \"4 m\"], y = [\"0 m\", \"5 m\"] }}
-domain_update = \"root-j\"
 [materials.clay]
 model = \"tresca\"
 unit_weight = \"1 kN/m3\"

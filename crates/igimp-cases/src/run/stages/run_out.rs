@@ -301,7 +301,7 @@ pub(crate) fn flowing<const D: usize>(model: &Model<'_, D>) -> Method {
     if method.locking == Locking::SharedStrain {
         method.locking = Locking::BBar;
     }
-    if method.domain_update == DomainUpdate::DiagonalU {
+    if let DomainUpdate::DiagonalU | DomainUpdate::ScaledMoments = method.domain_update {
         method.domain_update = DomainUpdate::Moments;
     }
     method
