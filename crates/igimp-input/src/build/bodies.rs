@@ -23,7 +23,7 @@ use igimp_schema::tree::read::{At, Either};
 use igimp_schema::tree::{Node, Wrong};
 
 use super::AllNames;
-use super::grid::{MOST, cell_place};
+use super::grid::{Frame, MOST, cell_place};
 use crate::build::Thing;
 use igimp_geometry::outline::edge_distance;
 use igimp_geometry::outline::{distinct, near_edge, overlap, self_crossing};
@@ -36,18 +36,47 @@ const MOST_CORNERS: usize = 5000;
 
 /// Analyses, by the regions of their bodies.
 pub(super) trait Fill<const D: usize> {
+    /// The parts of their boundaries that bodies may share.
+    const SHARED: &'static str;
+
     /// The region of a body.
     fn region(body: &At<Body>, problems: &mut Problems) -> Option<Arc<dyn Region<D>>>;
+
+    /// Where the shape of a body stands.
+    fn place(body: &At<Body>) -> Place;
+
+    /// A place where two regions overlap, and by how much in words where it is known.
+    fn overlap(a: &dyn Region<D>, b: &dyn Region<D>, round_off: f64) -> Option<([f64; D], String)>;
 }
 
 /// Plane strain: bodies are polygons.
 pub(super) struct Plane;
 
 impl Fill<2> for Plane {
+    const SHARED: &'static str = "edges";
+
     fn region(body: &At<Body>, problems: &mut Problems) -> Option<Arc<dyn Region<2>>> {
         let corners = stated(&body.polygon)?;
         let polygon = corners_at(corners, polygon_place(body), &body.name, problems)?;
         Some(Arc::new(polygon))
+    }
+
+    fn place(body: &At<Body>) -> Place {
+        polygon_place(body)
+    }
+
+    fn overlap(a: &dyn Region<2>, b: &dyn Region<2>, round_off: f64) -> Option<([f64; 2], String)> {
+        let at = overlap(a.polygon(), b.polygon(), round_off)?;
+        let by: f64 = [a, b]
+            .map(|region| edge_distance(region.polygon(), at))
+            .iter()
+            .sum();
+        let size = if by > round_off {
+            format!(", by some {} m", short(by))
+        } else {
+            String::new()
+        };
+        Some((at, size))
     }
 }
 
@@ -55,9 +84,19 @@ impl Fill<2> for Plane {
 pub(super) struct Space;
 
 impl Fill<3> for Space {
+    const SHARED: &'static str = "faces";
+
     fn region(body: &At<Body>, problems: &mut Problems) -> Option<Arc<dyn Region<3>>> {
         let solid = solids::solid(body, problems)?;
         Some(Arc::new(solid))
+    }
+
+    fn place(body: &At<Body>) -> Place {
+        body.place
+    }
+
+    fn overlap(a: &dyn Region<3>, b: &dyn Region<3>, _: f64) -> Option<([f64; 3], String)> {
+        Some((solids::overlap(a, b)?, String::new()))
     }
 }
 
@@ -172,53 +211,37 @@ fn corners_at(
     Some(corners)
 }
 
-/// Checks the bodies against the domain and each other.
-pub(super) fn check(
+/// Refuses bodies that reach out of the grid, that overlap, and that would have too many particles together.
+pub(super) fn check<A: Fill<D>, const D: usize>(
     (tree, tables): (&Node, &[Thing<Body>]),
     names: &AllNames,
-    (bodies, sequence): (&[Option<BodyPart<2>>], &Sequence),
-    site: &Site,
+    (bodies, sequence): (&[Option<BodyPart<D>>], &Sequence),
+    (frame, round_off): (Option<&Frame<D>>, f64),
     problems: &mut Problems,
 ) {
-    let place = |index: usize| tables[index].as_ref().map(polygon_place);
-    if let Some(frame) = &site.frame {
+    let place = |index: usize| tables[index].as_ref().map(A::place);
+    if let Some(frame) = frame {
+        let lower = frame.lower.map(|x| x - round_off);
+        let upper = frame.upper.map(|x| x + round_off);
         let mut particles = 0.0;
         for (index, body) in bodies.iter().enumerate() {
             let Some(body) = body else { continue };
-            let outside = body.polygon().iter().find(|corner| {
-                (0..2).any(|axis| {
-                    corner[axis] < frame.lower[axis] - site.round_off
-                        || corner[axis] > frame.upper[axis] + site.round_off
-                })
-            });
-            if let Some(&corner) = outside {
+            if let Some(at) = body.region.beyond(lower, upper) {
+                let name = names.bodies.name(index);
+                let message = format!(
+                    "body `{name}` reaches {}, outside the grid domain",
+                    point(at)
+                );
                 problems
-                    .error(
-                        place(index),
-                        format!(
-                            "body `{}` reaches {}, outside the grid domain",
-                            body.name,
-                            point(corner)
-                        ),
-                    )
+                    .error(place(index), message)
                     .help("extend [grid] domain");
                 continue;
             }
-            let (lower, upper) = bounding_box(body.polygon());
-            // Cells of the box around the body, times its share of the box.
-            let cells = area_and_centroid(body.polygon()).0.abs()
-                * (0..2)
-                    .map(|axis| {
-                        let [from, to] = [lower, upper].map(|x| frame.axes[axis].place(x[axis]));
-                        (to - from) / (upper[axis] - lower[axis])
-                    })
-                    .product::<f64>();
-            let points = (body.per_direction * body.per_direction) as f64;
-            particles += cells * points;
+            particles += cells_of(&*body.region, frame) * body.per_direction.pow(D as u32) as f64;
         }
-        let cells = (0..2)
+        let cells: f64 = (0..D)
             .map(|axis| frame.axes[axis].place(frame.upper[axis]))
-            .product::<f64>();
+            .product();
         // Too many cells are reported as such.
         if particles > MOST && cells <= MOST {
             let message = format!("the bodies would have {} particles", count(particles));
@@ -234,28 +257,31 @@ pub(super) fn check(
             if !sequence.are_together(first, second) {
                 continue;
             }
-            if let Some(at) = overlap(a.polygon(), b.polygon(), site.round_off) {
-                let [by, too] = [a, b].map(|body| edge_distance(body.polygon(), at));
-                let by = by + too;
-                let size = if by > site.round_off {
-                    format!(", by some {} m", short(by))
-                } else {
-                    String::new()
-                };
-                problems
-                    .error(
-                        place(second),
-                        format!(
-                            "body `{}` overlaps body `{}` near {}{size}",
-                            names.bodies.name(second),
-                            names.bodies.name(first),
-                            point(at)
-                        ),
-                    )
-                    .help("bodies may share edges only");
-            }
+            let Some((at, size)) = A::overlap(&*a.region, &*b.region, round_off) else {
+                continue;
+            };
+            let [first, second_name] = [first, second].map(|index| names.bodies.name(index));
+            let message = format!(
+                "body `{second_name}` overlaps body `{first}` near {}{size}",
+                point(at)
+            );
+            problems
+                .error(place(second), message)
+                .help(format!("bodies may share {} only", A::SHARED));
         }
     }
+}
+
+/// Cells that the soil of a region fills: those of the box around it, times its share of the box.
+fn cells_of<const D: usize>(region: &dyn Region<D>, frame: &Frame<D>) -> f64 {
+    let (from, to) = region.bounds();
+    let by_volume: f64 = (0..D)
+        .map(|axis| {
+            let [first, last] = [from, to].map(|x| frame.axes[axis].place(x[axis]));
+            (last - first) / (to[axis] - from[axis])
+        })
+        .product();
+    region.volume() * by_volume
 }
 
 /// Warns of bodies that neither boundaries nor rigid bodies hold from below.

@@ -140,7 +140,9 @@ fn in_plane(
         ..
     } = &basics;
     let site = Site::new(basics.frame.clone(), bodies, sequence);
-    bodies::check((tree, &tables), names, (bodies, sequence), &site, problems);
+    let domain = (site.frame.as_ref(), site.round_off);
+    let ground = (&bodies[..], sequence);
+    bodies::check::<bodies::Plane, _>((tree, &tables), names, ground, domain, problems);
     let boundaries = Root::boundaries(tree).ok();
     let boundaries =
         boundaries.and_then(|table| boundaries::boundaries(&table, site.frame.as_ref(), problems));

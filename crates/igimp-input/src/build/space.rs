@@ -6,28 +6,22 @@ use igimp_geometry::region::Region;
 use igimp_model::{BodyPart, Case, Ground, LoadKind, Material};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
-use igimp_schema::schema::bodies::Body;
 use igimp_schema::schema::grid::Fit;
 use igimp_schema::schema::loads::LoadForm;
 use igimp_schema::schema::stages::{Stage, StageForm};
-use igimp_schema::text::{clip, count, number, point};
+use igimp_schema::text::number;
 use igimp_schema::tree::Node;
 
 use super::assemble::{self, GridAndBodies, Surroundings};
 use super::bodies;
-use super::bodies::sequence::Sequence;
 use super::bodies::sides::{self, Holds};
 use super::bodies::site::Soil;
-use super::bodies::solids;
-use super::grid::{Frame, boundaries, cell_place};
+use super::grid::boundaries;
 use super::ground::gaps::check_in_space;
 use super::{AllNames, loads, reinforcement, rigid, stages_on, things, water};
 use crate::build::Thing;
 use crate::build::bodies::site::Solids;
 use crate::build::context::Context;
-
-/// Most particles.
-const MOST: f64 = 5e7;
 
 impl Soil<3> for Solids {
     fn is_known(&self) -> bool {
@@ -110,14 +104,15 @@ pub(super) fn build(
     } = &basics;
     let frame = frame.as_ref();
     let soil = Solids::new(bodies, frame);
-    check_bodies((tree, &tables), frame, (bodies, sequence), &soil, problems);
+    let domain = (frame, soil.round_off);
+    let ground = (&bodies[..], sequence);
+    bodies::check::<bodies::Space, _>((tree, &tables), names, ground, domain, problems);
     let boundaries = Root::boundaries(tree).ok();
     let boundaries = boundaries.and_then(|table| boundaries::boundaries(&table, frame, problems));
     let loads = loads::loads(tree, &soil, (&stages, sequence), problems);
     let rigid = rigid::rigid(tree, &rigid::space::Around(frame), materials, problems);
     rigid::apart::check((tree, frame), &rigid, (&stages, sequence), problems);
     let holds = Holds::new(boundaries.as_ref(), &rigid, (&loads, materials));
-    let ground = (&bodies[..], sequence);
     sides::check((tree, frame), &stages, ground, &holds, problems);
     check_in_space(&tables, (bodies, sequence), &soil, problems);
     rigid::stage::check_use(&things(Root::<3>::rigid(tree)), &stages, names, problems);
@@ -177,73 +172,6 @@ fn refuse_plane_only(tree: &Node, problems: &mut Problems) {
         problems
             .error(fit.place, "lines are fitted to bodies in the plane only")
             .help("write lines = { z = [...] }");
-    }
-}
-
-/// Checks the bodies against the domain and each other.
-fn check_bodies(
-    (tree, tables): (&Node, &[Thing<Body>]),
-    frame: Option<&Frame<3>>,
-    (bodies, sequence): (&[Option<BodyPart<3>>], &Sequence),
-    soil: &Solids,
-    problems: &mut Problems,
-) {
-    let place = |index: usize| tables[index].as_ref().map(|body| body.place);
-    let Some(frame) = frame else { return };
-    let slack = soil.round_off;
-    let (lower, upper) = (
-        frame.lower.map(|x| x - slack),
-        frame.upper.map(|x| x + slack),
-    );
-    let mut particles = 0.0;
-    for (index, body) in bodies.iter().enumerate() {
-        let Some(body) = body else { continue };
-        if let Some(at) = body.region.beyond(lower, upper) {
-            let name = clip(&body.name, 40);
-            let message = format!(
-                "body `{name}` reaches {}, outside the grid domain",
-                point(at)
-            );
-            problems
-                .error(place(index), message)
-                .help("extend [grid] domain");
-            continue;
-        }
-        let (from, to) = body.region.bounds();
-        let cells: f64 = (0..3)
-            .map(|axis| frame.axes[axis].place(to[axis]) - frame.axes[axis].place(from[axis]))
-            .product();
-        let around: f64 = (0..3).map(|axis| to[axis] - from[axis]).product();
-        let share = body.region.volume() / around;
-        particles += cells * share * (body.per_direction as f64).powi(3);
-    }
-    if particles > MOST {
-        let message = format!("the bodies would have {} particles", count(particles));
-        problems.error(cell_place(tree), message).help(format!(
-            "at most {} are possible: use larger cells or fewer points_per_cell",
-            count(MOST)
-        ));
-    }
-    for (second, b) in bodies.iter().enumerate() {
-        for (first, a) in bodies[..second].iter().enumerate() {
-            let (Some(a), Some(b)) = (a, b) else { continue };
-            if !sequence.are_together(first, second) {
-                continue;
-            }
-            if let Some(at) = solids::overlap(&*a.region, &*b.region) {
-                problems
-                    .error(
-                        place(second),
-                        format!(
-                            "body `{}` overlaps body `{}` near {}",
-                            clip(&b.name, 40),
-                            clip(&a.name, 40),
-                            point(at)
-                        ),
-                    )
-                    .help("bodies may share faces only");
-            }
-        }
     }
 }
 
