@@ -1,5 +1,6 @@
 //! Rigid bodies in case files and runs: refusals with reasons, and that bodies do what stages say.
 
+use igimp_assembly::DomainUpdate;
 use igimp_cases::run::{Run, in_memory};
 use igimp_input::CaseFile;
 use igimp_model::{RigidDrive, RigidShape, StageKind};
@@ -18,6 +19,31 @@ fn parsed(edits: Edits<'_>) -> CaseFile {
 
 fn messages(edits: Edits<'_>) -> String {
     messages_of_each(("two_bodies.toml", TEXT), edits)
+}
+
+/// GOAL: domains have scaled moments where all rigid bodies are circles that soil may part from, follow the stretch elsewhere, and are
+/// those that a file states.
+#[test]
+fn domains_go_by_the_shape_of_rigid_bodies() {
+    let update = |edits: Edits<'_>| parsed(edits).into_case().method.domain_update;
+    let rectangle =
+        "type = \"rectangle\"\nfrom = [\"0.9 m\", \"2 m\"]\nto = [\"2.1 m\", \"2.6 m\"]";
+    let circle = "type = \"circle\"\ncentre = [\"1.5 m\", \"2.4 m\"]\nradius = \"0.4 m\"";
+    let bonded = format!("{circle}\ntension = \"bonded\"");
+    let stated = |update: &str| format!("[grid]\ndomain_update = \"{update}\"");
+    let (stretch, scaled) = (stated("stretch"), stated("scaled-moments"));
+    for (edits, expected) in [
+        (&[][..], DomainUpdate::DiagonalU),
+        (&[(rectangle, circle)], DomainUpdate::ScaledMoments),
+        (&[(rectangle, &bonded)], DomainUpdate::DiagonalU),
+        (
+            &[(rectangle, circle), ("[grid]", &stretch)],
+            DomainUpdate::DiagonalU,
+        ),
+        (&[("[grid]", &scaled)], DomainUpdate::ScaledMoments),
+    ] {
+        assert_eq!(update(edits), expected, "{edits:?}");
+    }
 }
 
 #[test]

@@ -214,7 +214,11 @@ fn label((dimensions, is_whole): (usize, bool), axis: &Node) -> Option<String> {
 
 /// Lines, domains and small cuts of a grid that rigid bodies cut, and of others.
 fn derive_grid(tree: &mut Node, dimensions: usize) {
-    let has_bodies = !tree.items_at("rigid").is_empty();
+    let bodies = tree.items_at("rigid");
+    let has_bodies = !bodies.is_empty();
+    let are_round = bodies.iter().all(|body| {
+        body.text_at("type") == Some("circle") && body.text_at("tension") != Some("bonded")
+    });
     let (below, remedy) = if has_bodies {
         (BELOW_AT_BODIES, "extrapolate")
     } else {
@@ -229,7 +233,7 @@ fn derive_grid(tree: &mut Node, dimensions: usize) {
         grid.add_derived("fit", Value::Text(fit.to_owned()));
     }
     if grid.get("domain_update").is_none() {
-        let update = if has_bodies {
+        let update = if has_bodies && are_round {
             "scaled-moments"
         } else {
             "stretch"

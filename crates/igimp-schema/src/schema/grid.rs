@@ -37,7 +37,7 @@ table! {
     basis: choice(Basis), default "\"gimp\"", "how a particle sees the grid";
     locking: choice(Locking), default "\"shared-strain\"", "what is done against locking";
     kinematics: choice(Kinematics), default "\"finite\"", "measure of strain";
-    domain_update: choice(DomainUpdate), derived "\"stretch\", and \"scaled-moments\" with rigid bodies",
+    domain_update: choice(DomainUpdate), derived "\"stretch\", and \"scaled-moments\" where all rigid bodies are circles that soil may part from",
         "how particle domains follow the deformation";
     small_cuts: table(SMALL_CUTS: SmallCuts), default "{}", "nodes that a body only touches at a corner";
 }
