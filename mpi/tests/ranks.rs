@@ -51,7 +51,7 @@ fn on_ranks(ranks: usize, words: &[OsString]) -> Command {
     command
 }
 
-fn said(output: &Output) -> String {
+fn printed(output: &Output) -> String {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     text(&output.stdout) + &text(&output.stderr)
 }
@@ -214,7 +214,7 @@ fn ranks_give_the_answer_of_the_serial_program() {
                 .unwrap();
             // With 1 it missed a reference of the case, which fewer steps do.
             let ended = matches!(run.status.code(), Some(0 | 1));
-            assert!(ended, "{name}, {ranks}: {}", said(&run));
+            assert!(ended, "{name}, {ranks}: {}", printed(&run));
             let [moved, loads] = differences(&serial, &out);
             println!("{name}, {ranks} ranks: displacement {moved:.1e}, load {loads:.1e}");
             assert!(
@@ -269,9 +269,9 @@ fn a_killed_rank_costs_what_came_after_the_checkpoint() {
     assert!(killed.success());
     let run = run.wait_with_output().unwrap();
     assert!(
-        !run.status.success() && said(&run).contains("signal 9"),
+        !run.status.success() && printed(&run).contains("signal 9"),
         "{}",
-        said(&run)
+        printed(&run)
     );
     // `mpirun` may end before the ranks that it stops, and one of them holds the folder.
     while process_of_rank(0, &out).is_some() {
@@ -287,7 +287,7 @@ fn a_killed_rank_costs_what_came_after_the_checkpoint() {
     let mut again = words(&case, &out, &settings);
     again.push("--resume".into());
     let run = on_ranks(2, &again).output().unwrap();
-    assert!(run.status.success(), "{}", said(&run));
+    assert!(run.status.success(), "{}", printed(&run));
 }
 
 /// The process of a rank of a run into a folder, while there is one.
@@ -316,7 +316,7 @@ fn all_ranks_end_after_bad_input() {
     ] {
         let given = given.map(OsString::from);
         let run = on_ranks(3, &given).output().unwrap();
-        assert!(said(&run).contains(text), "{}", said(&run));
+        assert!(printed(&run).contains(text), "{}", printed(&run));
         assert_eq!(run.status.code(), Some(code));
     }
 }
@@ -350,7 +350,7 @@ fn iterations_come_to_the_same_answer() {
             .env("PETSC_OPTIONS", options)
             .output()
             .unwrap();
-        assert!(run.status.success(), "{}", said(&run));
+        assert!(run.status.success(), "{}", printed(&run));
         let summary = fs::read_to_string(out.join("summary.json")).unwrap();
         assert!(summary.contains(method), "{summary}");
         let [moved, _] = differences(&direct, &out);

@@ -142,11 +142,11 @@ impl Walk {
 
     /// The last run was clean: nothing printed, nothing left, no picture.
     fn is_clean(&self, run: &Output) {
-        assert_eq!(run.status.code(), Some(0), "{}", said(run));
+        assert_eq!(run.status.code(), Some(0), "{}", printed(run));
         assert!(
-            said(run).contains("snapshots and matrix: 0 differ"),
+            printed(run).contains("snapshots and matrix: 0 differ"),
             "{}",
-            said(run)
+            printed(run)
         );
         assert_eq!(differences(run), Vec::<String>::new());
         assert!(self.left().is_empty() && !self.pictures().exists());
@@ -174,7 +174,7 @@ fn with_last_word(text: &str, word: &str) -> String {
     format!("{} {word}", &text[..place])
 }
 
-fn said(output: &Output) -> String {
+fn printed(output: &Output) -> String {
     [&output.stdout, &output.stderr]
         .map(|text| String::from_utf8_lossy(text))
         .concat()
@@ -193,10 +193,10 @@ fn differences(output: &Output) -> Vec<String> {
 fn reported_and_drawn(walk: &Walk) {
     assert!(!walk.folder.join("results").exists());
     let run = walk.run(&[]);
-    assert_eq!(run.status.code(), Some(1), "{}", said(&run));
+    assert_eq!(run.status.code(), Some(1), "{}", printed(&run));
     let mut lines = differences(&run);
     lines.sort();
-    assert_eq!(lines.len(), 4, "{}", said(&run));
+    assert_eq!(lines.len(), 4, "{}", printed(&run));
     for (line, name) in lines.iter().zip(ALL) {
         assert!(line.starts_with(&format!("{name}: ")), "{line}");
     }
@@ -216,7 +216,7 @@ fn reported_and_drawn(walk: &Walk) {
         "{}",
         lines[3]
     );
-    assert!(said(&run).contains(&format!("old against new: {}", walk.pictures().display())));
+    assert!(printed(&run).contains(&format!("old against new: {}", walk.pictures().display())));
     for name in [CURVE, RESIDUALS] {
         let svg = fs::read_to_string(walk.pictures().join(format!("{name}.svg"))).unwrap();
         for part in [">now<", ">accepted<", "stroke-dasharray"] {
@@ -240,9 +240,9 @@ fn a_changed_number_is_reported_drawn_and_accepted() {
     assert_eq!(accepting.status.code(), Some(0));
     for name in ALL {
         assert!(
-            said(&accepting).contains(&format!("accepted: {name}\n")),
+            printed(&accepting).contains(&format!("accepted: {name}\n")),
             "{}",
-            said(&accepting)
+            printed(&accepting)
         );
     }
     walk.is_clean(&walk.run(&[]));
@@ -284,7 +284,7 @@ fn cargo_insta_takes_pending_snapshots_in_a_clone() {
     let insta = |command: &str| Insta::new(&programs, &walk, command);
     walk.change();
     reported_and_drawn(&walk);
-    let pending = said(&insta("pending-snapshots").output());
+    let pending = printed(&insta("pending-snapshots").output());
     for name in ALL {
         assert!(
             pending.contains(&format!("validation/snapshots/{name}.snap\n")),
@@ -292,7 +292,7 @@ fn cargo_insta_takes_pending_snapshots_in_a_clone() {
         );
     }
     let accepting = insta("accept").output();
-    assert!(accepting.status.success(), "{}", said(&accepting));
+    assert!(accepting.status.success(), "{}", printed(&accepting));
     walk.is_clean(&walk.run(&[]));
     agree(&walk.accepted(), &before);
 

@@ -20,7 +20,7 @@ pub(crate) fn find_or_install(target: &Path) -> Result<PathBuf, Failure> {
         .join(format!("mdbook{}", std::env::consts::EXE_SUFFIX));
     for candidate in [PathBuf::from("mdbook"), installed.clone()] {
         let version = output(program(&candidate).arg("--version"));
-        if version.is_ok_and(|said| serves(&said)) {
+        if version.is_ok_and(|printed| serves(&printed)) {
             return Ok(candidate);
         }
     }
@@ -51,14 +51,15 @@ pub(crate) fn find_or_install(target: &Path) -> Result<PathBuf, Failure> {
 }
 
 /// Whether a program that says this of its version serves.
-fn serves(said: &str) -> bool {
+fn serves(printed: &str) -> bool {
     let minor = VERSION.rsplit_once('.').map_or(VERSION, |(minor, _)| minor);
-    let said = said
+    let printed = printed
         .trim()
         .trim_start_matches("mdbook")
         .trim()
         .trim_start_matches('v');
-    said.strip_prefix(minor)
+    printed
+        .strip_prefix(minor)
         .is_some_and(|rest| rest.starts_with('.'))
 }
 

@@ -52,8 +52,8 @@ pub(crate) fn output(command: &mut Command) -> Result<String, Failure> {
         .output()
         .map_err(|error| Failure::input_output(format!("cannot run {}", name(command)), error))?;
     if !output.status.success() {
-        let said = String::from_utf8_lossy(&output.stderr);
-        return Err(Failure::input_output(name(command), said.trim()));
+        let printed = String::from_utf8_lossy(&output.stderr);
+        return Err(Failure::input_output(name(command), printed.trim()));
     }
     String::from_utf8(output.stdout).map_err(|error| Failure::input_output(name(command), error))
 }

@@ -120,15 +120,15 @@ fn clippy() -> Vec<&'static str> {
 
 /// The programs of a virtual environment with all tools; why there is none.
 fn environment(venv: &Path, fresh: bool) -> Result<PathBuf, String> {
-    let said = output(program("python3").args([
+    let printed = output(program("python3").args([
         "-c",
         "import sys; print(sys.version_info[0], sys.version_info[1])",
     ]))
     .map_err(|_| "there is no python3".to_owned())?;
-    if !serves(&said) {
+    if !serves(&printed) {
         return Err(format!(
             "python3 is {}, and {}.{} is needed",
-            said.trim().replace(' ', "."),
+            printed.trim().replace(' ', "."),
             OLDEST.0,
             OLDEST.1
         ));
@@ -155,8 +155,8 @@ fn environment(venv: &Path, fresh: bool) -> Result<PathBuf, String> {
 }
 
 /// Whether a Python of this version serves.
-fn serves(said: &str) -> bool {
-    let mut numbers = said.split_whitespace().map(|word| word.parse().ok());
+fn serves(printed: &str) -> bool {
+    let mut numbers = printed.split_whitespace().map(|word| word.parse().ok());
     matches!((numbers.next(), numbers.next()), (Some(Some(major)), Some(Some(minor))) if (major, minor) >= OLDEST)
 }
 

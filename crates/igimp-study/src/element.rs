@@ -8,9 +8,9 @@ mod page;
 mod path_file;
 mod path_words;
 mod pictures;
-mod said;
 mod stations;
 mod table;
+mod text;
 mod values;
 
 use std::path::Path;
@@ -180,7 +180,7 @@ pub fn test(material: &Material, request: &Request) -> Result<Tested, TestError>
         material: material.clone(),
         is_by_stress,
     };
-    tested.text = said::said(&tested);
+    tested.text = text::of(&tested);
     Ok(tested)
 }
 
@@ -332,16 +332,16 @@ impl Tested {
     /// Notes on the material that hold in its case and not in the test.
     fn notes(&self) -> Vec<String> {
         let cu = short(self.material.cohesive() / 1e3);
-        let by_stress = format!("{} {cu} kPa", said::BY_STRESS);
+        let by_stress = format!("{} {cu} kPa", text::BY_STRESS);
         let by_stress = self.is_by_stress.then_some(by_stress);
-        let varies = (self.material.varies()).then(|| said::VARIES.to_owned());
+        let varies = (self.material.varies()).then(|| text::VARIES.to_owned());
         let is_undrained = matches!(self.material.drainage, Drainage::Undrained { .. });
-        let undrained = is_undrained.then(|| said::UNDRAINED.to_owned());
+        let undrained = is_undrained.then(|| text::UNDRAINED.to_owned());
         let given = given_in_words(&self.material);
-        let given = given.map(|words| format!("{} {words}", said::GIVEN));
+        let given = given.map(|words| format!("{} {words}", text::GIVEN));
         let is_timed = self.request.duration > 0.0 && self.material.given.is_none();
         let is_timeless = is_timed && !self.material.goes_with_rate();
-        let timeless = is_timeless.then(|| said::TIMELESS.to_owned());
+        let timeless = is_timeless.then(|| text::TIMELESS.to_owned());
         let notes = given.into_iter().chain(by_stress).chain(varies);
         notes.chain(undrained).chain(timeless).collect()
     }
@@ -541,7 +541,7 @@ mod tests {
         let text = &tested.text;
         let title = format!("sand: {}, triaxial drained\n", law.name());
         assert!(text.starts_with(&title), "{text}");
-        assert!(text.contains(said::GIVEN), "{text}");
+        assert!(text.contains(text::GIVEN), "{text}");
         assert!(!text.contains("closed form"), "{text}");
         assert!(
             test(&all[1], &sheared(0.1))

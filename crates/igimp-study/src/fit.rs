@@ -5,10 +5,10 @@ mod page;
 mod page_tests;
 mod parameter;
 mod problem;
-mod said;
 mod statistics;
 #[cfg(test)]
 mod tests;
+mod text;
 #[cfg(test)]
 mod wall_tests;
 mod walls;
@@ -55,7 +55,7 @@ pub struct FileSource {
 
 impl Source for FileSource {
     fn material(&self, values: &[(String, String)]) -> Result<Material, InputError> {
-        let name = said::quoted(&self.material);
+        let name = text::quoted(&self.material);
         let set = (values.iter())
             .map(|(key, value)| format!("materials.{name}.{key}={value}"))
             .collect();
@@ -236,7 +236,7 @@ pub fn fit(source: &dyn Source, request: &FitRequest) -> Result<Fitted, FitError
         .collect::<Result<Vec<_>, _>>()?;
     let mut fitted = Fitted {
         title: format!("{}: {}", material.name, material.strength.name()),
-        block: said::block(&material.name, &found),
+        block: text::block(&material.name, &found),
         parameters: found,
         correlation,
         deviation,
@@ -247,7 +247,7 @@ pub fn fit(source: &dyn Source, request: &FitRequest) -> Result<Fitted, FitError
         tests,
         text: String::new(),
     };
-    fitted.text = said::said(&fitted);
+    fitted.text = text::of(&fitted);
     Ok(fitted)
 }
 
@@ -307,13 +307,13 @@ impl Fitted {
         .map(str::to_owned);
         let mut rows = RowWriter::create(&folder.join("fit.csv"), &header)?;
         for found in &self.parameters {
-            rows.push_text(&said::row(found))?;
+            rows.push_text(&text::row(found))?;
         }
         let keys = self.parameters.iter().map(|found| found.key.clone());
         let header: Vec<String> = ["parameter".to_owned()].into_iter().chain(keys).collect();
         let mut rows = RowWriter::create(&folder.join("correlation.csv"), &header)?;
         for (found, correlations) in self.parameters.iter().zip(&self.correlation) {
-            let cells = correlations.iter().map(|r| said::correlation(*r, 9));
+            let cells = correlations.iter().map(|r| text::correlation(*r, 9));
             rows.push_text(
                 &[found.key.clone()]
                     .into_iter()

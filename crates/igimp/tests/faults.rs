@@ -94,9 +94,9 @@ fn interrupt(
 fn interrupted_runs_end_with_the_same_files(signal: Signal, least: usize) {
     let folder = Folder::new(&format!("interrupted-{signal:?}"));
     let clock = Instant::now();
-    let (code, said) = folder.end("whole", &[]);
+    let (code, printed) = folder.end("whole", &[]);
     let mut whole = clock.elapsed();
-    assert_eq!(code, Some(0), "{said}");
+    assert_eq!(code, Some(0), "{printed}");
     let expected = folder.everything("whole");
     assert!(folder.tables("whole").len() >= 4, "{:?}", expected.keys());
     let wanted = std::env::var("IGIMP_KILLS").map_or(least, |kills| kills.parse().unwrap());
@@ -133,8 +133,8 @@ fn interrupted_runs_end_with_the_same_files(signal: Signal, least: usize) {
         runs += 1;
         kills += hits;
         twice += usize::from(hits == 2);
-        let (code, said) = folder.end(&out, &["--resume"]);
-        assert_eq!(code, Some(0), "run {runs}: {said}");
+        let (code, printed) = folder.end(&out, &["--resume"]);
+        assert_eq!(code, Some(0), "run {runs}: {printed}");
         let found = folder.everything(&out);
         assert_eq!(
             differing(&expected, &found),
@@ -180,16 +180,16 @@ fn a_signal_that_comes_twice_at_once_does_not_keep_a_run_from_saving() {
 fn a_run_killed_after_the_step_that_ends_its_stage_does_not_take_another() {
     let folder = Folder::new("killed-at-rest");
     let every_step = ["--set", "output.checkpoint.every=1"];
-    let (code, said) = folder.end("run", &every_step);
-    assert_eq!(code, Some(0), "{said}");
+    let (code, printed) = folder.end("run", &every_step);
+    assert_eq!(code, Some(0), "{printed}");
     let expected = folder.everything("run");
     let checkpoints = folder.0.join("run/checkpoint");
     fs::remove_dir_all(checkpoints.join("stage-03-end")).unwrap();
     let left = fs::read_dir(&checkpoints).unwrap().flatten();
     let steps = left.filter(|entry| entry.file_name().to_string_lossy().starts_with("step-"));
     assert!(steps.count() > 0, "the step at which the slope rests");
-    let (code, said) = folder.end("run", &[&every_step[..], &["--resume"]].concat());
-    assert_eq!(code, Some(0), "{said}");
+    let (code, printed) = folder.end("run", &[&every_step[..], &["--resume"]].concat());
+    assert_eq!(code, Some(0), "{printed}");
     assert_eq!(
         differing(&expected, &folder.everything("run")),
         Vec::<PathBuf>::new()
@@ -201,8 +201,8 @@ fn threads_do_not_change_a_byte() {
     let folder = Folder::new("threads");
     let run = |threads: &str| {
         let out = format!("on-{threads}");
-        let (code, said) = folder.end(&out, &["--threads", threads]);
-        assert_eq!(code, Some(0), "{said}");
+        let (code, printed) = folder.end(&out, &["--threads", threads]);
+        assert_eq!(code, Some(0), "{printed}");
         folder.everything(&out)
     };
     let one = run("1");
@@ -236,8 +236,8 @@ fn set_times(path: &Path, time: SystemTime) {
 #[test]
 fn file_times_that_make_no_sense_change_nothing() {
     let folder = Folder::new("clock");
-    let (code, said) = folder.end("whole", &[]);
-    assert_eq!(code, Some(0), "{said}");
+    let (code, printed) = folder.end("whole", &[]);
+    assert_eq!(code, Some(0), "{printed}");
     let expected = folder.everything("whole");
     let saved = |out: &str| {
         let mut saved: Vec<PathBuf> = fs::read_dir(folder.0.join(out).join("checkpoint"))
@@ -270,8 +270,8 @@ fn file_times_that_make_no_sense_change_nothing() {
                 },
             );
         }
-        let (code, said) = folder.end(&out, &["--resume"]);
-        assert_eq!(code, Some(0), "{said}");
+        let (code, printed) = folder.end(&out, &["--resume"]);
+        assert_eq!(code, Some(0), "{printed}");
         let found = folder.everything(&out);
         assert_eq!(differing(&expected, &found), Vec::<PathBuf>::new());
     }
@@ -299,10 +299,10 @@ fn with_mounts(folder: &Folder, script: &str) -> Option<String> {
         return None;
     }
     let output = unshared(&["sh", "-c", script, env!("CARGO_BIN_EXE_igimp")]).unwrap();
-    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
     let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}{errors}");
-    Some(said)
+    assert!(output.status.success(), "{printed}{errors}");
+    Some(printed)
 }
 
 /// The words of a run as a shell reads them.
@@ -315,8 +315,8 @@ fn quoted(out: &str, more: &[&str]) -> String {
 #[test]
 fn a_run_on_a_full_disk_goes_on_when_there_is_room() {
     let folder = Folder::new("full-disk");
-    let (code, said) = folder.end("whole", &[]);
-    assert_eq!(code, Some(0), "{said}");
+    let (code, printed) = folder.end("whole", &[]);
+    assert_eq!(code, Some(0), "{printed}");
     let expected = folder.everything("whole");
     let (afresh, resumed) = (quoted("disk/out", &[]), quoted("disk/out", &["--resume"]));
     let mut full = 0;
@@ -328,18 +328,21 @@ fn a_run_on_a_full_disk_goes_on_when_there_is_room() {
              \"$0\"{resumed} 2>&1 || exit 8\n\
              cp -r disk/out copy-{size}/"
         );
-        let Some(said) = with_mounts(&folder, &script) else {
+        let Some(printed) = with_mounts(&folder, &script) else {
             return;
         };
-        if said.contains("code 4") {
+        if printed.contains("code 4") {
             full += 1;
             assert!(
-                said.contains("cannot ") && said.contains(" disk/out/"),
-                "{said}"
+                printed.contains("cannot ") && printed.contains(" disk/out/"),
+                "{printed}"
             );
-            assert!(said.contains("because: No space left on device"), "{said}");
+            assert!(
+                printed.contains("because: No space left on device"),
+                "{printed}"
+            );
         } else {
-            assert!(said.contains("code 0"), "{said}");
+            assert!(printed.contains("code 0"), "{printed}");
         }
         let found = folder.everything(&format!("copy-{size}/out"));
         assert_eq!(
@@ -356,16 +359,16 @@ fn a_run_on_a_full_disk_goes_on_when_there_is_room() {
 fn a_folder_that_cannot_be_written_is_named_before_anything_is_computed() {
     let folder = Folder::new("read-only");
     for out in ["/proc/results", "slope.toml/results"] {
-        let (code, said) = folder.end(out, &[]);
-        assert_eq!(code, Some(4), "{said}");
+        let (code, printed) = folder.end(out, &[]);
+        assert_eq!(code, Some(4), "{printed}");
         assert!(
-            said.starts_with(&format!("error: cannot access {out}")),
-            "{said}"
+            printed.starts_with(&format!("error: cannot access {out}")),
+            "{printed}"
         );
-        assert!(said.contains("because: "), "{said}");
+        assert!(printed.contains("because: "), "{printed}");
     }
-    let (code, said) = folder.end("kept/out", &[]);
-    assert_eq!(code, Some(0), "{said}");
+    let (code, printed) = folder.end("kept/out", &[]);
+    assert_eq!(code, Some(0), "{printed}");
     let before = folder.everything("kept/out");
     let script = format!(
         "mount --bind kept kept && mount -o remount,ro,bind kept || exit 9\n\
@@ -375,19 +378,19 @@ fn a_folder_that_cannot_be_written_is_named_before_anything_is_computed() {
         quoted("kept/out", &["--resume"]),
         quoted("kept/new", &[])
     );
-    let Some(said) = with_mounts(&folder, &script) else {
+    let Some(printed) = with_mounts(&folder, &script) else {
         return;
     };
-    assert_eq!(said.matches("code 4").count(), 3, "{said}");
+    assert_eq!(printed.matches("code 4").count(), 3, "{printed}");
     assert_eq!(
-        said.matches("error: cannot access kept/").count(),
+        printed.matches("error: cannot access kept/").count(),
         3,
-        "{said}"
+        "{printed}"
     );
     assert_eq!(
-        said.matches("because: Read-only file system").count(),
+        printed.matches("because: Read-only file system").count(),
         3,
-        "{said}"
+        "{printed}"
     );
     assert_eq!(
         differing(&before, &folder.everything("kept/out")),

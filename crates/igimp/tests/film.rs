@@ -34,15 +34,15 @@ impl Folder {
         ];
         words.extend(settings.iter().flat_map(|setting| ["--set", setting]));
         let run = self.igimp(&words);
-        let said = String::from_utf8_lossy(&run.stderr).into_owned();
-        assert!(run.status.success(), "{said}");
+        let printed = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert!(run.status.success(), "{printed}");
     }
 
     /// The exit code and the message of a film.
     fn refusal(&self, more: &[&str]) -> (Option<i32>, String) {
         let output = self.igimp(&[&["film", "results"], more].concat());
-        let said = String::from_utf8(output.stderr).unwrap();
-        (output.status.code(), said)
+        let printed = String::from_utf8(output.stderr).unwrap();
+        (output.status.code(), printed)
     }
 }
 
@@ -77,14 +77,17 @@ fn a_motion_makes_a_film() {
     // Its effort was said before.
     let settings = short.iter().flat_map(|setting| ["--set", setting]);
     let check: Vec<&str> = ["check", "case.toml"].into_iter().chain(settings).collect();
-    let said = String::from_utf8(folder.igimp(&check).stdout).unwrap();
-    assert!(said.contains("up to 7, about 5 MiB in paraview/"), "{said}");
-    let film = folder.igimp(&["film", "results", "--pace", "0.1", "--width", "320"]);
-    let said = String::from_utf8(film.stdout).unwrap();
-    assert!(film.status.success(), "{said}");
+    let printed = String::from_utf8(folder.igimp(&check).stdout).unwrap();
     assert!(
-        said.contains("film-speed.gif: 6 frames, 3 s, pace 0.1, "),
-        "{said}"
+        printed.contains("up to 7, about 5 MiB in paraview/"),
+        "{printed}"
+    );
+    let film = folder.igimp(&["film", "results", "--pace", "0.1", "--width", "320"]);
+    let printed = String::from_utf8(film.stdout).unwrap();
+    assert!(film.status.success(), "{printed}");
+    assert!(
+        printed.contains("film-speed.gif: 6 frames, 3 s, pace 0.1, "),
+        "{printed}"
     );
     let gif = std::fs::read(folder.0.join("results/figures/film-speed.gif")).unwrap();
     assert!(gif.starts_with(b"GIF89a") && gif.ends_with(&[0x3b]));
@@ -98,13 +101,13 @@ fn a_motion_makes_a_film() {
     error: the case has no stage "slide"
       help: its stages are "collapse"
     "#);
-    let (code, said) = folder.refusal(&["--field", "speeed"]);
+    let (code, printed) = folder.refusal(&["--field", "speeed"]);
     assert_eq!(code, Some(2));
     assert!(
-        said.contains("there is no field speeed") && said.contains("velocity_y"),
-        "{said}"
+        printed.contains("there is no field speeed") && printed.contains("velocity_y"),
+        "{printed}"
     );
-    assert!(!said.contains("velocity_z"), "{said}");
+    assert!(!printed.contains("velocity_z"), "{printed}");
 }
 
 /// GOAL: a run without motion has a film of its frames, with no key for it, and no speed; a key keeps the ends of stages alone.
@@ -113,14 +116,14 @@ fn a_run_at_rest_makes_a_film() {
     let folder = Folder::new("rest");
     folder.run("column", &[]);
     let film = folder.igimp(&["film", "results", "--width", "320"]);
-    let said = String::from_utf8(film.stdout).unwrap();
-    assert!(said.contains("film-displacement.gif: "), "{said}");
-    assert!(!said.contains("pace"), "{said}");
+    let printed = String::from_utf8(film.stdout).unwrap();
+    assert!(printed.contains("film-displacement.gif: "), "{printed}");
+    assert!(!printed.contains("pace"), "{printed}");
     let collection = folder.0.join("results/paraview/particles.pvd");
     let frames = std::fs::read_to_string(collection).unwrap();
     let count = frames.matches("<DataSet").count();
     assert!((10..=41).contains(&count), "{count}");
-    assert!(said.contains(&format!(" {count} frames")), "{said}");
+    assert!(printed.contains(&format!(" {count} frames")), "{printed}");
     assert!(!folder.0.join("results/paraview/stage-01.pvd").exists());
     let text = std::fs::read_to_string(folder.0.join("results/paraview/particles_0001.vtu"));
     assert!(!text.unwrap().contains("velocity"));
@@ -142,7 +145,10 @@ fn fields_of_motion_need_a_motion() {
     let words = ["check", "case.toml", "--set", "output.figures=[\"speed\"]"];
     let output = folder.igimp(&words);
     assert_eq!(output.status.code(), Some(2));
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains("nothing here has a field speed"), "{said}");
-    assert!(said.contains("a stage of type \"dynamic\""), "{said}");
+    let printed = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        printed.contains("nothing here has a field speed"),
+        "{printed}"
+    );
+    assert!(printed.contains("a stage of type \"dynamic\""), "{printed}");
 }

@@ -47,7 +47,7 @@ fn igimp(folder: &Folder, words: &[&str]) -> Output {
         .unwrap()
 }
 
-fn said(output: &Output) -> String {
+fn printed(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
@@ -61,18 +61,18 @@ fn a_second_run_into_a_folder_ends_at_once() {
         &["--overwrite"],
         &["--from-stage", "run-out"],
     ] {
-        let (code, said) = folder.end("out", more);
-        assert_eq!(code, Some(4), "{said}");
+        let (code, printed) = folder.end("out", more);
+        assert_eq!(code, Some(4), "{printed}");
         assert_eq!(
-            said,
+            printed,
             "error: another igimp writes into out; wait until it has ended, or choose another folder \
              for the results\n"
         );
     }
     killed(child);
     // Of the run that was killed nothing stands in the way.
-    let (code, said) = folder.end("out", &["--resume"]);
-    assert_eq!(code, Some(0), "{said}");
+    let (code, printed) = folder.end("out", &["--resume"]);
+    assert_eq!(code, Some(0), "{printed}");
 }
 
 #[test]
@@ -80,24 +80,24 @@ fn a_stopped_run_is_kept_until_asked_and_a_finished_one_is_run_again() {
     let folder = Folder::new("stopped");
     killed(begun(&folder, "out"));
     let before = folder.everything("out");
-    let (code, said) = folder.end("out", &[]);
-    assert_eq!(code, Some(2), "{said}");
+    let (code, printed) = folder.end("out", &[]);
+    assert_eq!(code, Some(2), "{printed}");
     assert_eq!(
-        said,
+        printed,
         "error: out holds a run that was stopped and can go on: --resume goes on with it, --overwrite \
          begins afresh, --out chooses another folder\n"
     );
     let edited = ["--set", "materials.clay.cohesion=21 kPa"];
-    let (code, said) = folder.end("out", &edited);
-    assert_eq!(code, Some(2), "{said}");
-    assert!(said.contains("with the input that it had"), "{said}");
+    let (code, printed) = folder.end("out", &edited);
+    assert_eq!(code, Some(2), "{printed}");
+    assert!(printed.contains("with the input that it had"), "{printed}");
     let after = folder.everything("out");
     assert_eq!(differing(&before, &after), Vec::<PathBuf>::new());
-    let (code, said) = folder.end("out", &["--overwrite"]);
-    assert_eq!(code, Some(0), "{said}");
+    let (code, printed) = folder.end("out", &["--overwrite"]);
+    assert_eq!(code, Some(0), "{printed}");
     for more in [&[][..], &edited] {
-        let (code, said) = folder.end("out", more);
-        assert_ne!(code, Some(2), "{said}");
+        let (code, printed) = folder.end("out", more);
+        assert_ne!(code, Some(2), "{printed}");
     }
 }
 
@@ -112,8 +112,8 @@ fn equal_names_from_different_places_do_not_collide() {
     let other = case.replace("title = \"", "title = \"Another ");
     fs::write(folder.0.join("b/slope.toml"), other).unwrap();
     let output = igimp(&folder, &["run", "b/slope.toml", "--out", "out"]);
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    let text = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{}", printed(&output));
+    let text = printed(&output);
     let start = "error: out holds results of another input, ../slope.toml (\"";
     assert!(text.starts_with(start), "{text}");
     let end = "\"): --out chooses another folder, --overwrite replaces them\n";
@@ -139,21 +139,21 @@ fn sweeps_keep_apart_and_a_stopped_task_goes_on() {
     }
     for words in [&["sweep", "a.toml"][..], &["run", "--task", "1", "a.toml"]] {
         let output = igimp(&folder, words);
-        assert_eq!(output.status.code(), Some(4), "{}", said(&output));
-        assert!(said(&output).contains("another igimp writes into out"));
+        assert_eq!(output.status.code(), Some(4), "{}", printed(&output));
+        assert!(printed(&output).contains("another igimp writes into out"));
     }
     killed(child);
     let kept = fs::metadata(&first_stage).unwrap().modified().unwrap();
     let output = igimp(&folder, &["sweep", "b.toml"]);
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    assert!(said(&output).contains("out holds results of another input, ../a.toml"));
+    assert_eq!(output.status.code(), Some(2), "{}", printed(&output));
+    assert!(printed(&output).contains("out holds results of another input, ../a.toml"));
     let advice = "`folder` in [output] of the sweep file chooses another folder";
-    assert!(said(&output).contains(advice), "{}", said(&output));
+    assert!(printed(&output).contains(advice), "{}", printed(&output));
     let output = igimp(&folder, &["sweep", "a.toml"]);
     assert!(
         matches!(output.status.code(), Some(0 | 1)),
         "{}",
-        said(&output)
+        printed(&output)
     );
     let now = fs::metadata(&first_stage).unwrap().modified().unwrap();
     assert_eq!(
@@ -172,8 +172,8 @@ fn a_sweep_is_refused_where_a_run_has_its_results() {
     fs::write(folder.0.join("a.toml"), SWEEP).unwrap();
     for more in [&[][..], &["--overwrite"]] {
         let output = igimp(&folder, &[&["sweep", "a.toml"][..], more].concat());
-        assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-        let text = said(&output);
+        assert_eq!(output.status.code(), Some(2), "{}", printed(&output));
+        let text = printed(&output);
         assert!(
             text.contains("out holds results of another input, ../slope.toml"),
             "{text}"

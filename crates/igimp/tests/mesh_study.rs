@@ -119,15 +119,15 @@ fn the_program_tells_of_all_meshes() {
         .stdout(std::process::Stdio::piped())
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&output.stdout);
-    assert_eq!(output.status.code(), Some(0), "{said}");
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{printed}");
     for line in [
         "meshes",
         "mesh error",
         "extrapolated",
         "(order 1, assumed; 0.67 to 2 allowed for)",
     ] {
-        assert!(said.contains(line), "{line}: {said}");
+        assert!(printed.contains(line), "{line}: {printed}");
     }
     let root = folder.0.join("out");
     let text = std::fs::read_to_string(root.join("summary.json")).unwrap();
@@ -151,8 +151,8 @@ fn the_program_tells_of_all_meshes() {
     let table = std::fs::read_to_string(root.join("mesh_study.csv")).unwrap();
     assert!(table.starts_with("result,value (h),value (h/2)"), "{table}");
     // A run of one mesh into the folder takes the meshes away.
-    let (code, said) = folder.end("out", &[]);
-    assert_eq!(code, Some(0), "{said}");
+    let (code, printed) = folder.end("out", &[]);
+    assert_eq!(code, Some(0), "{printed}");
     assert!(!root.join("mesh-1").exists() && !root.join("mesh_study.csv").exists());
 }
 
@@ -162,11 +162,11 @@ fn the_program_tells_of_all_meshes() {
 fn a_study_taken_up_again_ends_the_same() {
     let folder = Folder::new("meshes-again");
     let study = ["--meshes", "2"];
-    let (code, said) = folder.end("whole", &[&study[..], &["--threads", "1"]].concat());
-    assert_eq!(code, Some(0), "{said}");
+    let (code, printed) = folder.end("whole", &[&study[..], &["--threads", "1"]].concat());
+    assert_eq!(code, Some(0), "{printed}");
     let expected = folder.everything("whole");
-    let (code, said) = folder.end("out", &[&study[..], &["--threads", "2"]].concat());
-    assert_eq!(code, Some(0), "{said}");
+    let (code, printed) = folder.end("out", &[&study[..], &["--threads", "2"]].concat());
+    assert_eq!(code, Some(0), "{printed}");
     assert_eq!(
         differing(&expected, &folder.everything("out")),
         Vec::<PathBuf>::new()
@@ -185,8 +185,8 @@ fn a_study_taken_up_again_ends_the_same() {
     child.kill().unwrap();
     child.wait().unwrap();
     assert!(!folder.0.join("killed/summary.json").exists());
-    let (code, said) = folder.end("killed", &[&study[..], &["--resume"]].concat());
-    assert_eq!(code, Some(0), "{said}");
+    let (code, printed) = folder.end("killed", &[&study[..], &["--resume"]].concat());
+    assert_eq!(code, Some(0), "{printed}");
     assert_eq!(
         differing(&expected, &folder.everything("killed")),
         Vec::<PathBuf>::new()
@@ -201,9 +201,9 @@ fn a_mesh_that_fails_takes_nothing_from_the_others() {
     std::fs::create_dir_all(&foreign).unwrap();
     std::fs::write(foreign.join("notes.txt"), "the user's").unwrap();
     std::fs::write(folder.0.join("out/.igimp"), "").unwrap();
-    let (code, said) = folder.end("out", &["--meshes", "2"]);
-    assert_eq!(code, Some(2), "{said}");
-    assert!(said.contains("was not written by igimp"), "{said}");
+    let (code, printed) = folder.end("out", &["--meshes", "2"]);
+    assert_eq!(code, Some(2), "{printed}");
+    assert!(printed.contains("was not written by igimp"), "{printed}");
     let text = std::fs::read_to_string(folder.0.join("out/summary.json")).unwrap();
     let summary: Summary = serde_json::from_str(&text).unwrap();
     let safety = result(&summary, ResultKind::FactorOfSafety);
@@ -220,8 +220,8 @@ fn a_mesh_that_fails_takes_nothing_from_the_others() {
         "--set",
     ];
     let weak = [&weak[..], &["materials.clay.friction=5 deg"]].concat();
-    let (code, said) = folder.end("weak", &weak);
-    assert_eq!(code, Some(3), "{said}");
+    let (code, printed) = folder.end("weak", &weak);
+    assert_eq!(code, Some(3), "{printed}");
     let text = std::fs::read_to_string(folder.0.join("weak/summary.json")).unwrap();
     assert!(text.contains("on the mesh h: "), "{text}");
 }
@@ -246,10 +246,10 @@ fn a_march_that_ended_early_is_refused() {
         command.args(["--set", setting]);
     }
     let output = command.current_dir(&folder.0).output().unwrap();
-    let said = String::from_utf8_lossy(&output.stdout);
+    let printed = String::from_utf8_lossy(&output.stdout);
     assert_eq!(output.status.code(), Some(3), "{output:?}");
     let refusal = "nothing is extrapolated: the runs on the meshes h and h/3 ended early";
-    assert!(said.contains(refusal), "{said}");
+    assert!(printed.contains(refusal), "{printed}");
     let text = std::fs::read_to_string(folder.0.join("out/summary.json")).unwrap();
     let summary: Summary = serde_json::from_str(&text).unwrap();
     let load = result(&summary, ResultKind::LimitLoad);
@@ -272,38 +272,38 @@ fn a_study_that_makes_no_sense_is_refused() {
             command.args(["--set", setting]);
         }
         let output = command.output().unwrap();
-        let said = [output.stdout, output.stderr].concat();
+        let printed = [output.stdout, output.stderr].concat();
         (
             output.status.code(),
-            String::from_utf8_lossy(&said).into_owned(),
+            String::from_utf8_lossy(&printed).into_owned(),
         )
     };
-    let (code, said) = check(&["mesh_study.meshes=4"]);
+    let (code, printed) = check(&["mesh_study.meshes=4"]);
     assert_eq!(code, Some(2));
-    assert!(said.contains("mesh_study.meshes=4"), "{said}");
-    let (code, said) = check(&["mesh_study.meshes=3", "grid.cell=0.01 m"]);
-    assert_eq!(code, Some(2));
-    assert!(
-        said.contains("the finest mesh, h/4, would have too many"),
-        "{said}"
-    );
-    let (code, said) = check(&["grid.refine=64", "grid.cell=0.1 m"]);
+    assert!(printed.contains("mesh_study.meshes=4"), "{printed}");
+    let (code, printed) = check(&["mesh_study.meshes=3", "grid.cell=0.01 m"]);
     assert_eq!(code, Some(2));
     assert!(
-        said.contains("the refined grid would have too many"),
-        "{said}"
+        printed.contains("the finest mesh, h/4, would have too many"),
+        "{printed}"
     );
-    let (code, said) = check(&["checks.0.value=extrapolated"]);
+    let (code, printed) = check(&["grid.refine=64", "grid.cell=0.1 m"]);
+    assert_eq!(code, Some(2));
+    assert!(
+        printed.contains("the refined grid would have too many"),
+        "{printed}"
+    );
+    let (code, printed) = check(&["checks.0.value=extrapolated"]);
     assert_eq!(code, Some(0));
     assert!(
-        said.contains("asks for an extrapolated value, and there is one mesh"),
-        "{said}"
+        printed.contains("asks for an extrapolated value, and there is one mesh"),
+        "{printed}"
     );
-    assert!(said.contains("--meshes 2"), "{said}");
-    let (code, said) = check(&["mesh_study.meshes=2"]);
+    assert!(printed.contains("--meshes 2"), "{printed}");
+    let (code, printed) = check(&["mesh_study.meshes=2"]);
     assert_eq!(code, Some(0));
     assert!(
-        said.contains("side by side") || said.contains("one after another"),
-        "{said}"
+        printed.contains("side by side") || printed.contains("one after another"),
+        "{printed}"
     );
 }

@@ -14,12 +14,12 @@ use run_support::{Folder, differing};
 #[test]
 fn a_stage_run_again_ends_with_the_same_tables() {
     let folder = Folder::new("from-stage");
-    let (code, said) = folder.end("out", &[]);
-    assert_eq!(code, Some(0), "{said}");
+    let (code, printed) = folder.end("out", &[]);
+    assert_eq!(code, Some(0), "{printed}");
     let expected = folder.tables("out");
     for stage in ["run-out", "factor of safety"] {
-        let (code, said) = folder.end("out", &["--from-stage", stage]);
-        assert_eq!(code, Some(0), "{stage}: {said}");
+        let (code, printed) = folder.end("out", &["--from-stage", stage]);
+        assert_eq!(code, Some(0), "{stage}: {printed}");
         assert_eq!(
             differing(&expected, &folder.tables("out")),
             Vec::<PathBuf>::new()
@@ -30,14 +30,14 @@ fn a_stage_run_again_ends_with_the_same_tables() {
 #[test]
 fn a_checkpoint_of_another_case_is_refused() {
     let folder = Folder::new("other-case");
-    let (code, said) = folder.end("out", &[]);
-    assert_eq!(code, Some(0), "{said}");
+    let (code, printed) = folder.end("out", &[]);
+    assert_eq!(code, Some(0), "{printed}");
     let other = ["--resume", "--set", "materials.clay.cohesion=21 kPa"];
-    let (code, said) = folder.end("out", &other);
-    assert_eq!(code, Some(2), "{said}");
+    let (code, printed) = folder.end("out", &other);
+    assert_eq!(code, Some(2), "{printed}");
     assert!(
-        said.contains("belongs to another case or to other input"),
-        "{said}"
+        printed.contains("belongs to another case or to other input"),
+        "{printed}"
     );
     let other = [
         "--from-stage",
@@ -45,8 +45,8 @@ fn a_checkpoint_of_another_case_is_refused() {
         "--set",
         "materials.clay.cohesion=21 kPa",
     ];
-    let (code, said) = folder.end("out", &other);
-    assert_eq!(code, Some(2), "{said}");
+    let (code, printed) = folder.end("out", &other);
+    assert_eq!(code, Some(2), "{printed}");
     // Settings that do not concern the stages before may change.
     let other = [
         "--from-stage",
@@ -54,8 +54,8 @@ fn a_checkpoint_of_another_case_is_refused() {
         "--set",
         "stages.run-out.steps=50",
     ];
-    let (code, said) = folder.end("out", &other);
-    assert_eq!(code, Some(0), "{said}");
+    let (code, printed) = folder.end("out", &other);
+    assert_eq!(code, Some(0), "{printed}");
 }
 
 /// GOAL: rigid bodies go on where they stood, with the marks of contact, on soil whose strength and stiffness
@@ -83,8 +83,8 @@ fn rigid_bodies_are_taken_up_where_they_stood() {
         let mut command = Command::new(env!("CARGO_BIN_EXE_igimp"));
         command.args(["run", "two_bodies.toml", "--out", "out", "--quiet"]);
         let output = command.args(more).current_dir(&folder.0).output().unwrap();
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(0), "{said}");
+        let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{printed}");
     };
     run(&[]);
     let expected = folder.everything("out");
@@ -174,10 +174,10 @@ fn a_pushed_slope_from_files_is_taken_up_while_its_files_stay() {
         let mut command = Command::new(env!("CARGO_BIN_EXE_igimp"));
         command.args(["run", "pushed.toml", "--out", out, "--quiet"]);
         let output = command.args(more).current_dir(&folder.0).output().unwrap();
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        (output.status.code(), said)
+        let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code(), printed)
     };
-    let done = |(code, said): (Option<i32>, String)| assert_eq!(code, Some(0), "{said}");
+    let done = |(code, printed): (Option<i32>, String)| assert_eq!(code, Some(0), "{printed}");
     done(run("out", &[]));
     let expected = folder.everything("out");
     done(run("alone", &["--threads", "1"]));
@@ -209,11 +209,11 @@ fn a_pushed_slope_from_files_is_taken_up_while_its_files_stay() {
         );
     }
     write("ground.csv", &ground.replace("14,4", "14,4.5"));
-    let (code, said) = run("out", &["--resume"]);
-    assert_eq!(code, Some(2), "{said}");
+    let (code, printed) = run("out", &["--resume"]);
+    assert_eq!(code, Some(2), "{printed}");
     assert!(
-        said.contains("belongs to another case or to other input"),
-        "{said}"
+        printed.contains("belongs to another case or to other input"),
+        "{printed}"
     );
 }
 
@@ -228,8 +228,8 @@ fn reinforcement_is_taken_up_with_its_tension() {
         let mut command = Command::new(env!("CARGO_BIN_EXE_igimp"));
         command.args(["run", "tied_cut.toml", "--out", "out", "--quiet"]);
         let output = command.args(more).current_dir(&folder.0).output().unwrap();
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(0), "{said}");
+        let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{printed}");
     };
     run(&[]);
     let expected = folder.everything("out");

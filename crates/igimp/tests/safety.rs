@@ -57,7 +57,7 @@ impl Drop for Folder {
 }
 
 /// All that was said.
-fn said(output: &Output) -> String {
+fn printed(output: &Output) -> String {
     let both = [&output.stdout[..], &output.stderr].concat();
     String::from_utf8(both).unwrap()
 }
@@ -113,17 +113,17 @@ fn no_text_of_a_file_commands_the_terminal() {
         &["run", &odd_words],
     ] {
         let output = folder.igimp(words);
-        let said = said(&output);
-        assert!(!said.is_empty(), "{words:?}");
+        let printed = printed(&output);
+        assert!(!printed.is_empty(), "{words:?}");
         let is_odd = |c: char| {
             (c.is_control() && c != '\n') || "\u{202e}\u{2066}\u{200f}\u{2028}".contains(c)
         };
-        let odd: Vec<char> = said.chars().filter(|&c| is_odd(c)).collect();
-        assert!(odd.is_empty(), "{words:?}: {odd:?} in {said}");
-        assert!(!said.contains("\nerror: d"), "{words:?}: {said}");
+        let odd: Vec<char> = printed.chars().filter(|&c| is_odd(c)).collect();
+        assert!(odd.is_empty(), "{words:?}: {odd:?} in {printed}");
+        assert!(!printed.contains("\nerror: d"), "{words:?}: {printed}");
     }
     // The output is a case file again, with the title that it has.
-    let explained = said(&folder.igimp(&["explain", "case.toml"]));
+    let explained = printed(&folder.igimp(&["explain", "case.toml"]));
     assert!(
         explained.contains("\\u202Eb\\u2066\\u200F\\u2028c\\nerror: d"),
         "{explained}"
@@ -143,7 +143,7 @@ fn no_cell_of_a_table_is_a_formula() {
     assert!(
         matches!(output.status.code(), Some(0 | 1)),
         "{}",
-        said(&output)
+        printed(&output)
     );
     let table = fs::read_to_string(folder.0.join("sweep/results.csv")).unwrap();
     let rows: Vec<&str> = table.lines().collect();
@@ -199,19 +199,23 @@ fn whatever_is_named_as_a_case_is_read_to_a_bound() {
             output.status.code(),
             Some(code),
             "{words:?}: {}",
-            said(&output)
+            printed(&output)
         );
-        assert!(said(&output).contains(part), "{words:?}: {}", said(&output));
+        assert!(
+            printed(&output).contains(part),
+            "{words:?}: {}",
+            printed(&output)
+        );
     }
     let output = folder.igimp(&["check", "reference.toml"]);
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert_eq!(output.status.code(), Some(2), "{}", printed(&output));
     let zeros = fs::File::open("/dev/zero").unwrap();
     let output = folder.igimp_with(&["check", "-"], zeros.into());
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert_eq!(output.status.code(), Some(2), "{}", printed(&output));
     assert!(
-        said(&output).contains("more than 8 MB"),
+        printed(&output).contains("more than 8 MB"),
         "{}",
-        said(&output)
+        printed(&output)
     );
 }
 
@@ -225,20 +229,24 @@ fn a_case_comes_from_standard_input() {
     };
     for _ in 0..2 {
         let output = run("one");
-        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
         assert!(folder.0.join("piped/summary.json").exists());
     }
     let output = run("another");
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert_eq!(output.status.code(), Some(2), "{}", printed(&output));
     assert!(
-        said(&output).contains("another input, <stdin: one>"),
+        printed(&output).contains("another input, <stdin: one>"),
         "{}",
-        said(&output)
+        printed(&output)
     );
     fs::write(folder.0.join("piped.toml"), "igimp = 1\nx = ").unwrap();
     let input = fs::File::open(folder.0.join("piped.toml")).unwrap();
     let output = folder.igimp_with(&["check", "-"], input.into());
-    assert!(said(&output).contains("--> stdin:2:"), "{}", said(&output));
+    assert!(
+        printed(&output).contains("--> stdin:2:"),
+        "{}",
+        printed(&output)
+    );
 }
 
 #[test]
@@ -255,7 +263,7 @@ fn symbols_of_books_are_known() {
     fs::write(folder.0.join("symbols.toml"), case).unwrap();
     let output = folder.igimp(&["check", "symbols.toml"]);
     assert_eq!(output.status.code(), Some(2));
-    let said = said(&output);
+    let printed = printed(&output);
     for (symbol, key) in [
         ("gamma", "unit_weight"),
         ("E", "young"),
@@ -264,14 +272,17 @@ fn symbols_of_books_are_known() {
         ("phi", "friction"),
         ("psi", "dilation"),
     ] {
-        let (_, rest) = said
+        let (_, rest) = printed
             .split_once(&format!("unknown field `{symbol}`"))
             .unwrap();
         let help = rest.lines().find(|line| line.contains("help")).unwrap();
-        assert!(help.ends_with(&format!("did you mean `{key}`?")), "{said}");
+        assert!(
+            help.ends_with(&format!("did you mean `{key}`?")),
+            "{printed}"
+        );
     }
     // A field that was meant is not missing as well.
-    assert!(said.ends_with("6 errors in symbols.toml\n"), "{said}");
+    assert!(printed.ends_with("6 errors in symbols.toml\n"), "{printed}");
 }
 
 /// A limit of the address space that the run cannot keep is named before it begins.
@@ -286,15 +297,15 @@ fn memory_that_cannot_be_had_is_named() {
         .current_dir(&folder.0)
         .output()
         .unwrap();
-    let said = said(&output);
-    assert_eq!(output.status.code(), Some(4), "{said}");
+    let printed = printed(&output);
+    assert_eq!(output.status.code(), Some(4), "{printed}");
     assert!(
-        said.starts_with("error: the run is thought to need "),
-        "{said}"
+        printed.starts_with("error: the run is thought to need "),
+        "{printed}"
     );
     assert!(
-        said.contains("the limit of the address space (ulimit -v)"),
-        "{said}"
+        printed.contains("the limit of the address space (ulimit -v)"),
+        "{printed}"
     );
     assert!(!folder.0.join("results").exists());
 }
@@ -311,7 +322,7 @@ fn a_damaged_checkpoint_is_named() {
         "output.checkpoint={ every = 1, keep = 3 }",
     ];
     let output = folder.igimp(&words);
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
     let checkpoints = folder.0.join("results/checkpoint");
     let damage = |name: &str| fs::write(checkpoints.join(name).join("current/x.npy"), "x").unwrap();
     damage("stage-01-end");
@@ -321,8 +332,8 @@ fn a_damaged_checkpoint_is_named() {
         .filter(|word| *word != "--quiet")
         .collect();
     let output = folder.igimp(&[&resumed[..], &["--resume"]].concat());
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    let text = said(&output);
+    assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
+    let text = printed(&output);
     let start =
         "warning: the checkpoint in results/checkpoint/stage-01-end is damaged: current/x.npy: ";
     assert!(text.contains(start), "{text}");
@@ -331,20 +342,20 @@ fn a_damaged_checkpoint_is_named() {
         damage(entry.unwrap().file_name().to_str().unwrap());
     }
     let output = folder.igimp(&[&words[..], &["--resume"]].concat());
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    let text = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{}", printed(&output));
+    let text = printed(&output);
     assert!(text.contains("is damaged: current/x.npy"), "{text}");
     let help = "help: without that folder, --resume goes on from the one before it; --overwrite begins afresh";
     assert!(text.contains(help), "{text}");
     let output = folder.igimp(&[&words[..], &["--overwrite"]].concat());
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
 }
 
 #[test]
 fn without_figures_nothing_is_drawn() {
     let folder = Folder::new("figures", &block("block", "by hand"));
     let output = folder.igimp(&["run", "case.toml"]);
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
     assert_eq!(
         fs::read_dir(folder.0.join("results/figures"))
             .unwrap()
@@ -355,7 +366,7 @@ fn without_figures_nothing_is_drawn() {
     assert!(
         matches!(output.status.code(), Some(0 | 1)),
         "{}",
-        said(&output)
+        printed(&output)
     );
     for mesh in ["mesh-1", "mesh-2"] {
         let figures = folder.0.join("meshes").join(mesh).join("figures");

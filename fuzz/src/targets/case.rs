@@ -42,7 +42,7 @@ pub fn check(bytes: &[u8]) -> Result<Verdict, String> {
             Ok(Verdict::Accepted)
         }
         Err(InputError::Invalid {
-            text: said,
+            text: printed,
             errors,
             diagnostics,
         }) => {
@@ -51,7 +51,7 @@ pub fn check(bytes: &[u8]) -> Result<Verdict, String> {
                 errors > 0 && (counted == errors || diagnostics.len() == 1000),
                 || format!("{errors} errors, of which {counted} are told"),
             )?;
-            said_well(&diagnostics, &said, &text, &overrides)?;
+            said_well(&diagnostics, &printed, &text, &overrides)?;
             Ok(Verdict::Refused)
         }
         Err(error @ InputError::File { .. }) => Err(format!("a text in memory: {error}")),
@@ -61,7 +61,7 @@ pub fn check(bytes: &[u8]) -> Result<Verdict, String> {
 /// Messages have words and a place that is there.
 fn said_well(
     diagnostics: &[Diagnostic],
-    said: &str,
+    printed: &str,
     file: &str,
     overrides: &[String],
 ) -> Result<(), String> {
@@ -88,11 +88,11 @@ fn said_well(
         )?;
     }
     let is_fine = |c: char| c == '\n' || !c.is_control();
-    holds(said.chars().all(is_fine), || {
+    holds(printed.chars().all(is_fine), || {
         "printed with control characters".to_owned()
     })?;
     let lines = file.lines().count().max(1);
-    for place in said
+    for place in printed
         .lines()
         .filter_map(|line| line.trim_start().strip_prefix("--> fuzz.toml:"))
     {

@@ -168,9 +168,9 @@ pub fn check(files: &Files) -> Result<Verdict, String> {
     let checkpoint = match read(files) {
         Ok(checkpoint) => checkpoint,
         Err(error) => {
-            let said = error.to_string();
-            holds(said.contains("checkpoint"), || {
-                format!("a message without a place: {said}")
+            let printed = error.to_string();
+            holds(printed.contains("checkpoint"), || {
+                format!("a message without a place: {printed}")
             })?;
             return Ok(Verdict::Refused);
         }

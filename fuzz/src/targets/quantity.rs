@@ -49,8 +49,8 @@ pub fn check(bytes: &[u8]) -> Result<Verdict, String> {
         if let Err(error) = &value
             && index == number
         {
-            let (said, help) = (error.to_string(), error.help(Some(dimension)));
-            for text in [said, help, error.help(None)] {
+            let (printed, help) = (error.to_string(), error.help(Some(dimension)));
+            for text in [printed, help, error.help(None)] {
                 holds(!text.is_empty() && text.chars().count() < LONGEST, || {
                     format!("a message is empty or long: {text:?}")
                 })?;

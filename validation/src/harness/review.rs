@@ -113,7 +113,7 @@ fn side_by_side(steps: &[Vec<f64>], other: &[Vec<f64>]) -> Vec<[f64; 2]> {
 }
 
 /// A name of a column as it is said: underscores stand for spaces there.
-fn said(name: &str) -> String {
+fn printed(name: &str) -> String {
     name.replace('_', " ")
 }
 
@@ -153,10 +153,10 @@ fn largest_change(old: &str, new: &str) -> Option<String> {
     };
     Some(format!(
         "{} {} for {} at {} = {}{share}",
-        said(&old.names[column]),
+        printed(&old.names[column]),
         short(new.rows[row][column]),
         short(old.rows[row][column]),
-        said(&old.names[0]),
+        printed(&old.names[0]),
         short(old.rows[row][0]),
     ))
 }
@@ -228,7 +228,7 @@ fn drawn(name: &str, old: &str, new: &str) -> Vec<(usize, CurvePlot)> {
         let differs = |&column: &usize| old.points(column) != new.points(column);
         let plot = |column| {
             let both = [&new, &old].map(|of| of.points(column));
-            let labels = [&new.names[0], &new.names[column]].map(|label| said(label));
+            let labels = [&new.names[0], &new.names[column]].map(|label| printed(label));
             (column, plot(name, labels, both, SeriesStyle::Line))
         };
         return (1..columns)

@@ -437,9 +437,9 @@ fn members_without_soil_are_named() {
     };
     let mut away = scene.member.clone();
     away.stations[9].points[0] = [-3.0, 2.0];
-    let said = error(&away).to_string();
+    let printed = error(&away).to_string();
     assert_eq!(
-        said,
+        printed,
         "no soil carries the reinforcement \"member\" at [-3.0, 2.0, 0.0] m"
     );
     let mut broken = scene.member.clone();

@@ -6,7 +6,7 @@ use igimp_input::{CaseFile, InputError};
 
 use crate::edits::{Edits, edited};
 
-pub(crate) fn said(result: &Result<CaseFile, InputError>) -> String {
+pub(crate) fn printed(result: &Result<CaseFile, InputError>) -> String {
     match result {
         Ok(file) if file.warnings().is_empty() => "(nothing)\n".to_owned(),
         Ok(file) => file.warnings(),
@@ -22,7 +22,7 @@ pub(crate) fn messages((name, text): (&str, &str), cases: &[Edits<'_>]) -> Strin
             let _ = writeln!(out, "## {from:?} -> {to:?}");
         }
         let result = CaseFile::parse(name, &edited(text, edits), &[]);
-        let _ = writeln!(out, "{}", said(&result));
+        let _ = writeln!(out, "{}", printed(&result));
     }
     out
 }

@@ -207,7 +207,7 @@ fn what_cannot_be_read_is_named() {
         r#"{ file = "binary.dxf", layer = "sand", unit = "m" }"#,
         r#"{ top = { file = "r2000.dxf", layer = "clay", unit = "m" }, bottom = [["0 m", "0 m"], ["60 m", "0 m"]] }"#,
     ] {
-        let _ = writeln!(out, "## {polygon}\n{}", folder.said(&with(polygon)));
+        let _ = writeln!(out, "## {polygon}\n{}", folder.printed(&with(polygon)));
     }
     insta::assert_snapshot!(out);
 }

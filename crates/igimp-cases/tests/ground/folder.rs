@@ -30,12 +30,12 @@ impl Folder {
     }
 
     /// Errors, warnings and remedies, the folder's path aside.
-    pub(crate) fn said(&self, text: &str) -> String {
-        let said = match self.read(text) {
+    pub(crate) fn printed(&self, text: &str) -> String {
+        let printed = match self.read(text) {
             Ok(file) => file.warnings(),
             Err(error) => error,
         };
-        let lines = said.lines().filter(|line| {
+        let lines = printed.lines().filter(|line| {
             line.starts_with("error") || line.starts_with("warning") || line.contains("= help")
         });
         let path = format!("{}/", self.0.display());

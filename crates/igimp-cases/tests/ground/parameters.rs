@@ -393,8 +393,8 @@ fn parameters_that_make_no_sense() {
             _ => {}
         }
         let error = CaseFile::parse("ground.toml", &text((&soil, SOIL), LOADED), &[]);
-        let said = error.map_or_else(|error| error.to_string(), |file| file.warnings());
-        let _ = writeln!(out, "## {key} = {value} {}\n{said}", beside.trim());
+        let printed = error.map_or_else(|error| error.to_string(), |file| file.warnings());
+        let _ = writeln!(out, "## {key} = {value} {}\n{printed}", beside.trim());
     }
     insta::assert_snapshot!(out);
 }

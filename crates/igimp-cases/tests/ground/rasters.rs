@@ -147,7 +147,7 @@ fn what_makes_no_raster_is_named() {
     );
     let mut out = String::new();
     let mut tell = |cu: &str| {
-        let _ = writeln!(out, "## {cu}\n{}", folder.said(&with(cu)));
+        let _ = writeln!(out, "## {cu}\n{}", folder.printed(&with(cu)));
     };
     tell(r#"{ raster = "plain.csv", unit = "kPa" }"#);
     tell(r#"{ raster = "plain.csv", length_unit = "m" }"#);
@@ -216,6 +216,6 @@ fn numbers_and_angles_come_from_rasters() {
         let again = CaseFile::parse("again.toml", &file.explain(), &[]).unwrap();
         assert_eq!(again.case().materials, case.materials);
     }
-    let said = folder.said(&with("{ raster = \"wrong.csv\" }", angle));
-    assert!(said.contains("is a number without a unit"), "{said}");
+    let printed = folder.printed(&with("{ raster = \"wrong.csv\" }", angle));
+    assert!(printed.contains("is a number without a unit"), "{printed}");
 }

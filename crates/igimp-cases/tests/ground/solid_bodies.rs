@@ -161,7 +161,7 @@ fn layers_of_one_survey_lie_on_each_other() {
         format!("{plan}\nbetween = [{middle}, {ground}]"),
     ];
     let bodies = [bodies[0].as_str(), bodies[1].as_str()];
-    assert_eq!(folder.said(&with(&bodies)), "");
+    assert_eq!(folder.printed(&with(&bodies)), "");
     let file = folder.read(&with(&bodies)).unwrap();
     let parts = &file.case_in_space().bodies;
     let volume: f64 = parts.iter().map(|part| part.region.volume()).sum();
@@ -224,9 +224,9 @@ fn what_is_wrong_has_its_place_and_remedy() {
             minus = [{ box = { from = ["5 m", "0 m", "0 m"], to = ["8 m", "6 m", "5 m"] } }]"#,
         ],
     ] {
-        let said = folder.said(&with(bodies));
-        assert!(!said.is_empty(), "{bodies:?}");
-        writeln!(all, "{said}\n").unwrap();
+        let printed = folder.printed(&with(bodies));
+        assert!(!printed.is_empty(), "{bodies:?}");
+        writeln!(all, "{printed}\n").unwrap();
     }
     insta::assert_snapshot!(all);
 }

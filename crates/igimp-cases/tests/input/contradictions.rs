@@ -365,7 +365,7 @@ fn values_of_checks_measure_what_is_checked() {
     let number = "the check is of a number without a unit, and this is a length";
     let plain = "the check is of a length, and this is a number without a unit";
     let stress = "the check is of a length, and this is a stress";
-    for (keys, said) in [
+    for (keys, printed) in [
         ("at_most = \"9 mm\"", None),
         ("at_most = \"9 kPa\"", Some(stress)),
         ("at_least = 0.009", Some(plain)),
@@ -387,12 +387,12 @@ fn values_of_checks_measure_what_is_checked() {
         let text = edited(SLOPE.1, &[("[output]", &check)]);
         let found = CaseFile::parse(SLOPE.0, &text, &[]);
         let found = found.err().map(|error| error.to_string());
-        match said {
+        match printed {
             None => assert_eq!(found, None, "{keys}"),
-            Some(said) => {
+            Some(printed) => {
                 let found = found.unwrap_or_else(|| panic!("{keys} is taken"));
                 assert!(
-                    found.contains(said) && found.contains("help:"),
+                    found.contains(printed) && found.contains("help:"),
                     "{keys}: {found}"
                 );
             }

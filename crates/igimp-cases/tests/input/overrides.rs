@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use igimp_assembly::Locking;
 
-use crate::messages::said;
+use crate::messages::printed;
 use crate::{SLOPE, overridden};
 
 #[test]
@@ -64,7 +64,7 @@ fn wrong_overrides_are_named() {
         let _ = writeln!(
             out,
             "## --set {text}\n{}",
-            said(&overridden(SLOPE, &[text]))
+            printed(&overridden(SLOPE, &[text]))
         );
     }
     insta::assert_snapshot!(out);

@@ -4,7 +4,7 @@ use igimp_input::shipped::find;
 use igimp_input::{CaseFile, InputError};
 
 use crate::edits::edited;
-use crate::messages::{messages, said};
+use crate::messages::{messages, printed};
 use crate::{SLOPE, overridden};
 
 #[test]
@@ -118,11 +118,11 @@ fn tabs_carriage_returns_and_accents_keep_their_columns() {
             ("monitor = \"crest\"", "monitor = \"Böschungskante\""),
         ],
     );
-    let first = said(&CaseFile::parse("slope.toml", &text, &[]));
+    let first = printed(&CaseFile::parse("slope.toml", &text, &[]));
     let text = text
         .replace(" ; # é", "")
         .replace("point = [", "\tpunkt = [");
-    let second = said(&CaseFile::parse("slope.toml", &text, &[]));
+    let second = printed(&CaseFile::parse("slope.toml", &text, &[]));
     insta::assert_snapshot!(format!("{first}\n{second}"));
 }
 
@@ -318,23 +318,23 @@ fn loads_and_reinforcement_have_ranges() {
 /// GOAL: a tolerance with which nothing is in equilibrium is refused, and a loose one is told. ORACLE: 0.1 told F = 3.8 for 1.35.
 #[test]
 fn a_tolerance_has_bounds() {
-    let said = |tolerance: &str| {
-        said(&overridden(
+    let printed = |tolerance: &str| {
+        printed(&overridden(
             SLOPE,
             &[&format!("solver.tolerance={tolerance}")],
         ))
     };
     assert!(
-        said("0.1").contains("must be above 0 and at most 0.01"),
+        printed("0.1").contains("must be above 0 and at most 0.01"),
         "{}",
-        said("0.1")
+        printed("0.1")
     );
     assert!(
-        said("0.005").contains("tolerance = 0.005 is loose"),
+        printed("0.005").contains("tolerance = 0.005 is loose"),
         "{}",
-        said("0.005")
+        printed("0.005")
     );
-    assert!(!said("1e-3").contains("is loose"));
+    assert!(!printed("1e-3").contains("is loose"));
 }
 
 /// GOAL: stages that change nothing, or that lift a body off its soil, are told; those that change something are not.
@@ -347,7 +347,7 @@ fn stages_that_change_nothing_are_named() {
             "{}\n{load}[[stages]]\nname = \"q\"\ntype = \"load\"\nload = \"q\"\n{more}",
             SLOPE.1
         );
-        said(&CaseFile::parse(SLOPE.0, &text, &[]))
+        printed(&CaseFile::parse(SLOPE.0, &text, &[]))
     };
     let again = |key: &str| stages(&format!("[[stages]]\nname = \"again\"\n{key}"));
     let text = again("type = \"load\"\nload = \"q\"\n");
@@ -372,7 +372,7 @@ fn stages_that_change_nothing_are_named() {
         let text = again(more);
         assert!(!text.contains("nothing:"), "{text}");
     }
-    let none = said(&overridden(SLOPE, &["stages.initial stresses.factor=0.0"]));
+    let none = printed(&overridden(SLOPE, &["stages.initial stresses.factor=0.0"]));
     assert!(none.contains("raises no weight: factor = 0"), "{none}");
     let pushed = |by: &str| {
         let set = [format!("stages.push.bodies.0.y={by}")];
@@ -423,7 +423,7 @@ fn values_that_are_hardly_meant_are_named() {
         };
         overridden(file, &[&set]).map(|file| file.warnings())
     };
-    let said = [
+    let printed = [
         (
             "rigid",
             "{ friction = 20 }",
@@ -445,7 +445,7 @@ fn values_that_are_hardly_meant_are_named() {
         ("damping", "5", "0.05", "0.05 are 5 %"),
         ("materials.clay.k0", "8", "0.6", "beyond its strength"),
     ];
-    for (key, slip, meant, expected) in said {
+    for (key, slip, meant, expected) in printed {
         let warnings = of(key, slip).unwrap();
         assert!(warnings.contains(expected), "{key}: {warnings}");
         let warnings = of(key, meant).unwrap();
@@ -490,17 +490,17 @@ fn keys_without_effect_are_named() {
 #[test]
 fn names_of_runs_and_points_on_circles_are_refused() {
     let curve = "curves=[{ name = \"safety-in-time\", x = { of = \"gravity_factor\" }, y = { of = \"largest_displacement\" } }]";
-    let said = overridden(SLOPE, &[curve]).unwrap_err().to_string();
+    let printed = overridden(SLOPE, &[curve]).unwrap_err().to_string();
     assert!(
-        said.contains("a curve cannot be called `safety-in-time`"),
-        "{said}"
+        printed.contains("a curve cannot be called `safety-in-time`"),
+        "{printed}"
     );
     let point = "loads=[{ name = \"q\", type = \"point\", at = [\"1 m\", \"2 m\"], force = [\"0 kN\", \"-10 kN\"] }]";
-    let said = overridden(SLOPE, &[point, "case.analysis=axisymmetric"]);
-    let said = said.unwrap_err().to_string();
+    let printed = overridden(SLOPE, &[point, "case.analysis=axisymmetric"]);
+    let printed = printed.unwrap_err().to_string();
     assert!(
-        said.contains("along a whole circle") && !said.contains("one metre thick"),
-        "{said}"
+        printed.contains("along a whole circle") && !printed.contains("one metre thick"),
+        "{printed}"
     );
 }
 

@@ -334,8 +334,12 @@ fn a_search_between_motions_stops_nothing() {
             "{before}{first}{between}{second}[[monitors]]{after}"
         ))
     };
-    let warns =
-        |run: &Run<2>, said: &str| run.summary.warnings.iter().any(|text| text.contains(said));
+    let warns = |run: &Run<2>, printed: &str| {
+        run.summary
+            .warnings
+            .iter()
+            .any(|text| text.contains(printed))
+    };
     let alone = with("");
     assert!(!warns(&alone, "moves as it begins"));
     for search in ["trials", "continuation"] {
@@ -492,7 +496,7 @@ fn records_that_make_no_sense() {
     };
     let motion = dynamic.ground_motion.as_ref().unwrap();
     assert!((motion.values[1] - 0.2 * 9.80665).abs() < 1e-12 && !motion.is_velocity);
-    for (record, keys, said) in [
+    for (record, keys, printed) in [
         (
             "time,acceleration\n0,0\n0.1,0.2\n0.1,0\n",
             ", unit = \"g\"",
@@ -531,7 +535,7 @@ fn records_that_make_no_sense() {
             .map(|error| error.to_string())
             .unwrap_or_default();
         assert!(
-            error.contains(said) && error.contains("quake.csv"),
+            error.contains(printed) && error.contains("quake.csv"),
             "{record}: {error}"
         );
     }
@@ -542,7 +546,7 @@ fn records_that_make_no_sense() {
 #[test]
 fn earthquakes_that_make_no_sense() {
     let motion = "ground_motion = { unit = \"g\", time = [\"0 s\", \"1 s\"], values = [0, 1]";
-    for (keys, said) in [
+    for (keys, printed) in [
         (
             "tied_sides = true\nabsorbing = [\"left\"]".to_owned(),
             "dashpots and moves with the other",
@@ -602,7 +606,7 @@ fn earthquakes_that_make_no_sense() {
         let error = CaseFile::parse("layer.toml", &text, &[]).err();
         let error = error.map(|error| error.to_string()).unwrap_or_default();
         assert!(
-            error.contains(said) && error.contains("help:"),
+            error.contains(printed) && error.contains("help:"),
             "{keys}: {error}"
         );
     }
@@ -621,7 +625,7 @@ fn earthquakes_that_make_no_sense() {
 /// ORACLE: the ground begins 3 m from the left side.
 #[test]
 fn walls_stand_where_ground_is() {
-    for (keys, said) in [
+    for (keys, printed) in [
         (
             "absorbing = [\"left\"]",
             "no body reaches the side left: nothing stands there",
@@ -645,7 +649,7 @@ fn walls_stand_where_ground_is() {
         let error = CaseFile::parse("layer.toml", &text, &[]).err();
         let error = error.map(|error| error.to_string()).unwrap_or_default();
         assert!(
-            error.contains(said) && error.is_empty() == said.is_empty(),
+            error.contains(printed) && error.is_empty() == printed.is_empty(),
             "{keys}: {error}"
         );
     }
@@ -663,11 +667,14 @@ fn a_block_slides_along_its_push() {
 
 /// A layer whose motion has these keys is refused with these words.
 #[track_caller]
-fn refused(keys: &str, said: &str) {
+fn refused(keys: &str, printed: &str) {
     let text = layer(&format!("duration = \"1 s\"\n{keys}"));
     let error = CaseFile::parse("layer.toml", &text, &[]).err();
     let error = error.map(|error| error.to_string()).unwrap_or_default();
-    assert!(error.contains(said) && error.contains("help:"), "{error}");
+    assert!(
+        error.contains(printed) && error.contains("help:"),
+        "{error}"
+    );
 }
 
 /// GOAL: keys that would do nothing are refused.
@@ -807,9 +814,9 @@ fn a_record_of_velocity_that_begins_moving_is_named() {
             .unwrap()
             .warnings()
     };
-    let said = "the record begins with a velocity of 0.1 m/s, which is left out";
+    let printed = "the record begins with a velocity of 0.1 m/s, which is left out";
     let all = warnings("cm/s", "10");
-    assert!(all.contains(said), "{all}");
+    assert!(all.contains(printed), "{all}");
     for (unit, first) in [("cm/s", "0"), ("cm/s", "0.09"), ("cm/s2", "10")] {
         let none = warnings(unit, first);
         assert!(!none.contains("is left out"), "{none}");

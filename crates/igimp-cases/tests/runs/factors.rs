@@ -165,13 +165,13 @@ fn a_search_that_nothing_bounds_ends_and_says_so() {
 // ORACLE: by hand.
 #[test]
 fn a_search_of_absent_soil_is_refused() {
-    let said = |text: &str| {
+    let printed = |text: &str| {
         CaseFile::parse("level.toml", text, &[])
             .unwrap_err()
             .to_string()
     };
     let words = "no body that is there in stage `safety` has the strength that it reduces";
-    let unused = said(&LEVEL.replace("[\"soil\"]", "[\"other\"]"));
+    let unused = printed(&LEVEL.replace("[\"soil\"]", "[\"other\"]"));
     assert!(unused.contains(words), "{unused}");
     let fill = "[[bodies]]\nname = \"fill\"\nmaterial = \"other\"\npolygon = [[\"0 m\",\"2 m\"], [\"3 m\",\"2 m\"], [\"3 m\",\"3 m\"], [\"0 m\",\"3 m\"]]\n";
     let place = "[[stages]]\nname = \"fill\"\ntype = \"construction\"\nplace = [\"fill\"]\nstart_from = \"weight\"\n";
@@ -179,7 +179,7 @@ fn a_search_of_absent_soil_is_refused() {
         "[[stages]]\nname = \"weight\"",
         &format!("{fill}[[stages]]\nname = \"weight\""),
     ) + place;
-    let absent = said(&later.replace("[\"soil\"]", "[\"other\"]"));
+    let absent = printed(&later.replace("[\"soil\"]", "[\"other\"]"));
     assert!(absent.contains(words), "{absent}");
     // One that is there is enough: the others come later.
     let both = later.replace("[\"soil\"]", "[\"soil\", \"other\"]");

@@ -449,11 +449,11 @@ fn messages(text: &str, cases: &[Edits<'_>]) -> String {
         for (from, to) in *edits {
             let _ = writeln!(out, "## {from:?} -> {to:?}");
         }
-        let said = match CaseFile::parse("space.toml", &edited(text, edits), &[]) {
+        let printed = match CaseFile::parse("space.toml", &edited(text, edits), &[]) {
             Ok(file) => format!("accepted\n{}", file.warnings()),
             Err(error) => error.to_string(),
         };
-        let _ = writeln!(out, "{said}");
+        let _ = writeln!(out, "{printed}");
     }
     out
 }

@@ -236,7 +236,7 @@ fn drains_without_thickness_and_two_ways_of_water_are_refused() {
         "stages.2.consolidation.drains=[{ from = [\"0 m\", \"2 m\"], to = [\"0.5 m\", \"2 m\"] }]";
     let text = refused(&[flat]);
     assert!(text.contains("this drain is flat"), "{text}");
-    for (setting, said) in [
+    for (setting, printed) in [
         (
             "drains=[{ from = [\"40 m\", \"2 m\"], to = [\"41 m\", \"3 m\"] }]",
             "this drain meets no body",
@@ -248,7 +248,7 @@ fn drains_without_thickness_and_two_ways_of_water_are_refused() {
         ("open_sides=[\"top\"]", "no body reaches the side top"),
     ] {
         let text = refused(&[&format!("stages.2.consolidation.{setting}")]);
-        assert!(text.contains(said) && text.contains("help:"), "{text}");
+        assert!(text.contains(printed) && text.contains("help:"), "{text}");
     }
     let text = refused(&["stages.2.type=construction", "stages.2.dissipate=true"]);
     assert!(text.contains("a stage with `dissipate`"), "{text}");

@@ -427,11 +427,11 @@ const PATCHES: [(&str, &str); 3] = [
 fn what_makes_no_sense_is_refused() {
     let mut out = String::new();
     let mut problem = |title: &str, text: &str| {
-        let said = match CaseFile::parse("ground.toml", text, &[]) {
+        let printed = match CaseFile::parse("ground.toml", text, &[]) {
             Ok(file) => file.warnings(),
             Err(error) => error.to_string(),
         };
-        let _ = writeln!(out, "## {title}\n{said}");
+        let _ = writeln!(out, "## {title}\n{printed}");
     };
     let water = |keys: &str| format!("[[water]]\nname = \"w\"\n{keys}");
     for (title, keys) in WATER {

@@ -118,11 +118,11 @@ fn water_that_flows_has_one_ground() {
             "[[stages]]\nname = \"{name}\"\ntype = \"construction\"\nwater = \"drawdown\"\nstart_from = \"{from}\"\n"
         )
     };
-    let said = |last: &str| {
+    let printed = |last: &str| {
         let stages = [DIG, &call("first", "dig"), last].concat();
         CaseFile::parse("layers.toml", &format!("{text}{stages}"), &[])
     };
-    let error = said(&call("other", "weight"))
+    let error = printed(&call("other", "weight"))
         .map(|file| file.warnings())
         .unwrap_err()
         .to_string();
@@ -130,7 +130,7 @@ fn water_that_flows_has_one_ground() {
         error.contains("flows through the ground in which it is called first"),
         "{error}"
     );
-    assert!(said(&call("same", "dig")).is_ok());
+    assert!(printed(&call("same", "dig")).is_ok());
     // A level is no flow.
     let level = text.replace(
         "inside = \"1.5 m\"\noutside = \"1.2 m\"",

@@ -505,24 +505,24 @@ fn a_face_within_the_ground_is_refused() {
 /// the messages.
 #[test]
 fn falls_without_effect_are_named() {
-    let said = |edits: &[(&str, &str)]| parsed(&edited(edits)).warnings();
+    let printed = |edits: &[(&str, &str)]| parsed(&edited(edits)).warnings();
     let fall = ("seepage = {", "seepage = { fall = \"3 m\",");
     let gardner = ("vertical = \"5e-6 m/s\"", "gardner = \"1 m\"");
     let confined = ("seepage = {", "seepage = { confined = true,");
     let has_none = "`fall` has no effect: every soil has a curve of its own";
-    assert!(said(&[fall, gardner]).contains(has_none));
-    assert!(!said(&[fall]).contains("no effect"));
-    assert!(!said(&[gardner]).contains("no effect"));
-    assert!(said(&[fall, confined]).contains("`fall` has no effect: all pores are full"));
-    assert!(said(&[gardner, confined]).contains("the curve of `sand` has no effect"));
+    assert!(printed(&[fall, gardner]).contains(has_none));
+    assert!(!printed(&[fall]).contains("no effect"));
+    assert!(!printed(&[gardner]).contains("no effect"));
+    assert!(printed(&[fall, confined]).contains("`fall` has no effect: all pores are full"));
+    assert!(printed(&[gardner, confined]).contains("the curve of `sand` has no effect"));
     let angle = "`angle` has no effect";
     let turned = ("vertical = \"5e-6 m/s\"", "angle = \"10 deg\"");
-    assert!(said(&[turned]).contains(angle));
+    assert!(printed(&[turned]).contains(angle));
     let bedded = (
         "vertical = \"5e-6 m/s\"",
         "vertical = \"5e-6 m/s\", angle = \"10 deg\"",
     );
-    assert!(!said(&[bedded]).contains(angle));
+    assert!(!printed(&[bedded]).contains(angle));
 }
 
 const LATER: &str = r#"

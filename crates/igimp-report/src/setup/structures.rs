@@ -86,12 +86,12 @@ fn by_side(names: &[String], of: impl Fn(usize) -> String) -> String {
     if count(most) == each.len() {
         return most.clone();
     }
-    let said = std::iter::zip(names, &each).filter(|(_, text)| *text != most || count(most) == 1);
-    let mut said: Vec<String> = said.map(|(side, text)| format!("{side} {text}")).collect();
+    let sides = std::iter::zip(names, &each).filter(|(_, text)| *text != most || count(most) == 1);
+    let mut sides: Vec<String> = sides.map(|(side, text)| format!("{side} {text}")).collect();
     if count(most) > 1 {
-        said.push(format!("others {most}"));
+        sides.push(format!("others {most}"));
     }
-    said.join(", ")
+    sides.join(", ")
 }
 
 fn shear(of: RigidShear) -> String {

@@ -94,7 +94,7 @@ impl Compared {
     }
 
     /// A line for each column.
-    pub(crate) fn said(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut text = String::new();
         for (column, measure) in self.data.columns.iter().enumerate() {
             let unit = measure.unit();

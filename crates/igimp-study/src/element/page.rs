@@ -6,7 +6,7 @@ use igimp_results::summary::FigureNote;
 use igimp_text::short;
 
 use super::measure::{Measure, undrained};
-use super::{Compared, Drive, Tested, path_words, said, table};
+use super::{Compared, Drive, Tested, path_words, table, text};
 
 /// The page of a folder that has the tables and pictures of the test.
 pub(super) fn page(tested: &Tested) -> Page {
@@ -49,8 +49,8 @@ fn sentences(tested: &Tested) -> Vec<String> {
         short(100.0 * along.of(peak, &states[0], &request.drive)),
         table::driven_name(&request.drive),
     )];
-    sentences.extend(said::closed(values, request, states).map(|text| sentence(&text)));
-    sentences.extend(said::ending(tested).iter().map(|line| sentence(line)));
+    sentences.extend(text::closed(values, request, states).map(|text| sentence(&text)));
+    sentences.extend(text::ending(tested).iter().map(|line| sentence(line)));
     sentences
 }
 
@@ -63,7 +63,7 @@ fn sentence(line: &str) -> String {
 
 /// Warnings for a reader before a number is used.
 fn warnings(tested: &Tested) -> Vec<String> {
-    let varies = tested.material.varies().then(|| sentence(said::VARIES));
+    let varies = tested.material.varies().then(|| sentence(text::VARIES));
     let compared = tested.compared.iter();
     let beyond = compared.flat_map(Compared::beyond).map(|measure| {
         format!(
@@ -213,7 +213,7 @@ fn material(tested: &Tested) -> Section {
 fn path(tested: &Tested) -> Section {
     let mut sentences = path_words::sentences(&tested.request);
     let notes = tested.notes().into_iter();
-    sentences.extend((notes.filter(|note| *note != said::VARIES)).map(|note| sentence(&note)));
+    sentences.extend((notes.filter(|note| *note != text::VARIES)).map(|note| sentence(&note)));
     Section {
         title: "Path".to_owned(),
         sentences,

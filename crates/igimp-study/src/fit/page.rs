@@ -6,7 +6,7 @@ use igimp_report::report::page::{Column, Page, PageTable, Section};
 use igimp_results::summary::FigureNote;
 use igimp_text::short;
 
-use super::said;
+use super::text;
 use super::{Fitted, Found, Known};
 use crate::element::{Compared, Tested, pictures};
 
@@ -22,7 +22,7 @@ pub(super) fn page(fitted: &Fitted, written: &[(String, Vec<String>)]) -> Page {
     let [iterations, evaluations] = fitted.effort;
     let mut sentences = vec![format!(
         "{}. The search converged after {iterations} iterations and {evaluations} evaluations.",
-        said::from(fitted)
+        text::from(fitted)
     )];
     let reservations = reservations(fitted);
     let is_doubtful = !reservations.is_empty();
@@ -64,9 +64,9 @@ fn reservations(fitted: &Fitted) -> Vec<String> {
     };
     let unknown = (fitted.parameters.iter())
         .filter(|found| !matches!(found.known, Known::Well { .. }))
-        .map(|found| format!("{}.", said::line(found, &fitted.parameters)));
-    let kink = fitted.has_kink.then(|| sentence(said::KINK));
-    let pairs = said::pairs(fitted)
+        .map(|found| format!("{}.", text::line(found, &fitted.parameters)));
+    let kink = fitted.has_kink.then(|| sentence(text::KINK));
+    let pairs = text::pairs(fitted)
         .into_iter()
         .map(|pair| format!("{pair}."));
     kink.into_iter().chain(unknown).chain(pairs).collect()
@@ -100,7 +100,7 @@ fn row(found: &Found) -> Vec<String> {
             error,
             interval: [low, high],
         } => {
-            let digits = |value: f64| said::digits(value, *error);
+            let digits = |value: f64| text::digits(value, *error);
             let ends = [digits(*low), digits(*high)];
             let [low, high] = ends;
             (
@@ -127,7 +127,7 @@ fn row(found: &Found) -> Vec<String> {
 
 fn correlations(fitted: &Fitted) -> Section {
     let keys = || fitted.parameters.iter().map(|found| found.key.clone());
-    let cell = |value: &f64| match said::correlation(*value, 3) {
+    let cell = |value: &f64| match text::correlation(*value, 3) {
         none if none.is_empty() => NONE.to_owned(),
         some => some,
     };

@@ -40,7 +40,7 @@ pub(crate) fn has_shell() -> bool {
     found
 }
 
-pub(crate) fn said(output: &Output) -> String {
+pub(crate) fn printed(output: &Output) -> String {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     text(&output.stdout) + &text(&output.stderr)
 }
@@ -133,7 +133,7 @@ fn try_python(folder: &Path, block: &Block) -> Option<String> {
     }
     fs::write(folder.join("block.py"), file_text(block)).unwrap();
     let output = shell(folder, "python3 block.py");
-    (!output.status.success()).then(|| said(&output))
+    (!output.status.success()).then(|| printed(&output))
 }
 
 /// Runs the commands of a page, one after the other in one folder; their number, and their
@@ -170,7 +170,7 @@ fn try_page(page: &Path) -> (usize, String) {
         {
             let output = shell(&folder, first);
             let done = matches!(output.status.code(), Some(0 | 1));
-            assert!(done, "{name}: `{first}`: {}", said(&output));
+            assert!(done, "{name}: `{first}`: {}", printed(&output));
         }
         if block.language == "python" {
             if let Some(problem) = try_python(&folder, &block) {
@@ -185,7 +185,7 @@ fn try_page(page: &Path) -> (usize, String) {
         for (number, line) in lines.iter().enumerate() {
             let output = shell(&folder, line);
             tried += 1;
-            last = said(&output);
+            last = printed(&output);
             let is_last = number + 1 == lines.len();
             let wanted = block.mark("exit:").filter(|_| is_last).unwrap_or("0");
             let code = output.status.code().map(|code| code.to_string());

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use igimp_results::checkpoint;
 
-use crate::commands::{can_import, folder, has_shell, said, shell};
+use crate::commands::{can_import, folder, has_shell, printed, shell};
 use crate::page::root;
 
 /// The slope on cells so large that it runs in a second or two.
@@ -21,7 +21,7 @@ fn slope_results() -> &'static Path {
             "igimp new slope > slope.toml && igimp run slope.toml {COARSE} --out results/slope"
         );
         let output = shell(&folder, &line);
-        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
         folder
     })
 }
@@ -82,8 +82,8 @@ fn the_python_recipe_works() {
         folder,
         &format!("python3 '{}' results/slope", recipe.display()),
     );
-    assert!(output.status.success(), "{}", said(&output));
-    println!("{}", said(&output));
+    assert!(output.status.success(), "{}", printed(&output));
+    println!("{}", printed(&output));
     let picture = folder.join("results/slope/python.png").exists();
     assert_eq!(
         picture,

@@ -64,8 +64,8 @@ impl Folder {
     /// Runs to the end and returns the exit code with the output.
     pub(crate) fn end(&self, out: &str, more: &[&str]) -> (Option<i32>, String) {
         let output = self.run(out, more).output().unwrap();
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        (output.status.code(), said)
+        let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code(), printed)
     }
 
     /// Every table of a results folder, by its path there.

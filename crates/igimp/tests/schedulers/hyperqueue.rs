@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use crate::study::{Study, said};
+use crate::study::{Study, printed};
 
 /// A Python that has HyperQueue.
 fn python() -> Option<String> {
@@ -29,7 +29,7 @@ fn a_killed_worker_of_hyperqueue_loses_nothing() {
     let reference = Study::left_alone("hq-alone", steps);
     let study = Study::new("hq", steps);
     let output = study.igimp(&["sweep", "study.toml", "--to", "hyperqueue"]);
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/schedulers/killed_worker.py");
     let output = Command::new(python)
         .arg(script)
@@ -37,13 +37,13 @@ fn a_killed_worker_of_hyperqueue_loses_nothing() {
         .current_dir(&study.folder.0)
         .output()
         .unwrap();
-    let text = said(&output);
+    let text = printed(&output);
     assert_eq!(output.status.code(), Some(0), "{text}");
     assert!(text.contains("killed the worker of task 2"), "{text}");
     // The output of the second begin stands in the task's own log: it replaced that of the first.
     let log = std::fs::read_to_string(study.path("out/hyperqueue-2.out")).unwrap();
     assert!(log.contains("push"), "{log}");
     let output = study.igimp(&["sweep", "study.toml", "--to", "hyperqueue"]);
-    assert!(said(&output).starts_with("all 4 tasks are done"));
+    assert!(printed(&output).starts_with("all 4 tasks are done"));
     study.is_as(&reference);
 }

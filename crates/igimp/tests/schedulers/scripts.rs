@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::study::{Study, said};
+use crate::study::{Study, printed};
 
 /// The numbers of threads, memory and time, and the places of this computer, as words.
 fn like(text: &str, study: &Study) -> String {
@@ -48,11 +48,11 @@ fn without_estimates(text: &str) -> String {
 fn a_script_of_slurm_holds_the_rest() {
     let study = Study::new("to slurm", [40, 40, 40, 40]);
     let output = study.igimp(&["run", "study.toml", "--task", "3", "--quiet"]);
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
     let mut command = study.command(&["sweep", "study.toml", "--to", "slurm"]);
     let output = command.env("PATH", "/none").output().unwrap();
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    insta::assert_snapshot!("slurm_said", like(&said(&output), &study));
+    assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
+    insta::assert_snapshot!("slurm_said", like(&printed(&output), &study));
     let script = fs::read_to_string(study.path("out/slurm.sh")).unwrap();
     insta::assert_snapshot!("slurm_script", like(&script, &study));
 }
@@ -63,11 +63,11 @@ fn a_script_of_slurm_starts_several_ranks() {
     let study = Study::new("to-ranks", [40, 40, 40, 40]);
     let words = ["sweep", "study.toml", "--ranks", "4", "--to"];
     let output = study.igimp(&[&words[..], &["hyperqueue"]].concat());
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    assert!(said(&output).contains("only Slurm starts tasks of several ranks"));
+    assert_eq!(output.status.code(), Some(2), "{}", printed(&output));
+    assert!(printed(&output).contains("only Slurm starts tasks of several ranks"));
     let output = study.igimp(&[&words[..], &["slurm"]].concat());
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    assert!(said(&output).contains("each is given 4 ranks of 1 thread, 500 MiB and "));
+    assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
+    assert!(printed(&output).contains("each is given 4 ranks of 1 thread, 500 MiB and "));
     let script = fs::read_to_string(study.path("out/slurm.sh")).unwrap();
     for line in [
         "#SBATCH --ntasks=4 --cpus-per-task=1",
@@ -93,8 +93,8 @@ fn a_job_file_of_hyperqueue_holds_the_rest() {
     ];
     let mut command = study.command(&words);
     let output = command.env("PATH", "/none").output().unwrap();
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    insta::assert_snapshot!("hyperqueue_said", like(&said(&output), &study));
+    assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
+    insta::assert_snapshot!("hyperqueue_said", like(&printed(&output), &study));
     let file = fs::read_to_string(study.path("out/hyperqueue.toml")).unwrap();
     let file = file
         .lines()
@@ -107,8 +107,8 @@ fn a_job_file_of_hyperqueue_holds_the_rest() {
 fn this_computer_needs_no_file() {
     let study = Study::new("to-local", [40, 40, 40, 40]);
     let output = study.igimp(&["sweep", "study.toml", "--to", "local"]);
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    let text = said(&output);
+    assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
+    let text = printed(&output);
     assert!(
         text.contains("nothing is written; run them with\n  igimp sweep study.toml --jobs "),
         "{text}"
@@ -117,12 +117,12 @@ fn this_computer_needs_no_file() {
     let line = text.lines().last().unwrap().trim();
     let words: Vec<&str> = line.split(' ').skip(1).collect();
     let output = study.igimp(&words);
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
     for to in ["slurm", "hyperqueue", "local"] {
         let output = study.igimp(&["sweep", "study.toml", "--to", to]);
-        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
         assert_eq!(
-            said(&output),
+            printed(&output),
             "all 4 tasks are done; igimp collect study.toml gathers them\n"
         );
     }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use crate::study::{Study, is_there, said, wait};
+use crate::study::{Study, is_there, printed, wait};
 
 /// Controller, node daemon and munge in a folder, ended when dropped.
 struct Slurm {
@@ -71,7 +71,7 @@ impl Slurm {
                 .arg(conf)
                 .output()
                 .unwrap();
-            assert!(output.status.success(), "{daemon:?}: {}", said(&output));
+            assert!(output.status.success(), "{daemon:?}: {}", printed(&output));
         }
         wait("idle node", || {
             slurm.says(&["sinfo", "-h", "-o", "%t"]).contains("idle")
@@ -87,7 +87,7 @@ impl Slurm {
     }
 
     fn says(&self, words: &[&str]) -> String {
-        said(&self.command(words).output().unwrap())
+        printed(&self.command(words).output().unwrap())
     }
 
     /// Submits from the folder of a study; the number of the job.
@@ -103,7 +103,7 @@ impl Slurm {
         let path = std::env::join_paths(folders.chain(std::env::split_paths(&path))).unwrap();
         command.env("PATH", path).current_dir(&study.folder.0);
         let output: Output = command.output().unwrap();
-        assert!(output.status.success(), "{}", said(&output));
+        assert!(output.status.success(), "{}", printed(&output));
         String::from_utf8(output.stdout).unwrap().trim().to_owned()
     }
 
@@ -144,7 +144,7 @@ fn an_array_of_slurm_loses_nothing() {
     let steps = [300, 4000, 300, 30_000];
     let study = Study::new("slurm with blanks", steps);
     let output = study.igimp(&["sweep", "study.toml", "--to", "slurm"]);
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
     // A minute is the least that Slurm knows; of the notice it is late or early by half of that.
     let job = slurm.submit(&study, &["--time=1", "--signal=B:TERM@5"]);
     study.wait_for_push(2);
@@ -158,13 +158,13 @@ fn an_array_of_slurm_loses_nothing() {
     assert_eq!(slurm.end_of(&job, 3), "COMPLETED 0:0");
     assert_eq!(slurm.end_of(&job, 4), "FAILED 3:0");
     let output = study.igimp(&["collect", "study.toml"]);
-    let text = said(&output);
+    let text = printed(&output);
     assert!(
         text.contains("running") && text.contains("interrupted"),
         "{text}"
     );
     let output = study.igimp(&["sweep", "study.toml", "--to", "slurm"]);
-    let text = said(&output);
+    let text = printed(&output);
     assert!(
         text.starts_with("2 of 4 tasks are not done: 2,4\n"),
         "{text}"
@@ -206,7 +206,7 @@ fn tasks_of_several_ranks_lose_nothing() {
     let study = Study::new("slurm-ranks", steps);
     let to_slurm = ["sweep", "study.toml", "--to", "slurm", "--ranks", "2"];
     let output = study.igimp(&to_slurm);
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
     let job = slurm.submit(&study, &[]);
     study.wait_for_push(2);
     let second = "igimp-mpi run study.toml --task 2 ";
@@ -229,7 +229,7 @@ fn tasks_of_several_ranks_lose_nothing() {
     assert_eq!(slurm.end_of(&job, 4), "FAILED 3:0");
     let first_stages = [2, 4].map(|task| study.first_stage_of(task));
     let output = study.igimp(&to_slurm);
-    assert!(said(&output).starts_with("2 of 4 tasks are not done: 2,4\n"));
+    assert!(printed(&output).starts_with("2 of 4 tasks are not done: 2,4\n"));
     let job = slurm.submit(&study, &[]);
     slurm.wait_until_empty();
     for task in [2, 4] {

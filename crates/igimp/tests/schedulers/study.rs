@@ -74,7 +74,7 @@ impl Study {
     pub(crate) fn left_alone(name: &str, steps: [usize; 4]) -> Self {
         let study = Self::new(name, steps);
         let output = study.igimp(&["sweep", "study.toml", "--jobs", "2"]);
-        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
         study
     }
 
@@ -113,7 +113,7 @@ impl Study {
     /// Nothing is lost: every file of every task is that of a study left alone, and so is the table.
     pub(crate) fn is_as(&self, other: &Self) {
         let output = self.igimp(&["collect", "study.toml"]);
-        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
         for task in 1..=4 {
             let [found, others] = [self, other].map(|study| study.results(task));
             assert!(found.contains_key(Path::new("convergence.csv")));
@@ -139,7 +139,7 @@ pub(crate) fn wait(event: &str, mut come: impl FnMut() -> bool) {
     }
 }
 
-pub(crate) fn said(output: &Output) -> String {
+pub(crate) fn printed(output: &Output) -> String {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     text(&output.stdout) + &text(&output.stderr)
 }

@@ -2,7 +2,7 @@
 
 use std::process::{Child, Stdio};
 
-use crate::study::{Study, said, wait};
+use crate::study::{Study, printed, wait};
 
 /// The same task, begun by two schedulers.
 const TASK: [&str; 8] = [
@@ -36,14 +36,14 @@ fn a_task_that_is_begun_twice_is_computed_once() {
     first.kill().unwrap();
     first.wait().unwrap();
     let output = second.wait_with_output().unwrap();
-    let text = said(&output);
+    let text = printed(&output);
     assert_eq!(output.status.code(), Some(0), "{text}");
     let waits = "another igimp writes into out/task-0002; waiting until it has ended";
     assert!(text.contains(waits), "{text}");
     assert_eq!(study.first_stage_of(2), started, "it was computed again");
     let output = study.igimp(&TASK);
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    assert!(said(&output).contains("task 2 is done already: done"));
+    assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
+    assert!(printed(&output).contains("task 2 is done already: done"));
     // All that is left, at once: whose the folder is was never said before.
     let others: Vec<Child> = ["1", "3", "4", "1", "3", "4"]
         .map(|task| {
@@ -55,7 +55,7 @@ fn a_task_that_is_begun_twice_is_computed_once() {
         .into();
     for child in others {
         let output = child.wait_with_output().unwrap();
-        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        assert_eq!(output.status.code(), Some(0), "{}", printed(&output));
     }
     study.is_as(&reference);
 }
@@ -81,8 +81,8 @@ fn a_waiting_run_can_be_stopped() {
         }
     }
     let output = second.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(3), "{}", said(&output));
-    assert!(said(&output).contains("interrupted while another igimp ran task 2"));
+    assert_eq!(output.status.code(), Some(3), "{}", printed(&output));
+    assert!(printed(&output).contains("interrupted while another igimp ran task 2"));
     assert_eq!(first.wait().unwrap().code(), Some(3));
 }
 
@@ -98,7 +98,7 @@ fn a_table_is_made_while_tasks_run() {
         let output = study.igimp(&["collect", "study.toml"]);
         ended = child.try_wait().unwrap();
         if ended.is_none() {
-            assert_eq!(output.status.code(), Some(4), "{}", said(&output));
+            assert_eq!(output.status.code(), Some(4), "{}", printed(&output));
             let table = std::fs::read_to_string(study.path("out/results.csv")).unwrap();
             assert!(
                 table.contains("2,11,2000,running,") || table.contains("2,11,2000,done,"),

@@ -10,7 +10,7 @@ const SAND: &str = "igimp = 1\n[materials.sand]\nmodel = \"mohr-coulomb\"\nunit_
 /// Eight measurements of a triaxial test.
 const MEASURED: &str = "strain_yy [%],q [kPa]\n0.1,28.4\n0.2,57.7\n0.4,114.8\n0.8,239.9\n1.5,270.4\n2.5,272.1\n4,275.2\n6,271.5\n";
 
-fn said(output: &Output) -> (i32, String, String) {
+fn printed(output: &Output) -> (i32, String, String) {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     let code = output.status.code().unwrap();
     (code, text(&output.stdout), text(&output.stderr))
@@ -25,7 +25,7 @@ fn tested(name: &str, words: &[&str], expected: i32) -> (Folder, String) {
     std::fs::write(folder.0.join("path.csv"), path).unwrap();
     let base = ["element", "sand.toml", "--out", "test"];
     let output = folder.igimp(&[&base, words].concat());
-    assert_eq!(said(&output).0, expected, "{:?}", said(&output));
+    assert_eq!(printed(&output).0, expected, "{:?}", printed(&output));
     let page = std::fs::read_to_string(folder.0.join("test/report.html")).unwrap();
     (folder, page)
 }
@@ -148,7 +148,7 @@ fn data_that_are_none_make_no_page() {
         "--out",
         "test",
     ];
-    let (code, _, text) = said(&folder.igimp(&words));
+    let (code, _, text) = printed(&folder.igimp(&words));
     assert_eq!(code, 2);
     assert!(text.contains("data.csv, line 1, column `q [m]`"), "{text}");
     assert!(!folder.0.join("test").exists());
@@ -158,11 +158,11 @@ fn data_that_are_none_make_no_page() {
 #[test]
 fn the_view_opens_the_page_of_a_test() {
     let (folder, _) = tested("element-view", &["--steps", "5"], 0);
-    let (code, text, _) = said(&folder.igimp(&["view", "test", "--no-open"]));
+    let (code, text, _) = printed(&folder.igimp(&["view", "test", "--no-open"]));
     let page = std::fs::canonicalize(folder.0.join("test/report.html")).unwrap();
     assert_eq!((code, text.trim_end()), (0, &*page.display().to_string()));
     std::fs::write(folder.0.join("test/report.html"), "<html></html>").unwrap();
-    let (code, _, text) = said(&folder.igimp(&["view", "test", "--no-open"]));
+    let (code, _, text) = printed(&folder.igimp(&["view", "test", "--no-open"]));
     assert!(
         code == 2 && text.contains("there are no results of a run"),
         "{text}"

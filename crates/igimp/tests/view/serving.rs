@@ -220,7 +220,7 @@ fn folders_without_frames_and_of_several_runs_differ() {
     let index: serde_json::Value = serde_json::from_str(&view.get("index.json").2).unwrap();
     assert_eq!(index["never"], true);
     drop(view);
-    let said = |words: &[&str]| {
+    let printed = |words: &[&str]| {
         let output = folder.igimp(words);
         let text = String::from_utf8(output.stderr).unwrap();
         (output.status.code().unwrap(), text)
@@ -236,20 +236,20 @@ fn folders_without_frames_and_of_several_runs_differ() {
         ];
         assert!(folder.igimp(&words).status.success());
     }
-    insta::assert_snapshot!(said(&["view", "study"]).1, @r"
+    insta::assert_snapshot!(printed(&["view", "study"]).1, @r"
     error: study holds the results of several runs
       help: look at one of them:
         igimp view study/mesh-1
         igimp view study/mesh-2
     ");
     std::fs::create_dir_all(folder.0.join("empty")).unwrap();
-    let (code, text) = said(&["view", "empty"]);
+    let (code, text) = printed(&["view", "empty"]);
     assert_eq!(code, 2);
     insta::assert_snapshot!(text, @r"
     error: there are no results of a run in empty
       help: give the folder that `igimp run` names in its last line
     ");
-    assert_eq!(said(&["view", "none"]).0, 4);
+    assert_eq!(printed(&["view", "none"]).0, 4);
 }
 
 /// GOAL: a frame is packed for the page, and only frames are.

@@ -12,8 +12,8 @@ fn a_run_in_space_is_shown() {
     let cuts =
         "output.cuts=[{ across = \"y\", at = \"0.6 m\" }, { across = \"z\", at = \"1.1 m\" }]";
     let run = folder.igimp(&["run", "case.toml", "--quiet", "--set", cuts]);
-    let said = String::from_utf8_lossy(&run.stderr).into_owned();
-    assert!(run.status.success(), "{said}");
+    let printed = String::from_utf8_lossy(&run.stderr).into_owned();
+    assert!(run.status.success(), "{printed}");
     let figures = folder.0.join("results/figures");
     for field in ["displacement", "sigma_zz"] {
         for kind in ["space", "cut-y", "cut-z"] {

@@ -37,8 +37,8 @@ impl Folder {
         let mut words = vec!["run", "case.toml", "--quiet", "--threads", "1"];
         words.extend(more);
         let run = folder.igimp(&words);
-        let said = String::from_utf8_lossy(&run.stderr).into_owned();
-        assert!(run.status.success(), "{said}");
+        let printed = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert!(run.status.success(), "{printed}");
         folder
     }
 
@@ -75,8 +75,8 @@ impl View {
             .spawn()
             .unwrap();
         let mut line = String::new();
-        let mut said = BufReader::new(program.stdout.take().unwrap());
-        said.read_line(&mut line).unwrap();
+        let mut printed = BufReader::new(program.stdout.take().unwrap());
+        printed.read_line(&mut line).unwrap();
         let rest = line.trim().strip_prefix("http://127.0.0.1:").unwrap();
         let (port, rest) = rest.split_once('/').unwrap();
         Self {
@@ -151,8 +151,8 @@ pub(crate) fn results_of(name: &str, case: &str, more: &[&str]) -> Folder {
     let mut words = vec!["run", "case.toml", "--quiet", "--out", "results"];
     words.extend(more);
     let run = folder.igimp(&words);
-    let said = String::from_utf8_lossy(&run.stderr).into_owned();
-    assert!(run.status.success(), "{said}");
+    let printed = String::from_utf8_lossy(&run.stderr).into_owned();
+    assert!(run.status.success(), "{printed}");
     folder
 }
 

@@ -187,7 +187,7 @@ fn plastic_soil_under_gravity_is_collapse() {
 /// ORACLE: by hand: a load that grows, its mirror image, a support that is lowered, and one that is pulled off.
 #[test]
 fn less_of_a_load_is_nearer_to_where_its_stage_began() {
-    for (from, to, said) in [
+    for (from, to, expected) in [
         (0.0, 2.0, "factor below 2 in"),
         (0.0, -2.0, "factor nearer to zero than -2 in"),
         (1.0, 0.25, "factor above 0.25 in"),
@@ -210,7 +210,7 @@ fn less_of_a_load_is_nearer_to_where_its_stage_began() {
             ..stage(load(to))
         });
         let try_this = advice(&case, 1, &stagnated(), seen(near(16, 14, 0)));
-        assert!(try_this[0].starts_with(said), "{try_this:?}");
+        assert!(try_this[0].starts_with(expected), "{try_this:?}");
     }
 }
 
@@ -390,7 +390,7 @@ fn the_rock_is_found_where_it_is() {
 #[test]
 fn half_a_cell_is_a_length_that_divides_the_domain() {
     use igimp_schema::quantity::Quantity;
-    for (cell, said) in [
+    for (cell, expected) in [
         (0.5, Some("0.25 m")),
         (2.0 / 9.0, Some("1/9 m")),
         (1.0 / 3.0, Some("1/6 m")),
@@ -400,7 +400,7 @@ fn half_a_cell_is_a_length_that_divides_the_domain() {
         let text = metres(0.5 * cell);
         let read = Quantity::parse(&text).unwrap().value;
         assert!((read / (0.5 * cell) - 1.0).abs() < 1e-12, "{text}");
-        assert!(said.is_none_or(|said| said == text), "{text}");
+        assert!(expected.is_none_or(|expected| expected == text), "{text}");
     }
 }
 

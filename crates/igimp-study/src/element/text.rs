@@ -26,7 +26,7 @@ const BRITTLE: &str = "strength that falls fast over plastic strain can snap bac
     or shear it with --test simple-shear-drained";
 
 /// The lines of a test, ready to print.
-pub(super) fn said(tested: &Tested) -> String {
+pub(super) fn of(tested: &Tested) -> String {
     let (request, states) = (&tested.request, &tested.run.states);
     let [axial, side] = request.stress.map(|stress| short(stress / 1e3));
     let steps = states.len() - 1;
@@ -43,7 +43,7 @@ pub(super) fn said(tested: &Tested) -> String {
         let _ = writeln!(text, "  {line}");
     }
     if let Some(compared) = &tested.compared {
-        text.push_str(&compared.said());
+        text.push_str(&compared.text());
     }
     text
 }

@@ -8,7 +8,7 @@ use super::parameter::written;
 use super::{Fitted, Found, Known};
 
 /// The lines of a fit.
-pub(super) fn said(fitted: &Fitted) -> String {
+pub(super) fn of(fitted: &Fitted) -> String {
     let [iterations, evaluations] = fitted.effort;
     let mut text = format!(
         "{}, {}\n  converged after {iterations} iterations, {evaluations} evaluations\n",
@@ -27,7 +27,7 @@ pub(super) fn said(fitted: &Fitted) -> String {
     for (tested, at) in fitted.tests.iter().zip(1..) {
         let title = tested.text.lines().next().unwrap_or_default();
         let _ = writeln!(text, "  test {at}, {title}");
-        for line in tested.compared.iter().flat_map(|data| lines(&data.said())) {
+        for line in tested.compared.iter().flat_map(|data| lines(&data.text())) {
             let _ = writeln!(text, "  {line}");
         }
     }
