@@ -88,7 +88,7 @@ pub enum DomainUpdate {
     RootJ,
     /// `l_d² = Σ_j (F_dj l_j0)²`: the second moments of the deformed domain along the axes.
     Moments,
-    /// Those half-lengths, all of them times the factor that gives the box the volume of the deformed domain.
+    /// Those half-lengths, all of them times the factor that gives the box the volume of the deformed domain (theory, eq. 29a).
     ScaledMoments,
 }
 
