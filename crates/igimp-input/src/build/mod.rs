@@ -33,6 +33,7 @@ use igimp_schema::tree::{Node, Wrong};
 use crate::build::grid::boundaries;
 use crate::build::outputs::quantities;
 use assemble::{GridAndBodies, Surroundings};
+use bodies::Plane;
 use bodies::sides::{self, Holds};
 use bodies::site::Site;
 use context::Context;
@@ -129,7 +130,7 @@ fn in_plane(
 ) -> Option<Case<2>> {
     let tables = things(Root::<2>::bodies(tree));
     let stages = things(Root::<2>::stages(tree));
-    let parts = bodies::bodies::<bodies::Plane, _>(tree, (&tables, &stages), names, problems);
+    let parts = bodies::bodies::<Plane, _>(tree, (&tables, &stages), names, problems);
     let outlines = rigid::plane::outlines(tree);
     let parts = (parts, outlines.as_slice());
     let basics = GridAndBodies::new(tree, names, (&tables, &stages), parts, problems);
@@ -141,11 +142,9 @@ fn in_plane(
     } = &basics;
     let site = Site::new(basics.frame.clone(), bodies, sequence);
     let domain = (site.frame.as_ref(), site.round_off);
-    let ground = (&bodies[..], sequence);
-    bodies::check::<bodies::Plane, _>((tree, &tables), names, ground, domain, problems);
+    bodies::check::<Plane, 2>((tree, &tables), names, (bodies, sequence), domain, problems);
     let boundaries = Root::boundaries(tree).ok();
-    let boundaries =
-        boundaries.and_then(|table| boundaries::boundaries(&table, site.frame.as_ref(), problems));
+    let boundaries = boundaries.and_then(|keys| boundaries::boundaries(&keys, domain.0, problems));
     let layers = Layers {
         tree,
         stated: &tables,
