@@ -71,7 +71,7 @@ pub(crate) fn run(scope: &mut Scope) -> BenchResult {
     report.heading("Linear equations");
     report.paragraph(&format!(
         "Tangents of a square block, Cholesky with von Mises soil, LU with Mohr–Coulomb soil; times \
-         in ms, on one thread where nothing else is said. *Analysis* contains the ordering. *Rate* \
+         in ms, on one thread where no other number is given. *Analysis* contains the ordering. *Rate* \
          counts the operations of the plan of elimination; *peak* is a dense product of 1024 rows on \
          one thread, measured in turn with it. The time of a factorisation, as the operations that \
          the dense product does meanwhile, grows with the number of unknowns to the power: {}; 1.5 is \
