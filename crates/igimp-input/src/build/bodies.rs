@@ -260,9 +260,9 @@ pub(super) fn check<A: Fill<D>, const D: usize>(
             let Some((at, size)) = A::overlap(&*a.region, &*b.region, round_off) else {
                 continue;
             };
-            let [first, second_name] = [first, second].map(|index| names.bodies.name(index));
+            let [one, other] = [first, second].map(|index| names.bodies.name(index));
             let message = format!(
-                "body `{second_name}` overlaps body `{first}` near {}{size}",
+                "body `{other}` overlaps body `{one}` near {}{size}",
                 point(at)
             );
             problems
